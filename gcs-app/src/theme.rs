@@ -1,7 +1,7 @@
 //! Colours and spacing, light and dark. Red is warning, amber is caution, and neither is used for
 //! anything else; what colour says, shape or line style says too.
 
-use egui::{Color32, CornerRadius, Margin, Shadow, Stroke, TextStyle, Theme, Ui, Visuals, vec2};
+use egui::{Color32, CornerRadius, Margin, Shadow, Stroke, TextStyle, Theme, Ui, Vec2, Visuals, vec2};
 use serde::{Deserialize, Serialize};
 
 /// The colours that carry meaning, for one theme.
@@ -87,6 +87,9 @@ const LIGHT: Palette = Palette {
     border: rgb(0xa8aea2),
 };
 
+/// The least window in which everything has its place, screen points.
+const LEAST_WINDOW: Vec2 = vec2(960.0, 600.0);
+
 /// How large everything is; 1 is normal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scale(f32);
@@ -98,6 +101,11 @@ impl Default for Scale {
 }
 
 impl Scale {
+    /// The largest that a window of this size (points at scale 1) has room for, in tenths; a small window is not made smaller for it.
+    pub fn most_in(window: Vec2) -> f32 {
+        ((window / LEAST_WINDOW).min_elem() * 10.0).floor().max(10.0) / 10.0
+    }
+
     /// A scale from 0.8 to 3; `None` for any other number.
     pub fn new(scale: f32) -> Option<Self> {
         (0.8..=3.0).contains(&scale).then_some(Self(scale))
@@ -211,4 +219,22 @@ pub fn card(ui: &Ui) -> egui::Frame {
 /// The margin of a whole panel.
 pub fn panel(ui: &Ui) -> egui::Frame {
     egui::Frame::new().fill(of(ui).panel).inner_margin(Margin::symmetric(10, 8))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_is_scaled_as_far_as_everything_has_its_place() {
+        for (width, height, most) in [
+            (960.0, 600.0, 1.0),
+            (500.0, 300.0, 1.0),
+            (1280.0, 800.0, 1.3),
+            (1920.0, 1080.0, 1.8),
+            (3840.0, 2160.0, 3.6),
+        ] {
+            assert_eq!(Scale::most_in(vec2(width, height)), most, "{width} by {height}");
+        }
+    }
 }

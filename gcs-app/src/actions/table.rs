@@ -294,7 +294,14 @@ fn theme_is(scene: &Scene<'_>, theme: ThemePreference) -> Kind {
 }
 
 fn scale(scene: &Scene<'_>, tenths: f32, why_not: &'static str) -> Asked {
-    scene.view.scale.larger(tenths).ok_or(why_not).and_then(|scale| view(ViewCommand::Scale(scale)))
+    const NO_ROOM: &str = "The window has no room for that: make it larger";
+    let most = scene.view.most_scale.unwrap_or(f32::INFINITY);
+    let now = Scale::new(scene.view.scale.get().min(most)).unwrap_or_default();
+    let next = now.larger(tenths).ok_or(why_not)?;
+    if tenths > 0.0 && next.get() > most {
+        return Err(NO_ROOM);
+    }
+    view(ViewCommand::Scale(next))
 }
 
 fn help(scene: &Scene<'_>) -> Asked {

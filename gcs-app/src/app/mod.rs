@@ -280,9 +280,12 @@ impl App {
         if ctx.options(|o| o.theme_preference) != self.view.theme {
             ctx.set_theme(self.view.theme);
         }
-        if ctx.zoom_factor() != self.view.scale.get() {
-            ctx.set_zoom_factor(self.view.scale.get());
+        let most = theme::Scale::most_in(ctx.content_rect().size() * ctx.zoom_factor());
+        let scale = self.view.scale.get().min(most);
+        if ctx.zoom_factor() != scale {
+            ctx.set_zoom_factor(scale);
         }
+        self.view.most_scale = Some(most);
         match std::mem::take(&mut self.view.panel_step) {
             0 => {}
             by => self.dock.step_keyboard(by, ctx),

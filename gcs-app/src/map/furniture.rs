@@ -9,7 +9,7 @@ use crate::command::{Queue, ViewCommand};
 use crate::panels::{Scene, start, tour};
 use crate::theme::{self, Palette};
 use crate::units::{self, Units};
-use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Align2, Painter, Popup, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
 use serde::{Deserialize, Serialize};
 use walkers::MapMemory;
 
@@ -22,7 +22,7 @@ pub struct Edge {
     pub rings: bool,
 }
 
-/// On a map that is narrower there is no legend: the commands take several lines there, screen points.
+/// On a map that is narrower the legend is behind a button: the commands take several lines there, screen points.
 pub const NARROW: f32 = 600.0;
 
 /// From one tool to the next, screen points.
@@ -90,55 +90,71 @@ fn scale(painter: &Painter, view: &View, units: Units, p: &Palette) {
 type Line = fn(&Painter, Pos2, Pos2, &Palette);
 
 /// Line styles and what they mean.
+const LINES: [(&str, Line); 4] = [
+    ("planned", |painter, a, b, p| {
+        painter.line_segment([a, b], Stroke::new(2.0, p.accent));
+    }),
+    ("active", |painter, a, b, p| {
+        painter.line_segment([a, b], Stroke::new(3.6, p.active));
+    }),
+    ("flown", |painter, a, b, p| {
+        painter.line_segment([a, b], Stroke::new(2.6, p.flown));
+    }),
+    ("alternate", |painter, a, b, p| {
+        painter.extend(Shape::dotted_line(&[a, b], p.contingency, 6.0, 1.5));
+    }),
+];
+/// Size of what they take, screen points.
+const LINES_SIZE: Vec2 = vec2(92.0, 16.0 * LINES.len() as f32);
+
 fn legend(painter: &Painter, map: Rect, p: &Palette) {
-    let rows: [(&str, Line); 4] = [
-        ("planned", |painter, a, b, p| {
-            painter.line_segment([a, b], Stroke::new(2.0, p.accent));
-        }),
-        ("active", |painter, a, b, p| {
-            painter.line_segment([a, b], Stroke::new(3.6, p.active));
-        }),
-        ("flown", |painter, a, b, p| {
-            painter.line_segment([a, b], Stroke::new(2.6, p.flown));
-        }),
-        ("alternate", |painter, a, b, p| {
-            painter.extend(Shape::dotted_line(&[a, b], p.contingency, 6.0, 1.5));
-        }),
-    ];
-    let origin = map.left_bottom() + vec2(12.0, -30.0 - 16.0 * rows.len() as f32);
-    let plate = Rect::from_min_size(origin - vec2(6.0, 2.0), vec2(104.0, 16.0 * rows.len() as f32 + 4.0));
+    let origin = map.left_bottom() + vec2(12.0, -30.0 - LINES_SIZE.y);
+    let plate = Rect::from_min_size(origin, LINES_SIZE).expand2(vec2(6.0, 2.0));
     painter.rect_filled(plate, 4.0, p.panel.gamma_multiply(0.8));
-    for (i, (name, line)) in rows.iter().enumerate() {
+    draw_lines(painter, origin, p);
+}
+
+fn draw_lines(painter: &Painter, origin: Pos2, p: &Palette) {
+    for (i, (name, line)) in LINES.iter().enumerate() {
         let y = origin.y + 8.0 + 16.0 * i as f32;
         line(painter, pos2(origin.x, y), pos2(origin.x + 30.0, y), p);
-        painter.text(
-            pos2(origin.x + 38.0, y),
-            Align2::LEFT_CENTER,
-            name,
-            egui::FontId::proportional(11.0),
-            p.text,
-        );
+        let (at, font) = (pos2(origin.x + 38.0, y), egui::FontId::proportional(11.0));
+        painter.text(at, Align2::LEFT_CENTER, name, font, p.text);
     }
+}
+
+/// On a map without room for it the legend is behind a button.
+fn legend_button(ui: &mut Ui) {
+    let response = button(ui, "☰", "What the lines mean", false);
+    Popup::menu(&response).show(|ui| {
+        let (rect, shown) = ui.allocate_exact_size(LINES_SIZE, Sense::hover());
+        draw_lines(ui.painter(), rect.min, theme::of(ui));
+        let names = LINES.map(|(name, _)| name).join(", ");
+        shown.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Lines: {names}")));
+    });
 }
 
 /// Buttons at the map's right edge.
 pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &mut Queue) {
     let map = ui.min_rect();
-    let area = Rect::from_min_size(map.right_top() + vec2(-44.0, 12.0), vec2(34.0, 150.0));
+    let area = Rect::from_min_size(map.right_top() + vec2(-44.0, 12.0), vec2(34.0, 190.0));
     let mut column = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt("map buttons"));
     column.spacing_mut().item_spacing.y = 4.0;
-    if button(&mut column, "+", "Zoom in", false) {
+    if button(&mut column, "+", "Zoom in", false).clicked() {
         // at the end of the range nothing happens
         let _ = memory.zoom_in();
     }
-    if button(&mut column, "−", "Zoom out", false) {
+    if button(&mut column, "−", "Zoom out", false).clicked() {
         let _ = memory.zoom_out();
     }
-    if button(&mut column, "⛶", "Show the whole plan (F)", false) {
+    if button(&mut column, "⛶", "Show the whole plan (F)", false).clicked() {
         queue.view(ViewCommand::Fit);
     }
-    if scene.vehicle.position.is_some() && button(&mut column, "✈", "Follow the aircraft", scene.view.follow)
-    {
+    if map.width() < NARROW {
+        legend_button(&mut column);
+    }
+    let follow = |ui: &mut Ui| button(ui, "✈", "Follow the aircraft", scene.view.follow).clicked();
+    if scene.vehicle.position.is_some() && follow(&mut column) {
         queue.view(ViewCommand::Follow(!scene.view.follow));
     }
 }
@@ -158,7 +174,7 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
         column.spacing_mut().item_spacing.y = 4.0;
         for (card, in_use) in cards {
             let name = format!("{} ({})", card.name, card.key.name());
-            if button(&mut column, card.symbol, &name, *in_use) {
+            if button(&mut column, card.symbol, &name, *in_use).clicked() {
                 queue.view(ViewCommand::Tool(card.id));
             }
         }
@@ -185,7 +201,7 @@ fn in_column(map: Rect) -> usize {
     (((map.height() - 12.0) / TOOL) as usize).max(1)
 }
 
-fn button(ui: &mut Ui, symbol: &str, name: &str, on: bool) -> bool {
+fn button(ui: &mut Ui, symbol: &str, name: &str, on: bool) -> Response {
     let p = theme::of(ui);
     let button = egui::Button::new(egui::RichText::new(symbol).size(16.0))
         .stroke(Stroke::new(1.0, p.line))
@@ -194,5 +210,5 @@ fn button(ui: &mut Ui, symbol: &str, name: &str, on: bool) -> bool {
     let response = ui.add_sized([32.0, 32.0], button).on_hover_text(name);
     let name = name.to_owned();
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-    response.clicked()
+    response
 }

@@ -151,8 +151,10 @@ pub struct ViewState {
     pub units: Units,
     /// Light, dark, or as the system.
     pub theme: egui::ThemePreference,
-    /// How large everything is.
+    /// How large everything is, where there is room for that.
     pub scale: theme::Scale,
+    /// The window has room for no more, if it is known.
+    pub most_scale: Option<f32>,
     /// The command palette is open; what is typed in it begins with this.
     pub palette: Option<&'static str>,
     /// The topic of the help that is read, by its key.

@@ -3,6 +3,7 @@
 use super::{Scene, primary_button};
 use crate::command::{Queue, ViewCommand};
 use crate::theme::{self, Palette};
+use egui::emath::Rot2;
 use egui::{
     Align, Align2, Area, Context, Id, LayerId, Layout, Order, Painter, Pos2, Rect, RichText, Sense, Stroke,
     Ui, vec2,
@@ -60,6 +61,8 @@ const WIDTH: f32 = 280.0;
 const HEIGHT: f32 = 150.0;
 /// Height of its text: three lines.
 const TEXT: f32 = 66.0;
+/// Of the arrow's head, however far it reaches.
+const HEAD: f32 = 14.0;
 
 /// Says where a part of the window is.
 pub fn mark(ctx: &Context, part: &str, rect: Rect) {
@@ -135,6 +138,10 @@ fn point(painter: &Painter, card: Rect, about: Rect, p: &Palette) {
     let to = about.clamp(card.center());
     let from = card.clamp(to);
     if from.distance(to) > 8.0 {
-        painter.arrow(from, to - from, stroke);
+        painter.line_segment([from, to], stroke);
+        let back = (from - to).normalized() * HEAD;
+        for side in [0.4, -0.4] {
+            painter.line_segment([to, to + Rot2::from_angle(side) * back], stroke);
+        }
     }
 }

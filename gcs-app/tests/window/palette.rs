@@ -84,6 +84,18 @@ fn a_dangerous_command_is_given_by_holding_alone() {
 }
 
 #[test]
+fn a_window_is_not_made_larger_than_it_has_room_for() {
+    let mut window = Window::open_with(SQUARE, egui::vec2(960.0, 600.0), None);
+    window.until_analysed();
+    for _ in 0..20 {
+        window.press_ctrl(Key::Plus);
+    }
+    assert_eq!((window.app().view().scale.get(), window.harness.ctx.zoom_factor()), (1.0, 1.0));
+    window.ask_for("larger");
+    assert!(window.paints("The window has no room for that"));
+}
+
+#[test]
 fn keys_change_the_size_and_a_key_of_the_palette_is_shown() {
     let mut window = Window::open(SQUARE);
     window.until_analysed();

@@ -115,3 +115,15 @@ fn a_click_on_several_things_asks_which_is_meant() {
     window.steps(3);
     assert_eq!(window.selected(), "keep-out-2");
 }
+
+#[test]
+fn on_a_narrow_map_the_legend_is_behind_a_button() {
+    let mut window = Window::open_with(SQUARE, egui::vec2(960.0, 600.0), None);
+    window.until_analysed();
+    assert_eq!(window.colour_within("Map", "alternate"), None, "there is no room for it");
+    window.click("What the lines mean");
+    assert!(window.shows("Lines: planned, active, flown, alternate"));
+    let mut wide = Window::open(SQUARE);
+    wide.until_analysed();
+    assert!(wide.colour_within("Map", "alternate").is_some() && !wide.shows("What the lines mean"));
+}
