@@ -21,6 +21,7 @@ mod gestures;
 mod handles;
 mod inspecting;
 mod interchange;
+mod lasting;
 mod looks;
 mod maps;
 mod painted;

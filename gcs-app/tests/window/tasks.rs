@@ -30,6 +30,21 @@ fn flies(window: &mut Window) {
     assert!(compile(plan, &profile, assets::demo_terrain().as_ref()).is_ok());
 }
 
+/// What it looks like when it is done, compared with the picture that is kept.
+fn done(window: &mut Window, task: &str) {
+    window.until_analysed();
+    window.until("messages that go by themselves", |app| app.toasts().iter().next().is_none());
+    window.steps(30);
+    window.picture(&format!("task-{task}"));
+}
+
+/// The same in flight: what the vehicle says is fresh.
+fn done_in_flight(window: &mut Window, task: &str) {
+    window.receive_position(false);
+    window.receive_attitude();
+    window.picture(&format!("task-{task}"));
+}
+
 /// Clicks places of the map, from its middle.
 fn click_map(window: &mut Window, from_middle: &[Vec2]) {
     let middle = window.centre("Map");
@@ -71,6 +86,7 @@ fn survey_with_alternates_from_an_empty_map() {
     let scan = plan.leg(&"scan".into()).unwrap().leg;
     assert_eq!(scan.emergency.by_cause, [(None, away.id), (Some(Cause::Engine), way_home.id)]);
     flies(&mut window);
+    done(&mut window, "survey");
 }
 
 /// A road, as a map of the web copies it.
@@ -92,6 +108,7 @@ fn corridor_along_a_pasted_kml_line() {
     window.fill_in(Role::SpinButton, "Width", "200");
     assert!(window.gestures <= 5, "{} gestures", window.gestures);
     flies(&mut window);
+    done(&mut window, "corridor");
     window.click("Undo");
     window.click("Undo");
     assert_eq!(window.plan(), flight_plan::read(SQUARE).plan, "one step each");
@@ -136,6 +153,7 @@ fn fork_with_a_close_look() {
         window.app().analysis().forecast.passages.iter().any(|passage| passage.leg.as_str() == look)
     };
     assert!(!flown(&window), "it is flown past");
+    done(&mut window, "fork");
 }
 
 #[test]
@@ -163,6 +181,7 @@ fn procedure_at_three_pylons() {
     flies(&mut window);
     let rounds = window.app().analysis().forecast.passages.iter();
     assert_eq!(rounds.filter(|passage| passage.leg.as_str().ends_with(&orbit)).count(), 3);
+    done(&mut window, "procedure");
 }
 
 #[test]
@@ -183,6 +202,7 @@ fn zone_around_a_village() {
     window.click_beginning("Upper limit: ");
     window.fill_in(Role::SpinButton, "Up to", "360");
     flies(&mut window);
+    done(&mut window, "zone");
 }
 
 #[test]
@@ -204,6 +224,7 @@ fn all_altitudes_are_raised_by_30_m() {
     for id in ["side1", "side2", "side3", "side4"] {
         assert_eq!(altitude(&window.plan(), id), altitude(&before, id) + 30.0, "{id}");
     }
+    done(&mut window, "altitudes");
     window.click("Undo");
     assert_eq!(window.plan(), before, "one step");
 }
@@ -235,6 +256,7 @@ fn three_faults_are_found_and_mended() {
         }
     }
     flies(&mut window);
+    done(&mut window, "faults");
 }
 
 #[test]
@@ -251,6 +273,7 @@ fn what_if_the_engine_fails_here() {
     assert_eq!(Some(analysis.diversion().unwrap().time_s), window.app().view().cursor_s);
     assert!(window.shows("Engine failure: return, runway R05"));
     assert!(!window.is_enabled("Undo"), "the plan is what it was");
+    done(&mut window, "engine");
 }
 
 #[test]
@@ -274,6 +297,7 @@ fn scan_is_bound_to_a_variable() {
     window.fill_in(Role::TextInput, "Initial value", "36.3150, -84.1600");
     assert!(window.centre(&format!("Centre of {scan}")).distance(before) > 20.0);
     flies(&mut window);
+    done(&mut window, "variable");
 }
 
 #[test]
@@ -296,6 +320,7 @@ fn recovered_after_it_was_killed() {
     assert_eq!(window.plan(), lost);
     assert!(window.app().document().is_dirty());
     flies(&mut window);
+    done(&mut window, "recovered");
 }
 
 #[test]
@@ -310,6 +335,7 @@ fn leg_is_moved_in_flight_and_pushed() {
     assert_eq!(sent, window.plan());
     let hash = flight_plan::hash(&sent);
     window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
+    done_in_flight(&mut window, "push");
     window.click("Commit");
     let call = window.asked().map(|(_, call)| call);
     assert_eq!(call, Some(Call::Plan(Command::Commit { hash: hash.as_str().into(), entry: None })));
@@ -332,6 +358,7 @@ fn emergency_is_flown_and_the_way_back_is_taken() {
     let Some((ticket, call)) = window.asked() else { panic!("nothing was asked") };
     assert_eq!(call, Call::Foresee(Some(back.clone())));
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    done_in_flight(&mut window, "way-back");
     let given = window.harness.get_all_by_label("Return to the main plan at side3").last().unwrap();
     given.click();
     window.steps(3);
