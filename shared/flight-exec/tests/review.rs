@@ -812,3 +812,28 @@ fn a_later_flight_is_held_against_zones_and_its_own_energy() {
     wary.margins.energy_share = 0.5;
     assert_eq!(energy(r#"turnaroundEnergy="0.4""#, wary), on("low-reserve", ""));
 }
+
+/// Above `home` both zones begin at 180 m: below the first flight, which took off at 300 m, and above the second, from 450 m.
+#[test]
+fn limits_above_home_are_those_of_the_flight_that_comes_there() {
+    let zone = |id: &str, place: &str| {
+        format!(r#"<keepOut id="{id}" {place} radius="150" floor="180" floorReference="home"/>"#)
+    };
+    let zones =
+        zone("first", r#"lat="36.30" lon="-84.17""#) + &zone("second", r#"lat="36.31" lon="-84.135""#);
+    let runway = r#"<runway id="S" lat="36.31" lon="-84.19" elevation="450" heading="90" length="500" priority="2"/></runways>"#;
+    let first =
+        r#"<stage id="t1" type="take-off" runway="R" altitude="400" altitudeReference="amsl"/><stage id="s""#;
+    let document = String::from_utf8(two_flights(&zones, ""))
+        .unwrap()
+        .replacen("</runways>", runway, 1)
+        .replacen(r#"<stage id="s""#, first, 1)
+        .replacen("<IF id=\"a\"", "<TF id=\"a\"", 1)
+        .replace(
+            r#"id="t2" type="take-off" runway="R" altitude="400""#,
+            r#"id="t2" type="take-off" runway="S" altitude="520""#,
+        );
+    let found = over_flat_ground(document.as_bytes(), Conditions::default());
+    let zones: Vec<_> = found.into_iter().filter(|(code, _)| *code == "keep-out").collect();
+    assert_eq!(zones, on("keep-out", "b"));
+}

@@ -303,10 +303,34 @@ impl FlightPlan {
         (0..self.stages.len()).filter(begins)
     }
 
-    /// The runway of the first take-off stage: where the aircraft stands, and what `home` altitudes are above, in all flights.
+    /// Which flight a stage of the main plan belongs to, from 1.
+    pub fn flight_of(&self, stage: usize) -> usize {
+        self.flights().take_while(|first| *first <= stage).count()
+    }
+
+    /// The runway of the first take-off stage: where the aircraft stands before the first flight, and what `home` altitudes are above
+    /// in that.
     pub fn home(&self) -> Option<&crate::Runway> {
-        let take_off = self.stages.iter().find(|s| s.kind == crate::StageKind::TakeOff)?;
-        self.runway(take_off.runway.as_ref()?)
+        self.runway(self.take_offs().next()?.runway.as_ref()?)
+    }
+
+    /// The runway that `home` altitudes are above at a stage of the main plan: of the flight's own take-off; before any, of the first.
+    pub fn home_at(&self, stage: usize) -> Option<&crate::Runway> {
+        let up_to = self.stages.iter().take(stage.saturating_add(1));
+        let last = up_to.filter(|s| s.kind == crate::StageKind::TakeOff).last();
+        last.and_then(|s| self.runway(s.runway.as_ref()?)).or_else(|| self.home())
+    }
+
+    /// The home of whatever flight of the plan, for what is flown in any of them (emergency plans, zones); `None`: they take off from
+    /// runways of different elevations, or not at all.
+    pub fn common_home(&self) -> Option<&crate::Runway> {
+        let home = self.home()?;
+        let mut others = self.take_offs().filter_map(|s| self.runway(s.runway.as_ref()?));
+        others.all(|other| other.elevation_amsl_m == home.elevation_amsl_m).then_some(home)
+    }
+
+    fn take_offs(&self) -> impl Iterator<Item = &Stage> {
+        self.stages.iter().filter(|s| s.kind == crate::StageKind::TakeOff)
     }
 
     /// What ground of which no elevation is known is not taken to lie below: the sea, or the lowest runway if that is lower

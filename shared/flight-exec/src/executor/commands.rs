@@ -248,18 +248,32 @@ impl Executor {
     }
 
     /// What belongs to another flight of the plan is not flown to: the landing between is there for the energy.
-    fn check_in_this_flight(&self, program: &Program, target: &LegPath) -> Result<(), Refusal> {
-        let flight_of = |path: &LegPath| {
-            let begun = |first: &usize| *first <= path.stage;
-            path.emergency_plan.is_none().then(|| program.flown().flights().take_while(begun).count())
-        };
-        let present = self.flight.emergencies.leg_of_main_plan(|| self.main_leg());
-        let present = present.and_then(|leg| program.path(&leg)).and_then(|path| flight_of(&path));
-        if present.zip(flight_of(target)).is_some_and(|(present, target)| present != target) {
+    /// `program`: the active plan, or one that is to follow it, if that knows a stage of the present flight.
+    pub(super) fn check_in_this_flight(&self, program: &Program, target: &LegPath) -> Result<(), Refusal> {
+        if target.emergency_plan.is_some() {
+            return Ok(());
+        }
+        let flown = program.flown();
+        let is_other = |present: usize| flown.flight_of(present) != flown.flight_of(target.stage);
+        if self.stage_of_this_flight(program).is_some_and(is_other) {
             let reason = "this leg belongs to another flight of the plan, and a landing is between: name a leg of this flight";
             return Err(refusal("other-flight", reason));
         }
         Ok(())
+    }
+
+    /// The first stage of the present flight that a plan has, by its number there.
+    fn stage_of_this_flight(&self, program: &Program) -> Option<usize> {
+        let flown = self.setup.program.flown();
+        let leg = self.flight.emergencies.leg_of_main_plan(|| self.main_leg())?;
+        let present = self.setup.program.path(&leg).filter(|path| path.emergency_plan.is_none())?;
+        let flight = flown.flight_of(present.stage);
+        let stages = flown.stages.iter().enumerate().filter(|(i, _)| flown.flight_of(*i) == flight);
+        let in_program = |id: &Id| {
+            let path = program.path(id)?;
+            (path.emergency_plan.is_none() && path.indices.is_empty()).then_some(path.stage)
+        };
+        stages.into_iter().find_map(|(_, stage)| in_program(&stage.id))
     }
 
     fn go_to(&mut self, leg: &Id, out: &mut Vec<Output>) -> Result<(), Refusal> {

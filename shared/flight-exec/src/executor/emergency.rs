@@ -41,6 +41,7 @@ impl Executor {
         // crossings are counted on, so that a decision for the next one is not taken for another after the return
         let before = self.bookmark(0);
         (cursor.crossings, cursor.uncounted) = (before.crossings, before.uncounted);
+        cursor.home = before.home;
         self.leave_hold(out);
         self.jump(cursor, out);
     }

@@ -159,6 +159,7 @@ impl Executor {
         })?;
         self.check_taken_off()?;
         self.check_not_a_take_off(new, &target)?;
+        self.check_in_this_flight(new, &target)?;
         let now = self.place_reached();
         if target.emergency_plan.is_some() && !self.is_of_the_plan_flown(&target, new) {
             let reason =

@@ -134,14 +134,14 @@ impl Offset {
         #[rustfmt::skip]
         let Cursor {
             section, stage, loops, index, doing, path, leg_start, level, airspeed_mps, passage, given, left_or_not, origin,
-            rejoined, expansion, crossings, uncounted,
+            rejoined, expansion, crossings, uncounted, home,
         } = one;
         let same_expansion = |a: &Arc<Expansion>, b: &Arc<Expansion>| Arc::ptr_eq(a, b) || a == b;
         (section, stage, index, doing) == (&other.section, &other.stage, &other.index, &other.doing)
             && (given, left_or_not) == (&other.given, &other.left_or_not)
             && (level, airspeed_mps) == (&other.level, &other.airspeed_mps)
             && self.passage(*passage, other.passage)
-            && (crossings, uncounted) == (&other.crossings, &other.uncounted)
+            && (crossings, uncounted, home) == (&other.crossings, &other.uncounted, &other.home)
             && self.paths(path, &other.path)
             && self.paths(leg_start, &other.leg_start)
             && both_or_none(rejoined, &other.rejoined, |a, b| self.paths(a, b))

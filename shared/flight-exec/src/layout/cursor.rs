@@ -66,6 +66,9 @@ pub struct Cursor {
     pub crossings: Vec<(Id, u64)>,
     /// Those that are not listed any more were passed at most so often.
     pub uncounted: u64,
+    /// The runway that the present flight took off from; `None`: that of the plan's first take-off.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub home: Option<Id>,
 }
 
 /// What a leg was laid out from, to know whether its own values have changed since.
@@ -183,6 +186,7 @@ impl Cursor {
             expansion: None,
             crossings: Vec::new(),
             uncounted: 0,
+            home: None,
         }
     }
 
@@ -214,7 +218,7 @@ impl Cursor {
     /// the altitude is not guessed.
     fn point_over_known_ground(&mut self, world: &World, notes: &mut CursorLog) -> Option<(Point, f64)> {
         let point = self.peek_point(world, notes)?;
-        let amsl_m = world.amsl_m(point.level.unwrap_or(self.level), point.position);
+        let amsl_m = world.amsl_m(point.level.unwrap_or(self.level), point.position, self.home.as_ref());
         if amsl_m.is_none() {
             notes.errors.push(LayoutError::unknown_ground(self.place(world).leg, point.position));
             self.expansion = None;

@@ -136,7 +136,7 @@ impl Stretch {
         let emission = Emission {
             position: path.last.position,
             altitude_amsl_m: world
-                .amsl_m(path.last.level, path.last.position)
+                .amsl_m(path.last.level, path.last.position, self.tail.home.as_ref())
                 .unwrap_or(path.commanded_amsl_m),
             airspeed_mps: path.last.airspeed_mps,
             action: Action::Fly,

@@ -145,14 +145,22 @@ impl World<'_> {
         (airspeed_mps + in_steps(self.flight.wind_mps)).max(1.0)
     }
 
-    /// Metres AMSL of a level above a position; `None`: it counts from the ground, and nothing is known of the ground there.
-    pub fn amsl_m(&self, level: Level, position: LatLon) -> Option<f64> {
+    /// Metres AMSL of a level above a position in the flight from a home ([`Cursor::home`](crate::layout::cursor::Cursor::home)); `None`:
+    /// it counts from the ground, and nothing is known of the ground there.
+    pub fn amsl_m(&self, level: Level, position: LatLon, home: Option<&Id>) -> Option<f64> {
         let datum_m = match level.reference {
             AltitudeReference::Amsl => 0.0,
-            AltitudeReference::Home => self.program.plan.home().map_or(0.0, |r| r.elevation_amsl_m),
+            AltitudeReference::Home => self.home_m(home),
             AltitudeReference::Agl => self.terrain.elevation_m(position)?,
         };
         Some(datum_m + level.metres)
+    }
+
+    /// Metres AMSL of a [`Cursor::home`](crate::layout::cursor::Cursor::home).
+    pub fn home_m(&self, home: Option<&Id>) -> f64 {
+        let plan = &self.program.plan;
+        let runway = home.and_then(|id| plan.runway(id)).or_else(|| plan.home());
+        runway.map_or(0.0, |r| r.elevation_amsl_m)
     }
 
     /// Altitude of a leg: its own, the innermost loop's that has one, the stage's, else `before`.

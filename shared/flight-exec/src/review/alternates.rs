@@ -18,6 +18,15 @@ pub(super) struct Alternate<'a> {
     pub route: Vec<LatLon>,
     /// Energy from the entry to the landing, joules.
     pub energy_j: f64,
+    /// How high the home is from which it was flown, metres AMSL.
+    home_m: f64,
+}
+
+impl Alternate<'_> {
+    /// It is the way out from there: in a flight from another home it is another one.
+    pub fn is_from(&self, view: &View, from: &Origin) -> bool {
+        view.home_m(&from.leg) == self.home_m
+    }
 }
 
 /// A place of the flight from which a way out is sought.
@@ -43,10 +52,10 @@ impl std::fmt::Display for Origin {
 
 /// The emergency plans that were flown, each with its index.
 pub(super) fn alternates<'a>(view: &'a View) -> impl Iterator<Item = (usize, Alternate<'a>)> {
-    view.flights
-        .emergencies
-        .iter()
-        .filter_map(|(index, flown)| Some((*index, alternate(view, *index, flown)?)))
+    view.flights.emergencies.iter().filter_map(|flown| {
+        let index = flown.emergency?;
+        Some((index, alternate(view, index, flown)?))
+    })
 }
 
 fn alternate<'a>(view: &'a View, index: usize, flown: &Flown) -> Option<Alternate<'a>> {
@@ -63,6 +72,7 @@ fn alternate<'a>(view: &'a View, index: usize, flown: &Flown) -> Option<Alternat
         entry_amsl_m: entry.wanted_amsl_m,
         route: route(view.program, plan, runway, &view.variables),
         energy_j: landed.used_j - entered.used_j,
+        home_m: flown.home_m,
     })
 }
 

@@ -21,7 +21,7 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     for (index, alternate) in alternates(view) {
         let applies = |from: &&Origin| view.emergency_coverage.plans(&from.leg).any(|plan| plan == index);
         let (mut zones, mut hill) = (HashSet::new(), false);
-        for from in origins.iter().filter(applies) {
+        for from in origins.iter().filter(applies).filter(|from| alternate.is_from(view, from)) {
             through_zones(view, &alternate, from, &mut zones, problems);
             if !hill && let Some(problem) = into_terrain(view, &alternate, from) {
                 problems.push(problem);
@@ -48,12 +48,13 @@ fn through_zones(
     let Some(time_s) = flying_s(view.profile, from.position, alternate.entry, view.conditions.wind) else {
         return;
     };
-    let when = When::At(from.time_s);
-    let start = At { position: from.position, altitude_amsl_m: from.altitude_amsl_m, when };
+    let (when, home_m) = (When::At(from.time_s), view.home_m(&from.leg));
+    let start = At { position: from.position, altitude_amsl_m: from.altitude_amsl_m, when, home_m };
     let end = At {
         position: alternate.entry,
         altitude_amsl_m: altitude_m(view, alternate, from, 1.0, time_s),
         when,
+        home_m,
     };
     for (zone, breach, _) in view.zones.breaches(start, end, view.terrain) {
         if !seen.insert(zone.id.clone()) {

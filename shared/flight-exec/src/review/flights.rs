@@ -8,21 +8,19 @@
 
 use super::Conditions;
 use super::alternates::Origin;
+use super::beginning::Beginning;
 use super::emergency_coverage::EmergencyCoverage;
 use super::flown::{Flown, Point, fly, tireless};
 use super::layout::{LaidOut, StartPoint, Way, counts, decisions, lay_out};
 use crate::api::{AircraftState, Command, Event, Output};
 use crate::executor::Executor;
 use crate::layout::cursor::Cursor;
-use crate::layout::path::{Level, PathEnd, PathState};
+use crate::layout::path::PathState;
 use crate::layout::stretch::IssuedWaypoint;
-use crate::rehearse::{
-    Act, Options, Preview, PreviewError, Scenario, Start, Trigger, When, preview, preview_on,
-};
+use crate::rehearse::{Act, Options, Preview, PreviewError, Scenario, Trigger, When, preview, preview_on};
 use crate::value::{Config, Decision, LoopCount};
-use aircraft::{Aircraft, Profile, Wind};
-use flight_plan::{AltitudeReference, Cause, EmergencyPlan, Id, LegKind, Program, Runway};
-use geometry::LatLon;
+use aircraft::{Profile, Wind};
+use flight_plan::{Cause, EmergencyPlan, Id, LegKind, Program};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 use terrain::Terrain;
@@ -36,8 +34,8 @@ pub(super) const MAX_EMERGENCY_PLANS: usize = 16;
 pub(super) struct Flights {
     /// Each with the rest of what laying it out reported.
     pub main: Vec<Flown>,
-    /// By emergency plan.
-    pub emergencies: BTreeMap<usize, Flown>,
+    /// Emergency plans, each once for every home of the flights in which it answers: what counts from there is elsewhere.
+    pub emergencies: Vec<Flown>,
     /// The plan as it stands.
     pub planned: Result<Preview, PreviewError>,
     /// The plan as it stands, but for the branches that somebody chooses where there is a choice.
@@ -139,17 +137,6 @@ impl Circumstances<'_> {
     }
 }
 
-/// Where a flight begins.
-#[derive(Clone, Copy)]
-struct Beginning {
-    position: LatLon,
-    altitude_amsl_m: f64,
-    heading_deg: f64,
-    on_ground: bool,
-    /// Energy used before, joules.
-    used_j: f64,
-}
-
 impl Flights {
     pub fn of(
         program: &Arc<Program>,
@@ -161,7 +148,7 @@ impl Flights {
         let executor = executor(program, profile, terrain);
         let (tireless, under_way) = (tireless(profile), false);
         let given = Circumstances { program, profile, tireless, terrain, wind, executor, under_way };
-        Self::flown(&given, beginning(program, terrain.as_ref(), conditions.begin))
+        Self::flown(&given, Beginning::of_plan(program, terrain.as_ref(), conditions.begin))
     }
 
     /// Those ahead of a flight under way; `None`: nothing is being flown, or nothing is known of the aircraft.
@@ -188,7 +175,7 @@ impl Flights {
         let planned = given.preview(beginning, Vec::new());
         let mut flights = Self {
             main: Vec::new(),
-            emergencies: BTreeMap::new(),
+            emergencies: Vec::new(),
             planned,
             chosen: Vec::new(),
             landings: BTreeMap::new(),
@@ -205,7 +192,7 @@ impl Flights {
 
     /// Every flight.
     pub fn all(&self) -> impl Iterator<Item = &Flown> {
-        self.main.iter().chain(self.emergencies.values())
+        self.main.iter().chain(&self.emergencies)
     }
 
     /// The plan as it stands and with other branches: those of these flights that end.
@@ -298,50 +285,62 @@ impl Flights {
         let program = given.program;
         let emergency_coverage = EmergencyCoverage::of(program);
         for (index, plan) in program.flown().emergency_plans.iter().enumerate().take(MAX_EMERGENCY_PLANS) {
-            let Some(worst) = self.worst_for(program, plan, index, &emergency_coverage) else { continue };
-            let beginning = Beginning {
-                position: worst.position,
-                altitude_amsl_m: worst.altitude_amsl_m,
-                heading_deg: worst.course_deg,
-                on_ground: false,
-                used_j,
-            };
-            let start_point = beginning.start_point(Some(index), &given.tireless);
-            let (counts, decisions) = (
-                counts(&given.executor, &start_point.cursor),
-                decisions(program, &Way::default(), &start_point.cursor),
-            );
-            let layout = lay_out(&given.executor, start_point, &counts, &decisions);
-            self.refused.extend(layout.refused.iter().cloned());
-            self.without_ground.extend(layout.without_ground.iter().cloned());
-            let aircraft = beginning.aircraft(&given.tireless);
-            let flown = fly(aircraft, layout, given.wind, Some(index), worst.time_s);
-            self.emergencies.insert(index, flown);
-            let alarm = Command::Emergency { cause: Cause::Operator, plan: Some(plan.id.clone()) };
-            self.landings.insert(index, given.preview(beginning, vec![alarm]));
+            for (home, worst) in self.worst_for(program, plan, index, &emergency_coverage) {
+                let beginning = Beginning::at(&worst, used_j);
+                self.fly_emergency(given, index, (beginning, home, worst.time_s));
+                let alarm = Command::Emergency { cause: Cause::Operator, plan: Some(plan.id.clone()) };
+                let flown = || given.preview(beginning, vec![alarm]);
+                self.landings.entry(index).or_insert_with(flown);
+            }
         }
     }
 
+    /// Lays an emergency plan out from where it begins, in the flight from a home, and when.
+    fn fly_emergency(
+        &mut self,
+        given: &Circumstances,
+        index: usize,
+        (beginning, home, from_s): (Beginning, Option<Id>, f64),
+    ) {
+        let mut start_point = beginning.start_point(Some(index), &given.tireless);
+        start_point.cursor.home = home;
+        let (counts, decisions) = (
+            counts(&given.executor, &start_point.cursor),
+            decisions(given.program, &Way::default(), &start_point.cursor),
+        );
+        let layout = lay_out(&given.executor, start_point, &counts, &decisions);
+        self.refused.extend(layout.refused.iter().cloned());
+        self.without_ground.extend(layout.without_ground.iter().cloned());
+        let aircraft = beginning.aircraft(&given.tireless);
+        self.emergencies.push(fly(aircraft, layout, given.wind, Some(index), from_s));
+    }
+
     /// The point that is farthest from where an emergency plan leads, of those where it is in force; of all, if it is
-    /// so nowhere (an operator may still choose it).
+    /// so nowhere (an operator may still choose it). One for each home that the flights have there, with that.
     fn worst_for(
         &self,
         program: &Program,
         plan: &EmergencyPlan,
         index: usize,
         emergency_coverage: &EmergencyCoverage,
-    ) -> Option<Point> {
-        let runway = program.plan.runway(&plan.runway)?.threshold;
+    ) -> Vec<(Option<Id>, Point)> {
+        let Some(runway) = program.plan.runway(&plan.runway).map(|r| r.threshold) else { return Vec::new() };
         let all = || self.main.iter().flat_map(|flown| flown.points.iter().map(move |p| (flown, *p)));
-        let farthest = |points: &mut dyn Iterator<Item = Point>| {
+        let farthest = |points: &mut dyn Iterator<Item = (&Flown, Point)>| {
             let far = |p: &Point| crate::layout::path::distance_m(p.position, runway);
-            points.max_by(|a, b| far(a).total_cmp(&far(b)))
+            let worst = points.max_by(|(_, a), (_, b)| far(a).total_cmp(&far(b)));
+            worst.map(|(flown, point)| (flown.home.clone(), point))
         };
         let applies = |(flown, p): &(&Flown, Point)| {
             flown.leg(p).is_some_and(|leg| emergency_coverage.plans(leg).any(|i| i == index))
         };
-        let first = farthest(&mut all().filter(applies).map(|(_, p)| p));
-        first.or_else(|| farthest(&mut all().map(|(_, p)| p)))
+        let mut homes: Vec<f64> = self.main.iter().map(|flown| flown.home_m).collect();
+        homes.sort_by(f64::total_cmp);
+        homes.dedup();
+        let from =
+            |home_m: f64| farthest(&mut all().filter(|(flown, _)| flown.home_m == home_m).filter(applies));
+        let worst: Vec<_> = homes.into_iter().filter_map(from).collect();
+        if worst.is_empty() { farthest(&mut all()).into_iter().collect() } else { worst }
     }
 }
 
@@ -397,20 +396,6 @@ fn executor(program: &Arc<Program>, profile: &Profile, terrain: &Arc<dyn Terrain
     Executor::with_program(program, Config::default(), terrain.clone(), profile.clone())
 }
 
-/// On the runway; without a take-off, over the first place that the plan names, at the height at which it asks to be there.
-fn beginning(program: &Program, terrain: &dyn Terrain, begin: Option<Start>) -> Beginning {
-    if let Some(runway) = program.plan.home() {
-        return Beginning::on(runway);
-    }
-    let (position, altitude_amsl_m, heading_deg) = match begin.or_else(|| Start::of(program, terrain)) {
-        Some(Start::InFlight { position, altitude_amsl_m, heading_deg }) => {
-            (position, altitude_amsl_m, heading_deg)
-        }
-        Some(Start::Runway) | None => (LatLon::new(0.0, 0.0), 0.0, 0.0),
-    };
-    Beginning { position, altitude_amsl_m, heading_deg, on_ground: false, used_j: 0.0 }
-}
-
 /// The branches of a way at the intersections that it comes to, in the plan's order.
 fn choices(decisions: &[Decision], from: &Cursor, taken: &HashSet<(Id, Id)>) -> Vec<Choice> {
     let first = decisions.iter().filter(|d| d.crossing == from.crossings_of(&d.leg) + 1);
@@ -427,63 +412,4 @@ fn takes(planned: &Preview, choices: &[Choice]) -> bool {
         });
         first == Some(&choice.branch)
     })
-}
-
-impl Beginning {
-    fn on(runway: &Runway) -> Self {
-        Self {
-            position: runway.threshold,
-            altitude_amsl_m: runway.elevation_amsl_m,
-            heading_deg: runway.heading_deg,
-            on_ground: true,
-            used_j: 0.0,
-        }
-    }
-
-    fn of(aircraft: &AircraftState, profile: &Profile) -> Self {
-        Self {
-            position: aircraft.position,
-            altitude_amsl_m: aircraft.altitude_amsl_m,
-            heading_deg: aircraft.track_deg,
-            on_ground: aircraft.on_ground,
-            used_j: (1.0 - aircraft.battery) * profile.energy_j,
-        }
-    }
-
-    fn start(&self) -> Start {
-        if self.on_ground {
-            return Start::Runway;
-        }
-        let Beginning { position, altitude_amsl_m, heading_deg, .. } = *self;
-        Start::InFlight { position, altitude_amsl_m, heading_deg }
-    }
-
-    fn aircraft(&self, profile: &Profile) -> Aircraft {
-        let place = if self.on_ground { Aircraft::on_runway } else { Aircraft::in_flight };
-        let mut aircraft = place(profile.clone(), self.position, self.altitude_amsl_m, self.heading_deg);
-        aircraft.use_energy(self.used_j);
-        aircraft
-    }
-
-    /// At the beginning of the main plan (`None`) or an emergency plan.
-    fn start_point(&self, section: Option<usize>, profile: &Profile) -> StartPoint {
-        StartPoint { kept: Vec::new(), cursor: Cursor::start(section, self.path(profile), 0) }
-    }
-
-    fn path(&self, profile: &Profile) -> PathState {
-        let level = Level { metres: self.altitude_amsl_m, reference: AltitudeReference::Amsl };
-        PathState {
-            last: PathEnd {
-                position: self.position,
-                level,
-                airspeed_mps: profile.cruise_airspeed_mps,
-                fly_over: false,
-            },
-            course_deg: self.heading_deg,
-            predicted_amsl_m: self.altitude_amsl_m,
-            commanded_amsl_m: self.altitude_amsl_m,
-            distance_m: 0.0,
-            time_s: 0.0,
-        }
-    }
 }

@@ -40,6 +40,9 @@ pub(super) struct Flown {
     pub reached: Vec<Point>,
     /// `None`: the main plan; else which emergency plan.
     pub emergency: Option<usize>,
+    /// The runway that it took off from (see [`Layout::home`]), and how high that is, metres AMSL.
+    pub home: Option<Id>,
+    pub home_m: f64,
     /// When it starts, seconds since the start of the main plan.
     pub start_s: f64,
     /// So many of the waypoints are aboard already.
@@ -103,9 +106,9 @@ pub(super) fn fly(
     emergency: Option<usize>,
     start_s: f64,
 ) -> Flown {
-    let Layout { waypoints, hurried_from, kept, .. } = layout;
+    let Layout { waypoints, hurried_from, kept, home, home_m, .. } = layout;
     let (points, reached) = (Vec::new(), Vec::new());
-    let flown = Flown { waypoints, points, reached, emergency, start_s, kept, hurried_from };
+    let flown = Flown { waypoints, points, reached, emergency, home, home_m, start_s, kept, hurried_from };
     let guidance = Guidance::new(aircraft.profile().clone());
     Flight { aircraft, guidance, wind, steps: 0, steered_s: 0.0, flown }.flown()
 }

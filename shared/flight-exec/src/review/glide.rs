@@ -29,7 +29,8 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
             let applies = |from: &&Origin| {
                 view.emergency_coverage.engine(&from.leg) == answers && (named || !is_near_runway(view, from))
             };
-            let from: Vec<&Origin> = origins.iter().filter(applies).collect();
+            let here = origins.iter().filter(|from| alternate.is_from(view, from));
+            let from: Vec<&Origin> = here.filter(applies).collect();
             let straight = [alternate.runway.threshold];
             let way = if named { alternate.route.as_slice() } else { &straight };
             problems.extend(glides(view, &alternate, (named, way), &from));

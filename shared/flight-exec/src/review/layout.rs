@@ -39,6 +39,9 @@ pub(super) struct Layout {
     pub complete: bool,
     /// Where the flight behind that begins.
     pub next: Option<Cursor>,
+    /// What `home` altitudes count from in it: its take-off runway, and how high that is, metres AMSL.
+    pub home: Option<Id>,
+    pub home_m: f64,
     /// So many of the waypoints are aboard already.
     pub kept: usize,
     /// Index of the first waypoint that a real flight may come to later than this one: a loop was left early, a holding or a wait.
@@ -141,6 +144,7 @@ pub(super) fn lay_out(
 ) -> Layout {
     let mut layout = Layout { kept: kept.len(), waypoints: kept, ..Layout::default() };
     let mut world = World { counts, decisions, ..executor.world() };
+    (layout.home, layout.home_m) = (cursor.home.clone(), world.home_m(cursor.home.as_ref()));
     let from_s = cursor.path.time_s;
     let endless = shortened(world.program);
     while layout.waypoints.len() < MAX_WAYPOINTS && cursor.path.time_s - from_s < MAX_S {
@@ -213,9 +217,9 @@ impl Layout {
         };
         let wanted_amsl_m = match emission.action {
             Action::TakeOff { .. } | Action::Land { .. } => emission.altitude_amsl_m,
-            Action::Fly | Action::Loiter { .. } => {
-                world.amsl_m(last.level, last.position).unwrap_or(emission.altitude_amsl_m)
-            }
+            Action::Fly | Action::Loiter { .. } => world
+                .amsl_m(last.level, last.position, cursor.home.as_ref())
+                .unwrap_or(emission.altitude_amsl_m),
         };
         let passage = cursor.passage;
         self.waypoints.push(LaidOut { waypoint, wanted_amsl_m, passage });

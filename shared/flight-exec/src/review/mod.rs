@@ -20,6 +20,7 @@ mod ahead;
 mod alternates;
 mod altitudes;
 mod arcs;
+mod beginning;
 mod ceiling;
 mod emergency_coverage;
 mod emergency_routes;
@@ -189,6 +190,14 @@ impl View<'_> {
     fn number(&self, value: &Value<f64>) -> Option<f64> {
         let flight = FlightState::at_start(self.program.plan.home());
         self.program.eval_number(value, &Env { variables: &self.variables, flight }).ok()
+    }
+
+    /// What `home` altitudes count from on a leg of the main plan, metres AMSL.
+    fn home_m(&self, leg: &Id) -> f64 {
+        let path = self.program.path(leg).filter(|path| path.emergency_plan.is_none());
+        let plan = &self.program.plan;
+        let home = path.map_or_else(|| plan.home(), |path| plan.home_at(path.stage));
+        home.map_or(0.0, |runway| runway.elevation_amsl_m)
     }
 
     /// A leg that loops: what is flown in its name is a turn.

@@ -9,7 +9,8 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let origins = view.origins_with_energy();
     for (index, alternate) in alternates(view) {
         let applies = |from: &&Origin| view.emergency_coverage.powered(&from.leg).contains(&index);
-        let missing = origins.iter().filter(applies).map(|from| (missing_j(view, &alternate, from), from));
+        let from_here = origins.iter().filter(|from| alternate.is_from(view, from));
+        let missing = from_here.filter(applies).map(|from| (missing_j(view, &alternate, from), from));
         let worst = missing.max_by(|(a, _), (b, _)| a.total_cmp(b));
         if let Some((missing_j, from)) = worst.filter(|(missing_j, _)| *missing_j > 0.0) {
             problems.push(problem(view, &alternate, from, missing_j));

@@ -32,6 +32,8 @@ pub(super) struct Prepared {
     /// Its ground without limits and margin.
     pub ground: Ground,
     active: Vec<ZoneTime>,
+    /// It has limits above `home`, and is so in flights from a home of this elevation, metres AMSL.
+    home_m: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +49,8 @@ pub(super) struct At {
     pub altitude_amsl_m: f64,
     /// When it is flown.
     pub when: When,
+    /// How high the home of that flight is, metres AMSL.
+    pub home_m: f64,
 }
 
 /// A time of the flight, seconds since the start of the main plan.
@@ -59,7 +63,6 @@ pub(super) enum When {
 
 impl Zones {
     pub fn of(program: &Program, profile: &Profile, conditions: Conditions) -> Self {
-        let home_m = program.plan.home().map_or(0.0, |r| r.elevation_amsl_m);
         let power_w = demanded_power_w(profile, profile.cruise_airspeed_mps, 0.0, 1.0);
         let stages = &program.plan.stages;
         let on_ground_s: f64 = stages.iter().filter_map(|stage| stage.turnaround.time_s).sum();
@@ -72,8 +75,11 @@ impl Zones {
             latest_s: flights * profile.energy_j / power_w.max(1.0) + on_ground_s,
         };
         for zone in &program.plan.zones {
-            match prepared(zone, home_m, conditions.margins.zone_m) {
-                Ok(prepared) => zones.zones.push(prepared),
+            let homes_m = homes_m(program, zone);
+            let prepared =
+                homes_m.into_iter().map(|home_m| prepared(zone, home_m, conditions.margins.zone_m));
+            match prepared.collect::<Result<Vec<_>, _>>() {
+                Ok(prepared) => zones.zones.extend(prepared),
                 Err(error) => zones.refused.push((zone.id.clone(), error.to_string())),
             }
         }
@@ -105,23 +111,25 @@ impl Zones {
     /// Where a straight piece of track breaks zones: each zone to keep out of, and the nearest of those to stay in; true: it
     /// may be that the zone is not active then.
     pub fn breaches(&self, from: At, to: At, terrain: &dyn Terrain) -> Vec<(&Prepared, Breach, bool)> {
-        let keep_out = self.active(ZoneKind::KeepOut, from.when);
+        let keep_out = self.active(ZoneKind::KeepOut, from);
         let piece = Piece::new(from, to, terrain);
         let intrusion = |(zone, perhaps)| Some((zone, Prepared::intrusion(zone, &piece)?, perhaps));
         let mut found: Vec<_> = keep_out.filter_map(intrusion).collect();
-        let keep_in: Vec<(&Prepared, bool)> = self.active(ZoneKind::KeepIn, from.when).collect();
+        let keep_in: Vec<(&Prepared, bool)> = self.active(ZoneKind::KeepIn, from).collect();
         found.extend(StayIn { margin_m: self.margin_m, terrain }.left(&keep_in, from, to));
         found
     }
 
     /// The zones of a kind that are active, or may be; true: it may be that they are not.
-    fn active(&self, kind: ZoneKind, when: When) -> impl Iterator<Item = (&Prepared, bool)> {
-        self.zones.iter().filter(move |zone| zone.kind == kind).filter_map(move |zone| {
+    fn active(&self, kind: ZoneKind, at: At) -> impl Iterator<Item = (&Prepared, bool)> {
+        let of_this_home = move |zone: &&Prepared| zone.home_m.is_none_or(|home_m| home_m == at.home_m);
+        let zones = self.zones.iter().filter(move |zone| zone.kind == kind).filter(of_this_home);
+        zones.filter_map(move |zone| {
             let Some(start) = self.start_unix_s.filter(|_| !zone.active.is_empty()) else {
                 return Some((zone, false));
             };
             let unix_s = |time_s: f64| start.saturating_add(time_s as i64);
-            let (first, last) = match when {
+            let (first, last) = match at.when {
                 When::At(time_s) => (unix_s(time_s), unix_s(time_s)),
                 When::From(time_s) => (unix_s(time_s), unix_s(time_s.max(self.latest_s))),
             };
@@ -199,7 +207,21 @@ impl Prepared {
     }
 }
 
-fn prepared(zone: &Zone, home_m: f64, margin_m: f64) -> Result<Prepared, ZoneError> {
+/// For how many homes a zone has to be prepared, by their elevations: once if none of its limits counts from there.
+fn homes_m(program: &Program, zone: &Zone) -> Vec<Option<f64>> {
+    let mut limits = zone.floor.iter().chain(&zone.ceiling);
+    if !limits.any(|limit| limit.reference == AltitudeReference::Home) {
+        return vec![None];
+    }
+    let plan = &program.plan;
+    let home_m = |stage| plan.home_at(stage).map_or(0.0, |runway| runway.elevation_amsl_m);
+    let mut homes_m: Vec<f64> = plan.flights().map(home_m).collect();
+    homes_m.sort_by(f64::total_cmp);
+    homes_m.dedup();
+    homes_m.into_iter().map(Some).collect()
+}
+
+fn prepared(zone: &Zone, home_m: Option<f64>, margin_m: f64) -> Result<Prepared, ZoneError> {
     let shape = match &zone.shape {
         ZoneShape::Circle { centre, radius_m } => Shape::Circle { centre: *centre, radius_m: *radius_m },
         ZoneShape::Polygon(corners) => Shape::Polygon { outer: corners.clone(), holes: Vec::new() },
@@ -209,10 +231,11 @@ fn prepared(zone: &Zone, home_m: f64, margin_m: f64) -> Result<Prepared, ZoneErr
         ZoneKind::KeepOut => Rule::KeepOut,
     };
     let new = |band, margin_m| Ground::new(&shape, band, rule, margin_m);
-    let part = |datum| Ok((datum, new(limits(zone, datum, home_m), margin_m)?));
+    let part = |datum| Ok((datum, new(limits(zone, datum, home_m.unwrap_or(0.0)), margin_m)?));
     let parts = data(zone).into_iter().map(part).collect::<Result<_, ZoneError>>()?;
     let (outline, ground) = (new(Band::ALL, margin_m)?, new(Band::ALL, 0.0)?);
-    Ok(Prepared { id: zone.id.clone(), kind: zone.kind, parts, outline, ground, active: zone.active.clone() })
+    let (id, kind, active) = (zone.id.clone(), zone.kind, zone.active.clone());
+    Ok(Prepared { id, kind, parts, outline, ground, active, home_m })
 }
 
 /// The data in which a zone has limits; without any: sea level.

@@ -114,6 +114,7 @@ fn middle(from: At, to: At) -> At {
         position: line.point_at(0.5 * from.position.distance_m(to.position)),
         altitude_amsl_m: 0.5 * (from.altitude_amsl_m + to.altitude_amsl_m),
         when: from.when,
+        home_m: from.home_m,
     }
 }
 
@@ -149,8 +150,12 @@ mod tests {
     }
 
     fn is_left(zones: &Zones, from: (f64, f64), to: (f64, f64)) -> bool {
-        let at =
-            |(lat, lon)| At { position: LatLon::new(lat, lon), altitude_amsl_m: 500.0, when: When::At(0.0) };
+        let at = |(lat, lon)| At {
+            position: LatLon::new(lat, lon),
+            altitude_amsl_m: 500.0,
+            when: When::At(0.0),
+            home_m: 300.0,
+        };
         !zones.breaches(at(from), at(to), &Flat(100.0)).is_empty()
     }
 
@@ -205,8 +210,12 @@ mod tests {
         let all = zones(&strips, 10.0);
         assert!(!is_left(&all, (36.2, -83.695), (36.3, -83.6)));
         assert!(is_left(&all, (36.44, -83.695), (36.46, -83.6)));
-        let at =
-            |lat, lon| At { position: LatLon::new(lat, lon), altitude_amsl_m: 500.0, when: When::At(0.0) };
+        let at = |lat, lon| At {
+            position: LatLon::new(lat, lon),
+            altitude_amsl_m: 500.0,
+            when: When::At(0.0),
+            home_m: 300.0,
+        };
         let far_away = all.breaches(at(36.6, -84.595), at(36.6, -84.596), &Flat(100.0));
         assert_eq!(far_away.first().map(|(zone, ..)| zone.id.to_string()), Some("z0".to_owned()));
     }

@@ -8,10 +8,12 @@
 use super::View;
 use super::flown::Flown;
 use super::prepared::{At, Prepared, When};
+use crate::api::Branching;
 use crate::rehearse::Preview;
 use flight_plan::{Id, Problem, ZoneKind};
 use geometry::zone::Breach;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// None of the zones to stay in is active.
 const UNCONFINED: &str = "keep-in-not-active";
@@ -25,7 +27,9 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
         return;
     }
     let mut found = Findings::default();
-    view.flights.planned.iter().for_each(|planned| found.take(view, planned_track(planned)));
+    if let Ok(planned) = &view.flights.planned {
+        flights_of(planned).for_each(|legs| found.take(view, planned_track(view, planned, legs)));
+    }
     view.flights.all().for_each(|flown| found.take(view, bounded_track(flown)));
     problems.extend(found.problems(view));
     problems.extend(unconfined(view));
@@ -48,23 +52,35 @@ fn unconfined(view: &View) -> Option<Problem> {
     Some(Problem::warning(UNCONFINED, message).of(leg).with_zone(zone))
 }
 
-/// Points of the plan as it stands, with their legs.
-fn planned_track(planned: &Preview) -> impl Iterator<Item = (&Id, At)> {
-    planned.track.iter().filter_map(|point| {
+/// Which passages belong to each flight of the plan: on the ground between two of them, the aircraft may be brought elsewhere.
+fn flights_of(planned: &Preview) -> impl Iterator<Item = Range<usize>> {
+    let ends = planned.stops.iter().map(|stop| stop.legs).chain([planned.legs.len()]);
+    ends.scan(0, |begin, end| Some(std::mem::replace(begin, end)..end))
+}
+
+/// Points of one flight of the plan as it stands, with their legs.
+fn planned_track<'a>(
+    view: &View,
+    planned: &'a Preview,
+    passages: Range<usize>,
+) -> impl Iterator<Item = (&'a Id, At)> {
+    let legs = planned.legs.get(passages.clone()).unwrap_or_default();
+    let of_main_plan = legs.iter().find(|passage| passage.place.plan == Branching::Main);
+    let home_m = of_main_plan.or(legs.first()).map_or(0.0, |passage| view.home_m(&passage.place.leg));
+    let points = planned.track.iter().filter(move |p| p.passage.is_some_and(|n| passages.contains(&n)));
+    points.filter_map(move |point| {
         let leg = &planned.legs.get(point.passage?)?.place.leg;
-        let when = When::At(point.time_s);
-        Some((leg, At { position: point.position, altitude_amsl_m: point.altitude_amsl_m, when }))
+        let (position, altitude_amsl_m) = (point.position, point.altitude_amsl_m);
+        Some((leg, At { position, altitude_amsl_m, when: When::At(point.time_s), home_m }))
     })
 }
 
 /// Points of a bounded flight, with their legs.
 fn bounded_track(flown: &Flown) -> impl Iterator<Item = (&Id, At)> {
     flown.points.iter().filter(|point| !flown.enters(point)).filter_map(|point| {
-        let when = flown.when(point);
-        Some((
-            flown.leg(point)?,
-            At { position: point.position, altitude_amsl_m: point.altitude_amsl_m, when },
-        ))
+        let (position, altitude_amsl_m) = (point.position, point.altitude_amsl_m);
+        let (when, home_m) = (flown.when(point), flown.home_m);
+        Some((flown.leg(point)?, At { position, altitude_amsl_m, when, home_m }))
     })
 }
 

@@ -184,3 +184,81 @@ fn reports_on_the_ground_change_nothing() {
     let grounded = |e: &&Event| matches!(e, Event::PhaseChanged { phase: Phase::Grounded });
     assert_eq!(rig.events.iter().filter(grounded).count(), 1);
 }
+
+/// The second flight takes off from a field that is 150 m higher, and counts its altitudes from there.
+fn from_a_higher_field() -> String {
+    let (field, home) = (r#"<runway id="R""#, r#"altitude="200" altitudeReference="home""#);
+    let second = format!(r#"<TF id="b" fix="B2" {home}/>"#);
+    let higher = format!(
+        r#"<runway id="S" lat="36.5" lon="-84.2" elevation="450" heading="90" length="600" priority="2"/>{field}"#
+    );
+    two_flights(&format!(r#"<TF id="a" fix="B1" {home}/>"#), &second)
+        .replacen(field, &higher, 1)
+        .replace(r#"id="to2" type="take-off" runway="R""#, r#"id="to2" type="take-off" runway="S""#)
+        .replace(
+            r#"fix="A1" altitude="150" altitudeReference="agl""#,
+            r#"fix="A1" altitude="150" altitudeReference="home""#,
+        )
+}
+
+fn altitude_m(rig: &Rig, leg: &str) -> f64 {
+    rig.buffer.iter().find(|w| w.leg.as_str() == leg).expect(leg).altitude_amsl_m
+}
+
+#[test]
+fn home_is_the_field_that_the_present_flight_took_off_from() {
+    let mut rig = Rig::flying(&from_a_higher_field());
+    assert_eq!(altitude_m(&rig, "a"), 500.0);
+    while rig.fly_one() {}
+    stands(&mut rig);
+    rig.command(Command::Start).unwrap();
+    assert_eq!(altitude_m(&rig, "b"), 650.0);
+    rig.command(Command::Emergency { cause: Cause::Operator, plan: None }).unwrap_err();
+    rig.fly_to("b");
+    rig.command(Command::GoTo { leg: "b".into() }).unwrap();
+    assert_eq!(altitude_m(&rig, "b"), 650.0);
+    rig.command(Command::Emergency { cause: Cause::Operator, plan: None }).unwrap();
+    assert_eq!(altitude_m(&rig, "b-df"), 600.0, "the way out of this flight");
+}
+
+#[test]
+fn home_stays_that_field_in_a_new_plan_and_after_a_restart() {
+    let mut rig = Rig::flying(&from_a_higher_field());
+    while rig.fly_one() {}
+    stands(&mut rig);
+    rig.command(Command::Start).unwrap();
+    rig.fly_to("b");
+    let longer = r#"<TF id="c" fix="C2" altitude="210" altitudeReference="home"/></stage>
+           <stage id="land2""#;
+    let document = from_a_higher_field().replacen("</stage>\n           <stage id=\"land2\"", longer, 1);
+    rig.update(&program(&document)).unwrap();
+    assert_eq!((altitude_m(&rig, "b"), altitude_m(&rig, "c")), (650.0, 660.0));
+    let plan = rig.executor.program().cloned();
+    let terrain = Arc::new(Flat(crate::rig::GROUND_M));
+    let snapshot = rig.executor.snapshot();
+    rig.executor = Executor::restore(Config::default(), terrain, Default::default(), plan, snapshot).unwrap();
+    rig.command(Command::Emergency { cause: Cause::Operator, plan: None }).unwrap();
+    assert_eq!(altitude_m(&rig, "b-df"), 600.0);
+}
+
+/// A plan of other identifiers may be entered anywhere; where it knows the present flight, only in that.
+#[test]
+fn in_the_air_a_new_plan_is_not_entered_in_another_flight() {
+    let mut rig = Rig::flying(&two_flights(FIRST, SECOND));
+    rig.fly_to("a");
+    let other = program(&two_flights(r#"<TF id="c" fix="C1"/>"#, SECOND));
+    let commit = |rig: &mut Rig, program: &Arc<flight_plan::Program>, entry: &str| {
+        rig.propose(program);
+        rig.command(Command::Commit { hash: program.hash().clone(), entry: Some(entry.into()) })
+    };
+    let refusal = commit(&mut rig, &other, "b").unwrap_err();
+    assert!(refusal.code == "other-flight" && refusal.reason.contains("a landing is between"), "{refusal}");
+    assert_eq!(rig.leg().as_str(), "a", "the plan before is flown on");
+    commit(&mut rig, &other, "c").unwrap();
+    let renamed = two_flights(r#"<TF id="d" fix="C1"/>"#, r#"<TF id="e" fix="B2"/>"#);
+    let renamed = ["to", "m", "land"].iter().fold(renamed, |text, id| {
+        text.replace(&format!(r#"<stage id="{id}""#), &format!(r#"<stage id="x-{id}""#))
+    });
+    commit(&mut rig, &program(&renamed), "e").unwrap();
+    rig.fly_to_the_end();
+}

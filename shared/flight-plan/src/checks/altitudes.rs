@@ -6,11 +6,12 @@ use super::step::Step;
 use crate::{Altitude, AltitudeReference, Id, LegKind, Problem};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
-    for (_, stage) in view.plan.all_stages() {
-        let home = view.home();
-        let at =
-            stage.runway.as_ref().and_then(|id| view.runways.get(id).copied()).or(home).map(|r| r.threshold);
-        let amsl_m = stage.altitude.as_ref().zip(at).and_then(|(a, at)| view.altitude_amsl_m(a, at));
+    let main = view.plan.stages.iter().enumerate().map(|(i, stage)| (stage, view.home_at_m(i)));
+    let emergencies = view.plan.emergency_plans.iter().flat_map(|plan| &plan.stages);
+    for (stage, home_m) in main.chain(emergencies.map(|stage| (stage, view.common_home_m()))) {
+        let own = stage.runway.as_ref().and_then(|id| view.runways.get(id).copied());
+        let at = own.or(view.home()).map(|r| r.threshold);
+        let amsl_m = stage.altitude.as_ref().zip(at).and_then(|(a, at)| view.altitude_amsl_m(a, at, home_m));
         ceiling(view, amsl_m, (&stage.id, stage.altitude.as_ref()), problems);
     }
     // legs in document order: the first one is the main plan's first, if that has any
@@ -26,10 +27,11 @@ pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
 /// The altitude that is written on a leg, at its end or (if that is not known) over sea level.
 fn own_altitude_m(view: &Inspection, step: &Step) -> Option<f64> {
     let altitude: &Altitude = step.leg.altitude.as_ref()?;
+    let home_m = step.around.home_m;
     match (step.end, altitude.reference) {
-        (Some(end), _) => view.altitude_amsl_m(altitude, end.position),
+        (Some(end), _) => view.altitude_amsl_m(altitude, end.position, home_m),
         (None, AltitudeReference::Amsl) => view.number(&altitude.metres),
-        (None, _) => view.place(step.leg.place()?).and_then(|at| view.altitude_amsl_m(altitude, at)),
+        (None, _) => view.place(step.leg.place()?).and_then(|at| view.altitude_amsl_m(altitude, at, home_m)),
     }
 }
 
@@ -74,6 +76,37 @@ mod tests {
             (&with(r#"altitude="2701" altitudeReference="home""#), &["above-ceiling"]),
         ]);
         fixed_legs(&[(&with(r#"altitude="2701" altitudeReference="agl""#), "above-ceiling")]);
+    }
+
+    /// The second flight takes off from a field at 2400 m; what answers in both may be at either height.
+    #[test]
+    fn above_home_is_above_the_field_of_the_flight() {
+        let level = r#"altitude="700" altitudeReference="home""#;
+        let stages = format!(
+            r#"<stage id="t" type="take-off" runway="R" altitude="100" altitudeReference="home"/>
+            <stage id="w" type="en-route" {level}><HA id="a" fix="A" course="90" turn="right" length="1000"/></stage><stage id="l" type="land" runway="R"/>
+            <stage id="u" type="take-off" runway="S" altitude="100" altitudeReference="home"/>
+            <stage id="x" type="en-route" altitude="100" altitudeReference="home"><HA id="b" fix="A" course="90" turn="right" length="1000" {level}/></stage>
+            <stage id="m" type="land" runway="S"/>"#
+        );
+        let field = r#"</runways>"#;
+        let high = r#"<runway id="S" lat="36.3" lon="-84.21" elevation="2400" heading="90" length="500" priority="2"/></runways>"#;
+        let document = document(&stages).replacen(field, high, 1);
+        let found =
+            crate::check(&crate::read(&document).plan, &aircraft::Profile::default(), &terrain::Flat(300.0));
+        let high: Vec<_> = found.iter().filter(|p| p.code == "above-ceiling").collect();
+        assert_eq!(
+            high.iter().map(|p| p.subject.clone().unwrap()).collect::<Vec<_>>(),
+            [crate::Id::new("b")]
+        );
+        let answer = r#"altitude="450" altitudeReference="amsl""#;
+        assert!(document.contains(answer));
+        let in_both = document.replacen(answer, r#"altitude="2700" altitudeReference="home""#, 1);
+        assert_eq!(
+            codes(&in_both).iter().filter(|code| **code == "above-ceiling").count(),
+            1,
+            "not of `e1d`"
+        );
     }
 
     #[test]

@@ -154,7 +154,7 @@ fn altitude_amsl_m(view: &Inspection, step: &Step, centre: LatLon) -> Option<f64
     match (&step.leg.kind, step.altitude()) {
         (LegKind::Pattern(Pattern::Contour { level_step_m: Some(_), .. }), _) => None,
         (_, Some(Altitude { reference: AltitudeReference::Agl, .. })) => None,
-        (_, Some(altitude)) => view.altitude_amsl_m(altitude, centre),
+        (_, Some(altitude)) => view.altitude_amsl_m(altitude, centre, step.around.home_m),
         (_, None) => step.entry_altitude_amsl_m(),
     }
 }

@@ -204,12 +204,23 @@ impl<'a> Inspection<'a> {
         }
     }
 
-    /// An altitude above a position, metres AMSL.
-    pub fn altitude_amsl_m(&self, altitude: &Altitude, at: LatLon) -> Option<f64> {
+    /// What `home` altitudes count from in what is flown in any flight of the plan, metres AMSL; `None`: that differs from flight to
+    /// flight, or nobody takes off.
+    pub fn common_home_m(&self) -> Option<f64> {
+        self.plan.common_home().map(|runway| runway.elevation_amsl_m)
+    }
+
+    /// What they count from at a stage of the main plan, metres AMSL.
+    pub fn home_at_m(&self, stage: usize) -> Option<f64> {
+        self.plan.home_at(stage).map(|runway| runway.elevation_amsl_m)
+    }
+
+    /// An altitude above a position, metres AMSL; `home_m`: what `home` is there.
+    pub fn altitude_amsl_m(&self, altitude: &Altitude, at: LatLon, home_m: Option<f64>) -> Option<f64> {
         let datum_m = match altitude.reference {
             AltitudeReference::Amsl => 0.0,
             AltitudeReference::Agl => self.terrain.elevation_m(at)?,
-            AltitudeReference::Home => self.home()?.elevation_amsl_m,
+            AltitudeReference::Home => home_m?,
         };
         Some(self.number(&altitude.metres)? + datum_m)
     }
@@ -252,7 +263,7 @@ impl<'a> Inspection<'a> {
             LegKind::Hf(h) | LegKind::Ha(h) | LegKind::Hm { holding: h, .. } => self.place(&h.fix.place),
             _ => None,
         }?;
-        let own = step.altitude().and_then(|a| self.altitude_amsl_m(a, position));
+        let own = step.altitude().and_then(|a| self.altitude_amsl_m(a, position, step.around.home_m));
         Some(Point { position, altitude_amsl_m: own.or_else(|| step.entry_altitude_amsl_m()) })
     }
 }

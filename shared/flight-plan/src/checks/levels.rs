@@ -82,7 +82,7 @@ fn ground_m(view: &Inspection, step: &Step, reference: AltitudeReference) -> Opt
     match reference {
         AltitudeReference::Agl => Some(0.0),
         AltitudeReference::Amsl => lowest_m(),
-        AltitudeReference::Home => Some(lowest_m()? - view.home()?.elevation_amsl_m),
+        AltitudeReference::Home => Some(lowest_m()? - step.around.home_m?),
     }
 }
 

@@ -54,6 +54,8 @@ pub(super) struct Point {
 pub(super) struct Around {
     /// They are of the main plan.
     pub main: bool,
+    /// What `home` altitudes count from, metres AMSL; `None`: only known in flight.
+    pub home_m: Option<f64>,
     /// Loops, outermost first.
     pub loops: Vec<Loop>,
     /// Their stage, without its legs.

@@ -62,7 +62,8 @@ impl<'i, 'a> Trace<'i, 'a> {
                 continue;
             }
             let (main, stage_only) = (emergency_plan.is_none(), Arc::new(stage.without_legs()));
-            let around = self.recall.around(Around { main, loops: Vec::new(), stage: stage_only });
+            let home_m = if main { self.view.home_at_m(index) } else { self.view.common_home_m() };
+            let around = self.recall.around(Around { main, home_m, loops: Vec::new(), stage: stage_only });
             arrival = self.list(&stage.legs, &around, None, arrival);
         }
     }

@@ -77,7 +77,7 @@ fn heights_m(view: &Inspection, floor: &Altitude, ceiling: &Altitude) -> Option<
     if floor.reference == ceiling.reference {
         return view.number(&floor.metres).zip(view.number(&ceiling.metres));
     }
-    let home_m = view.home().map(|runway| runway.elevation_amsl_m);
+    let home_m = view.common_home_m();
     let amsl_m = |limit: &Altitude| {
         let datum_m = match limit.reference {
             AltitudeReference::Amsl => Some(0.0),

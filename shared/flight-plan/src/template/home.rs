@@ -2,7 +2,7 @@
 
 use super::frame::Frame;
 use super::{Extent, Outline, Template, fix};
-use crate::{Altitude, EmergencyPlan, Fix, FlightPlan, Id, Runway, Stage, Value};
+use crate::{Altitude, AltitudeReference, EmergencyPlan, Fix, FlightPlan, Id, Runway, Stage, Value};
 use aircraft::Profile;
 use geometry::LatLon;
 use std::sync::Arc;
@@ -42,18 +42,24 @@ pub(crate) fn bring_home(
     };
     frame.final_fix = on_final("FINAL", frame.at(-frame.final_m, 0.0));
     frame.gate_fix = on_final("GATE", frame.at(-frame.gate_m, 0.0));
-    // altitudes are above the take-off runway, wherever this one is
-    let home_m = plan.home().map_or(runway.elevation_amsl_m, |home| home.elevation_amsl_m);
+    // altitudes are above the take-off runway, wherever this one is; above the sea where the flights have different ones
+    let (datum_m, reference) = match (plan.home(), plan.common_home()) {
+        (None, _) => (runway.elevation_amsl_m, AltitudeReference::Home),
+        (Some(_), Some(home)) => (home.elevation_amsl_m, AltitudeReference::Home),
+        (Some(_), None) => (0.0, AltitudeReference::Amsl),
+    };
     let mut stages = frame.way_home(&format!("{id}-"));
-    stages.iter_mut().for_each(|stage| raise(stage, runway.elevation_amsl_m - home_m));
+    stages.iter_mut().for_each(|stage| raise(stage, runway.elevation_amsl_m - datum_m, reference));
     let name = format!("Return to {}", runway.id);
     (made, EmergencyPlan { id: id.clone(), name, runway: runway.id.clone(), stages })
 }
 
-fn raise(stage: &mut Stage, by_m: f64) {
+fn raise(stage: &mut Stage, by_m: f64, to: AltitudeReference) {
     for leg in &mut stage.legs {
-        if let Some(Altitude { metres: Value::Constant(metres), .. }) = &mut Arc::make_mut(leg).altitude {
-            *metres += by_m;
+        if let Some(Altitude { metres: Value::Constant(metres), reference }) =
+            &mut Arc::make_mut(leg).altitude
+        {
+            (*metres, *reference) = (*metres + by_m, to);
         }
     }
 }

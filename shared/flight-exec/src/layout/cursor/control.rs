@@ -1,6 +1,7 @@
 //! Control flow: the end of a leg, of a list, of a pass; loops, intersections, holdings left by altitude.
 
 use super::enter::has_own_waypoints;
+use super::place::home_of;
 use super::{Cursor, CursorLog, CursorPhase, LoopFrame, SilentLeg};
 use crate::layout::expand::Expansion;
 use crate::layout::expand::track::turn_round;
@@ -113,7 +114,10 @@ impl Cursor {
     pub fn next_flight(&self, world: &World) -> Option<Cursor> {
         let mut ahead = self.clone();
         ahead.next(world);
-        (ahead.doing == CursorPhase::Grounded).then_some(Cursor { doing: CursorPhase::Arriving, ..ahead })
+        (ahead.doing == CursorPhase::Grounded).then(|| {
+            let home = home_of(world.program, ahead.stage);
+            Cursor { doing: CursorPhase::Arriving, home, ..ahead }
+        })
     }
 
     /// Keeps what a pass back would need.
@@ -267,8 +271,9 @@ impl Cursor {
     /// Ahead of the aircraft the predicted altitude decides; when the aircraft is there, its own.
     fn altitude_is_reached(&self, world: &World) -> bool {
         // over unknown ground there is no altitude to be reached: the leg is left
-        let target_m =
-            world.amsl_m(self.level, self.path.last.position).unwrap_or(self.path.predicted_amsl_m);
+        let target_m = world
+            .amsl_m(self.level, self.path.last.position, self.home.as_ref())
+            .unwrap_or(self.path.predicted_amsl_m);
         let climbing = target_m >= self.leg_start.predicted_amsl_m;
         let ahead = distance_m(world.flight.position, self.path.last.position);
         let near_m = 2.0 * world.turn_radius_m(self.airspeed_mps) + 10.0;

@@ -36,7 +36,7 @@ impl Cursor {
         let sealed = (!notes.is_empty()).then(|| Box::new(Cursor { doing, ..self.clone() }));
         let circle = self.circle_here(world);
         // the end of a leg that was left may be over unknown ground: there the altitude stays
-        let amsl_m = circle.level.and_then(|level| world.amsl_m(level, circle.position));
+        let amsl_m = circle.level.and_then(|level| world.amsl_m(level, circle.position, self.home.as_ref()));
         let emission = self.emit(circle, amsl_m.unwrap_or(self.path.commanded_amsl_m), world);
         Step::Waypoint(Box::new(Emission { wait_s: Some(seconds), notes, sealed, ..emission }))
     }

@@ -109,7 +109,13 @@ impl Cursor {
                 activation: old.map_or(self.passage, |f| f.activation),
             }
         });
+        // an emergency plan is flown from the home of the flight in which it came
+        let home = match target.emergency_plan {
+            None => home_of(program, target.stage),
+            Some(_) => self.home.clone(),
+        };
         Cursor {
+            home,
             section: target.emergency_plan,
             stage: target.stage,
             loops: loops.collect(),
@@ -121,4 +127,10 @@ impl Cursor {
             ..self.clone()
         }
     }
+}
+
+/// What [`Cursor::home`] is at a stage of the main plan.
+pub(super) fn home_of(program: &Program, stage: usize) -> Option<Id> {
+    let first = program.plan.home().map(|runway| &runway.id);
+    program.plan.home_at(stage).map(|runway| &runway.id).filter(|id| first != Some(*id)).cloned()
 }
