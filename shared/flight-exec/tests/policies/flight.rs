@@ -66,7 +66,9 @@ impl Flight {
         let (_, other) = Draft::flyable(&mut random, draw);
         let plans = vec![main, other];
         let ids = plans.iter().flat_map(|p| p.flown().all_legs().into_iter().map(|c| c.leg.id.clone()));
-        let ids = ids.chain(["m".into(), "land".into(), "b-df".into(), "nowhere".into()]).collect();
+        let ids = ids
+            .chain(["m".into(), "land".into(), "to2".into(), "m2".into(), "b-df".into(), "nowhere".into()])
+            .collect();
         let executor = Executor::new(Config::default(), Arc::new(Flat(GROUND_M)), Profile::default());
         let start = seen(&executor, &VecDeque::new(), None, false);
         let mut flight = Self {
@@ -381,6 +383,7 @@ impl Flight {
         match self.executor.status().phase {
             Phase::Holding => self.command(Command::Resume),
             Phase::Finished | Phase::Idle => self.command(Command::Start),
+            Phase::Grounded => self.start_next(),
             _ => self.fly_some(),
         }
     }
@@ -396,6 +399,7 @@ impl Flight {
             let status = self.executor.status();
             match (status.phase, status.decision) {
                 (Phase::Idle | Phase::Finished, _) => return,
+                (Phase::Grounded, _) => self.start_next(),
                 (Phase::Holding, _) => self.command(Command::Resume),
                 // some can only be released
                 (Phase::Flying, _) if self.is_held_by_the_plan() && self.random.percent(5) => {
@@ -409,10 +413,18 @@ impl Flight {
                     self.fly_one();
                 }
             }
-            if self.buffer.is_empty() {
+            let stands = self.executor.status().phase == Phase::Grounded;
+            if self.buffer.is_empty() && !stands {
                 return;
             }
         }
+    }
+
+    /// The next flight of the plan, from where it takes off.
+    fn start_next(&mut self) {
+        (self.position, self.altitude_amsl_m) = (HOME, GROUND_M);
+        self.report();
+        self.command(Command::Start);
     }
 
     fn is_held_by_the_plan(&self) -> bool {

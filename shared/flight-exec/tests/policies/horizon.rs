@@ -1,7 +1,7 @@
 //! How far ahead, and how it ends.
 
 use crate::policy::{Findings, Policy, policy};
-use crate::trace::{Trace, kind};
+use crate::trace::{Step, Trace, kind};
 use flight_exec::{Action, Command, Config, Event, Input, Phase, Waypoint};
 use flight_plan::{Act, Id, LegAction, LegKind, Program};
 
@@ -82,11 +82,20 @@ fn the_end_is_last(trace: &Trace, found: &mut Findings) {
 fn finished_after_the_end(trace: &Trace, found: &mut Findings) {
     for step in trace.steps().filter(|s| matches!(s.input(), Some(Input::Progress { current: None }))) {
         let Some(last) = step.before.ahead.last().filter(|_| step.before.is_flying()) else { continue };
-        let finished = step.after.status.phase == Phase::Finished;
+        let over = if flies_again(step, &last.leg) { Phase::Grounded } else { Phase::Finished };
+        let finished = step.after.status.phase == over;
         found.expect(step, finished == last.end_of_plan, || {
             format!("{last:?} was flown: {:?}", step.after.status.phase)
         });
     }
+}
+
+/// Behind the flight of this leg the plan has another one.
+fn flies_again(step: Step, leg: &Id) -> bool {
+    let path = step.before.program.as_deref().and_then(|program| Some((program, program.path(leg)?)));
+    path.is_some_and(|(program, path)| {
+        path.emergency_plan.is_none() && program.plan.flights().any(|first| first > path.stage)
+    })
 }
 
 fn a_wait(trace: &Trace, found: &mut Findings) {

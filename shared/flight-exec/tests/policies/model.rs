@@ -204,6 +204,12 @@ impl<'a> Model<'a, '_> {
                 self.taken.clear();
                 return self.fly_section(None, &first(), Vec::new(), false);
             }
+            Jump::StartNext(program, stage) => {
+                self.program = Some(program);
+                self.stack.clear();
+                let path = program.path(stage).ok_or(Stop::Over)?;
+                return self.fly_section(None, &path, Vec::new(), false);
+            }
             Jump::Emergency(plan) => {
                 let program = self.program.ok_or(Stop::Over)?;
                 self.stack.clear();
@@ -301,6 +307,10 @@ impl<'a> Model<'a, '_> {
         let mut entry = Some(Entry { indices: &path.indices, frames, after });
         for stage in program.stages(section).iter().skip(path.stage) {
             self.fly_stage(stage, entry.take())?;
+            // behind it another flight may begin, when it is started
+            if stage.kind == StageKind::Land {
+                break;
+            }
         }
         match self.peek()? {
             Observed::Finished => {

@@ -108,6 +108,8 @@ pub struct Draft {
     pub emergencies: bool,
     pub by_cause: bool,
     pub landing: bool,
+    /// Of another flight, behind the landing; empty: there is none.
+    pub second: Vec<Leg>,
     pub names: usize,
 }
 
@@ -118,9 +120,13 @@ impl Draft {
             emergencies: random.percent(92),
             by_cause: random.percent(40),
             landing: random.percent(85),
+            second: Vec::new(),
             names: 0,
         };
         draft.legs = draft.list(2, random);
+        if draft.landing && random.percent(20) {
+            draft.second = draft.list(1, random);
+        }
         draft
     }
 
@@ -208,8 +214,17 @@ impl Draft {
         if !self.emergencies {
             document = document.replace(r#"<mainPlan emergency="back">"#, "<mainPlan>");
         }
+        let landing = r#"<stage id="land" type="land" runway="R"/>"#;
         if !self.landing {
-            document = document.replace(r#"<stage id="land" type="land" runway="R"/>"#, "");
+            document = document.replace(landing, "");
+        }
+        if !self.second.is_empty() {
+            let second = writing::list(&self.second, "q");
+            let more = format!(
+                r#"{landing}<stage id="to2" type="take-off" runway="R" altitude="100" altitudeReference="agl"/>
+                <stage id="m2" type="mission" altitude="220" altitudeReference="agl">{second}</stage><stage id="land2" type="land" runway="R"/>"#
+            );
+            document = document.replacen(landing, &more, 1);
         }
         document
     }

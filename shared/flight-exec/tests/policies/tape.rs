@@ -31,6 +31,8 @@ pub enum Observed<'a> {
 #[derive(Debug, Clone, Copy)]
 pub enum Jump<'a> {
     Start(&'a Program),
+    /// Another flight of the plan, from the stage with which it begins.
+    StartNext(&'a Program, &'a Id),
     GoTo(&'a Id),
     Emergency(&'a Id),
     Return(&'a Id),
@@ -81,7 +83,8 @@ fn observe<'a>(event: &'a Event, step: Step<'a>, window: usize) -> Option<Observ
         }
         Event::DecisionTaken { leg, branch, .. } => Observed::Taken(leg, branch),
         Event::PatternRefused { leg, .. } => Observed::CannotBeFlown(leg),
-        Event::PhaseChanged { phase: Phase::Finished } => Observed::Finished,
+        // the plan is over, or one of its flights
+        Event::PhaseChanged { phase: Phase::Finished | Phase::Grounded } => Observed::Finished,
         _ => return None,
     })
 }
@@ -127,7 +130,14 @@ fn order<'a>(
         place.zip(last_entered).is_some_and(|(a, b)| crate::trace::same_passage(a, b))
     };
     Some(match step.accepted()? {
-        Command::Start => Observed::Jump(Jump::Start(program)),
+        Command::Start => {
+            let stage = step.after.place().map(|place| &place.stage);
+            let first = program.plan.stages.first().map(|stage| &stage.id);
+            Observed::Jump(match stage.filter(|stage| Some(*stage) != first) {
+                Some(stage) if begins_a_flight(program, stage) => Jump::StartNext(program, stage),
+                _ => Jump::Start(program),
+            })
+        }
         Command::GoTo { leg } => Observed::Jump(Jump::GoTo(leg)),
         Command::ReturnToMain { leg } => Observed::Jump(Jump::Return(leg)),
         Command::SkipLeg => {
@@ -150,6 +160,11 @@ fn order<'a>(
         }
         _ => return None,
     })
+}
+
+fn begins_a_flight(program: &Program, stage: &Id) -> bool {
+    let stages = &program.plan.stages;
+    program.plan.flights().any(|first| stages.get(first).is_some_and(|s| s.id == *stage))
 }
 
 /// Nothing but waypoints of the leg being flown were kept, and it is the same kind of leg.

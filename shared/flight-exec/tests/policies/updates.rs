@@ -320,7 +320,10 @@ fn variables_carry_over(trace: &Trace, found: &mut Findings) {
 fn waits_for_start(trace: &Trace, found: &mut Findings) {
     for (step, command) in trace.accepted() {
         if matches!(command, Command::Commit { .. }) && !step.before.is_flying() {
-            let idle = step.after.status.phase == Phase::Idle && step.after.status.outstanding == 0;
+            // between two flights it stays there
+            let waits =
+                if step.before.status.phase == Phase::Grounded { Phase::Grounded } else { Phase::Idle };
+            let idle = step.after.status.phase == waits && step.after.status.outstanding == 0;
             found.expect(step, idle, || format!("{:?}", step.after.status));
         }
     }
