@@ -77,6 +77,28 @@ fn recording_is_whole(folder: &Path) {
 }
 
 #[test]
+fn each_flight_of_a_plan_has_its_times_its_way_and_its_energy_in_the_report() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = demo("../docs/fragments/flights.xml", folder.path());
+    let (out, err) = (text(&run.stdout), text(&run.stderr));
+    assert_eq!(run.status.code(), Some(0), "{out}\n{err}");
+    assert!(out.contains("flight 1: begins 0:00") && out.contains("flight 2: begins "), "{out}");
+    let flights = std::fs::read_to_string(folder.path().join("flights.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = flights
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect())
+        .collect();
+    let [first, second] = &rows[..] else { panic!("{flights}") };
+    assert!(second[1] > first[1] + first[2], "it begins after the first one has ended:\n{flights}");
+    for row in &rows {
+        assert!(row[2] > 200.0 && row[3] > 5000.0 && row[4] > 1000.0 && row[5] > 0.1, "{flights}");
+    }
+    let report = std::fs::read_to_string(folder.path().join("report.md")).unwrap();
+    assert!(report.contains("## Legs of flight 2") && report.contains("side8"), "{report}");
+}
+
+#[test]
 fn report_folder_that_cannot_be_made_fails_and_says_what_to_do() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("taken");

@@ -6,7 +6,7 @@ use super::mission::{self, Step, When};
 use crate::assets;
 use crate::headless::wind::Air;
 use crate::headless::{Loaded, Source, forecast, wind};
-use crate::report::{Record, Track, assemble, authored};
+use crate::report::{Record, Track, assemble, authored, flights};
 use aircraft::{Profile, Wind};
 use anyhow::{Context, bail};
 use flight_exec::Event;
@@ -152,6 +152,7 @@ impl Prepared {
             places: assemble::places(&self.program.plan),
             zones: self.program.plan.zones.clone(),
             areas: assemble::areas(&self.program, &flown, &recorded.events),
+            energy: flights::reported(&flown, &recorded.battery, self.profile.energy_j),
             flown,
             happenings: recorded.events.iter().map(|(t, e)| assemble::happening(*t, e)).collect(),
             verdict: Vec::new(),

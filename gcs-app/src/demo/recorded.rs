@@ -6,7 +6,9 @@ use flight_plan::FlightPlan;
 use geometry::LatLon;
 use recording::Message;
 use serde::{Deserialize, Serialize};
-use usal::contract::{FpManagerEvent, GatewayEvent, GatewayState, PlanDocument, Stamped, TimedGatewayEvent};
+use usal::contract::{
+    FpManagerEvent, GatewayEvent, GatewayState, PlanDocument, Power, Stamped, TimedGatewayEvent,
+};
 use wire::Convert;
 
 /// The vehicle's name in the demo, part of every key.
@@ -17,6 +19,8 @@ pub const TRUTH: &str = "legwork/demo/simulator/variable/truth";
 pub const PLAN_EVENTS: &str = "legwork/demo/fp-manager/event/events";
 /// Key of what the gateway tells.
 pub const GATEWAY_EVENTS: &str = "legwork/demo/gateway/event/events";
+/// Key of the energy that is left.
+const POWER: &str = "legwork/demo/gateway/variable/power";
 /// Key of the plan's document.
 const PLAN: &str = "legwork/demo/fp-manager/invocation/plan";
 
@@ -34,6 +38,8 @@ pub struct Truth {
 pub struct Recorded {
     /// Where the aircraft really was.
     pub points: Vec<TrackPoint>,
+    /// The share of the energy that was left, with its time.
+    pub battery: Vec<(f64, f64)>,
     /// What the executor told, with its time.
     pub events: Vec<(f64, Event)>,
     /// The gateway's states, in order.
@@ -55,6 +61,7 @@ impl Recorded {
             TRUTH => serde_json::from_slice(data).map(|stamped| self.truth(&stamped)),
             PLAN_EVENTS => serde_json::from_slice(data).map(|stamped| self.plan_event(stamped)),
             GATEWAY_EVENTS => serde_json::from_slice(data).map(|stamped| self.gateway_event(&stamped)),
+            POWER => serde_json::from_slice(data).map(|stamped| self.power(&stamped)),
             PLAN => serde_json::from_slice(data).map(|document| self.plan(document)),
             _ => return,
         };
@@ -66,6 +73,10 @@ impl Recorded {
     fn truth(&mut self, stamped: &Stamped<Truth>) {
         let Truth { position, altitude_amsl_m } = stamped.value;
         self.points.push(TrackPoint { time_s: stamped.time_s, position, altitude_amsl_m });
+    }
+
+    fn power(&mut self, stamped: &Stamped<Power>) {
+        self.battery.push((stamped.time_s, stamped.value.battery));
     }
 
     fn plan_event(&mut self, stamped: FpManagerEvent) {
@@ -108,6 +119,7 @@ impl Recorded {
     pub fn since(mut self, started_s: f64) -> Self {
         self.points.retain(|p| p.time_s >= started_s);
         self.points.iter_mut().for_each(|p| p.time_s -= started_s);
+        self.battery.iter_mut().for_each(|(time_s, _)| *time_s -= started_s);
         self.events.iter_mut().for_each(|(time_s, _)| *time_s -= started_s);
         self
     }

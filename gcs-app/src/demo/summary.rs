@@ -1,6 +1,6 @@
 //! What the demo prints at its end.
 
-use crate::report::{Findings, Record, clock, from_authored};
+use crate::report::{Findings, Record, clock, flight_lines, from_authored};
 use std::path::Path;
 
 /// The leg table, the verdict and where the report is, on standard output.
@@ -9,6 +9,7 @@ use std::path::Path;
 /// Standard output can't be written.
 pub fn print(record: &Record, findings: &Findings, wall_s: f64, folder: &Path) -> std::io::Result<()> {
     table(findings).lines().try_for_each(|row| say!("{row}"))?;
+    flight_lines(findings).try_for_each(|line| say!("{line}"))?;
     for coverage in &findings.coverages {
         say!("seen of {}: {:.2} %", coverage.label, coverage.share * 100.0)?;
     }

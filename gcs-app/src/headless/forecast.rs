@@ -3,7 +3,7 @@
 use super::progress;
 use super::source::Loaded;
 use super::wind::Air;
-use crate::report::{Happening, Record, Track, TrackPoint, assemble};
+use crate::report::{Happening, Record, Track, TrackPoint, assemble, flights};
 use aircraft::{Profile, Wind};
 use flight_exec::Event;
 use flight_exec::rehearse::{Advance, Options, Preview, PreviewError, Scenario, Start, preview_with};
@@ -137,6 +137,7 @@ pub fn record(loaded: &Loaded, program: &Program, preview: &Preview, wind: &Wind
         zones: program.plan.zones.clone(),
         areas: assemble::areas(program, &planned, &preview.events),
         planned,
+        energy: flights::previewed(preview),
         flown: Track::default(),
         authored: Default::default(),
         happenings,

@@ -1,7 +1,7 @@
 //! How far from the previewed path it was flown.
 
-use super::authored;
 use super::record::{Passage, PassageKey, Record, Track, TrackPoint};
+use super::{authored, flights};
 use geometry::{LocalFrame, Vec2};
 use std::collections::HashMap;
 
@@ -114,6 +114,7 @@ fn segment_offset_m(a: Vec2, b: Vec2, p: Vec2) -> f64 {
 /// One row per flown passage.
 pub fn by_passage(record: &Record, deviations: &[Option<f64>]) -> Vec<PassageReport> {
     let track = record.main_track();
+    let rests: Vec<usize> = flights::of(track).iter().map(|flight| flight.points.end).collect();
     let planned: HashMap<&PassageKey, f64> = record
         .planned
         .passages()
@@ -128,11 +129,16 @@ pub fn by_passage(record: &Record, deviations: &[Option<f64>]) -> Vec<PassageRep
         .map(|(i, passage)| {
             let (start_s, time_s) = times(track, i);
             let range = track.range(i);
+            // what is behind the end of its flight is another one's, or no flight at all
+            let rest = rests.iter().copied().find(|rest| range.start < *rest).unwrap_or(range.end);
+            let rests_s = track.points().get(rest.saturating_sub(1)).map_or(f64::INFINITY, |p| p.time_s);
+            let time_s = time_s.min((rests_s - start_s).max(0.0));
+            let range = range.start..range.end.min(rest);
             let metres = deviations.get(range.clone()).unwrap_or(&[]);
             PassageReport {
                 start_s,
                 time_s,
-                distance_m: track.distance_m(range.start..(range.end + 1).min(track.points().len())),
+                distance_m: track.distance_m(range.start..(range.end + 1).min(rest)),
                 planned_time_s: planned.get(&passage.key).copied(),
                 cross_track: Statistics::of(metres.iter().flatten().map(|m| m.abs()).collect()),
                 from_authored: record

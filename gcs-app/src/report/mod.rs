@@ -1,7 +1,7 @@
 //! The report of a flight: what was flown beside what was planned, as pictures and tables.
 //!
 //! [`Record`] is everything the report knows; [`write`] turns it into a folder. `map` and `profile` draw,
-//! `deviation`, `authored` and `coverage` measure, `tables` writes;
+//! `deviation`, `authored`, `coverage` and `flights` measure, `tables` writes;
 //! `view`, `labels` and `zones` serve every picture of the ground; `diagram` draws a plan's geometry for documents. Nothing here needs a display.
 
 pub mod assemble;
@@ -10,6 +10,7 @@ mod canvas;
 mod coverage;
 mod deviation;
 pub mod diagram;
+pub mod flights;
 mod hillshade;
 mod labels;
 mod map;
@@ -23,10 +24,11 @@ mod zones;
 
 pub use coverage::Coverage;
 pub use deviation::{PassageReport, Statistics};
+pub use flights::FlightReport;
 #[cfg(test)]
 pub(crate) use record::tests::record as made_up_record;
 pub use record::{Area, Happening, Passage, PassageKey, Place, PlaceKind, Record, Track, TrackPoint};
-pub use tables::{clock, from_authored};
+pub use tables::{clock, flights as flight_lines, from_authored};
 
 use crate::jobs::Progress;
 use std::path::Path;
@@ -36,6 +38,8 @@ use std::path::Path;
 pub struct Findings {
     /// One row per passage of a leg, in the order of flight.
     pub passages: Vec<PassageReport>,
+    /// One row per flight of the plan.
+    pub flights: Vec<FlightReport>,
     /// One row per area that was scanned.
     pub coverages: Vec<Coverage>,
 }
@@ -46,6 +50,7 @@ impl Findings {
         let deviations = deviation::signed(&record.planned, &record.flown);
         Self {
             passages: deviation::by_passage(record, &deviations),
+            flights: flights::reports(record),
             coverages: record.areas.iter().filter_map(|a| coverage::of(a, record.main_track())).collect(),
         }
     }
@@ -69,8 +74,8 @@ impl Findings {
 }
 
 /// The files of a report.
-pub const FILES: [&str; 6] =
-    ["map.png", "profile.png", "legs.csv", "report.md", "report.html", "events.jsonl"];
+pub const FILES: [&str; 7] =
+    ["map.png", "profile.png", "legs.csv", "flights.csv", "report.md", "report.html", "events.jsonl"];
 
 /// Writes the [`FILES`] into `folder`, all or none; the folder is made if need be. Gives what was measured. `None`: it was
 /// cancelled, and nothing is written.
@@ -84,6 +89,7 @@ pub fn write(record: &Record, folder: &Path, progress: &Progress) -> anyhow::Res
         &|| map::png(record, &findings),
         &|| profile::png(record),
         &|| Ok(tables::csv(&findings).into_bytes()),
+        &|| Ok(tables::flights_csv(&findings).into_bytes()),
         &|| Ok(tables::markdown(record, &findings).into_bytes()),
         &|| Ok(tables::html(record, &findings).into_bytes()),
         &|| Ok(tables::events(record).into_bytes()),

@@ -123,8 +123,13 @@ fn summary(cursor: &mut Cursor, record: &Record, findings: &Findings) {
     let track = record.main_track();
     cursor.heading(if record.flown.points().is_empty() { "Preview" } else { "Flight" });
     cursor.row("time", &tables::clock(track.duration_s()));
-    cursor
-        .row("way over the ground", &format!("{:.1} km", track.distance_m(0..track.points().len()) / 1000.0));
+    let distance_m: f64 = findings.flights.iter().map(|flight| flight.distance_m).sum();
+    cursor.row("way over the ground", &format!("{:.1} km", distance_m / 1000.0));
+    for flight in findings.flights.iter().filter(|_| findings.flights.len() > 1) {
+        let left = flight.energy.map_or(String::new(), |e| format!(", {:.0} % left", e.left * 100.0));
+        let (time, km) = (tables::clock(flight.time_s), flight.distance_m / 1000.0);
+        cursor.row(&format!("flight {}", flight.number), &format!("{time}, {km:.1} km{left}"));
+    }
     cursor.row("passages of legs", &track.passages().len().to_string());
     for kind in ["TF", "RF"] {
         if let Some(worst) = findings.worst(kind) {

@@ -1,6 +1,7 @@
 //! What a report is made from.
 
 use super::authored::AuthoredPath;
+use super::flights::Energy;
 use flight_plan::Zone;
 use geometry::LatLon;
 use std::collections::HashMap;
@@ -197,6 +198,8 @@ pub struct Record {
     pub zones: Vec<Zone>,
     /// Scanned areas.
     pub areas: Vec<Area>,
+    /// What each flight of the plan took, in order; empty: not known.
+    pub energy: Vec<Energy>,
     /// What happened, in order.
     pub happenings: Vec<Happening>,
     /// The verdict's sentences, with whether each holds.
@@ -243,6 +246,7 @@ pub(crate) mod tests {
                 spacing_m: 150.0,
                 passage: key("sweep", "patrol 1"),
             }],
+            energy: Vec::new(),
             happenings: vec![
                 Happening {
                     time_s: 300.0,

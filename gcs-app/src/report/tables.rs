@@ -1,7 +1,8 @@
 //! The report's texts: leg table as CSV, Markdown and HTML, events as JSON lines.
 
+use super::flights::Energy;
 use super::record::Record;
-use super::{Findings, PassageReport};
+use super::{Findings, FlightReport, PassageReport};
 use std::fmt::Write;
 
 const COLUMNS: [&str; 11] = [
@@ -28,10 +29,12 @@ pub fn clock(seconds: f64) -> String {
 /// One row per passage, plain numbers in seconds and metres.
 pub fn csv(findings: &Findings) -> String {
     let mut text = String::from(
-        "leg,type,stage,iterations,reverse,occurrence,start_s,time_s,planned_time_s,distance_m,cross_track_rms_m,cross_track_p95_m,cross_track_max_m,authored_rms_m,authored_max_m\n",
+        "leg,type,stage,iterations,reverse,occurrence,start_s,time_s,planned_time_s,distance_m,cross_track_rms_m,cross_track_p95_m,cross_track_max_m,authored_rms_m,authored_max_m,flight\n",
     );
-    for row in &findings.passages {
+    for (index, row) in findings.passages.iter().enumerate() {
         let key = &row.passage.key;
+        let flight = findings.flights.iter().find(|flight| flight.passages.contains(&index));
+        let flight = flight.map_or(1, |flight| flight.number);
         let cross = row
             .cross_track
             .map_or(",,".to_owned(), |s| format!("{:.2},{:.2},{:.2}", s.rms_m, s.p95_m, s.max_m));
@@ -39,13 +42,26 @@ pub fn csv(findings: &Findings) -> String {
         let planned = row.planned_time_s.map_or(String::new(), |s| format!("{s:.1}"));
         let (leg, stage, loops) = (quoted(&key.leg), quoted(&row.passage.stage), quoted(&key.iterations));
         text += &format!(
-            "{leg},{},{stage},{loops},{},{},{:.1},{:.1},{planned},{:.1},{cross},{authored}\n",
+            "{leg},{},{stage},{loops},{},{},{:.1},{:.1},{planned},{:.1},{cross},{authored},{flight}\n",
             row.passage.kind,
             key.reverse,
             key.occurrence + 1,
             row.start_s,
             row.time_s,
             row.distance_m
+        );
+    }
+    text
+}
+
+/// One row per flight of the plan, plain numbers in seconds, metres and joules; the share of the energy that is left.
+pub fn flights_csv(findings: &Findings) -> String {
+    let mut text = String::from("flight,start_s,time_s,distance_m,energy_j,energy_left\n");
+    for flight in &findings.flights {
+        let energy = flight.energy.map_or(",".to_owned(), |e| format!("{:.0},{:.4}", e.used_j, e.left));
+        text += &format!(
+            "{},{:.1},{:.1},{:.1},{energy}\n",
+            flight.number, flight.start_s, flight.time_s, flight.distance_m
         );
     }
     text
@@ -78,6 +94,38 @@ fn cells(row: &PassageReport) -> [String; 11] {
     ]
 }
 
+const FLIGHT_COLUMNS: [&str; 6] = ["flight", "begins", "time", "distance", "energy", "left"];
+
+fn flight_cells(flight: &FlightReport) -> [String; 6] {
+    let energy = |text: fn(Energy) -> String| flight.energy.map_or("–".to_owned(), text);
+    [
+        flight.number.to_string(),
+        clock(flight.start_s),
+        clock(flight.time_s),
+        format!("{:.2} km", flight.distance_m / 1000.0),
+        energy(|e| format!("{:.0} kJ", e.used_j / 1e3)),
+        energy(|e| format!("{:.0} %", e.left * 100.0)),
+    ]
+}
+
+/// The heading and the rows of each table of legs: one, or one for each flight of the plan.
+fn legs_by_flight(findings: &Findings) -> impl Iterator<Item = (String, &[PassageReport])> {
+    let several = findings.flights.len() > 1;
+    findings.flights.iter().map(move |flight| {
+        let heading = if several { format!("Legs of flight {}", flight.number) } else { "Legs".to_owned() };
+        (heading, findings.passages.get(flight.passages.clone()).unwrap_or_default())
+    })
+}
+
+/// The flights of the plan, where it has several, one line each.
+pub fn flights(findings: &Findings) -> impl Iterator<Item = String> {
+    let several = findings.flights.iter().filter(|_| findings.flights.len() > 1);
+    several.map(|flight| {
+        let [number, begins, time, distance, energy, left] = flight_cells(flight);
+        format!("flight {number}: begins {begins}, {time}, {distance}, {energy}, {left} left")
+    })
+}
+
 /// Deviations from the authored path, for people.
 pub fn from_authored(row: &PassageReport) -> String {
     row.from_authored.map_or("–".to_owned(), |s| format!("{:.1} / {:.1} m", s.rms_m, s.max_m))
@@ -96,10 +144,13 @@ pub fn markdown(record: &Record, findings: &Findings) -> String {
             text += &format!("- {} {sentence}\n", if *holds { "✓" } else { "✗" });
         }
     }
-    text += "\n## Legs\n\n";
-    text += &format!("| {} |\n|{}\n", COLUMNS.join(" | "), "---|".repeat(COLUMNS.len()));
-    for row in &findings.passages {
-        text += &format!("| {} |\n", cells(row).map(|c| c.replace('|', "\\|")).join(" | "));
+    if findings.flights.len() > 1 {
+        text += "\n## Flights\n\n";
+        text += &pipes(&FLIGHT_COLUMNS, findings.flights.iter().map(flight_cells));
+    }
+    for (heading, legs) in legs_by_flight(findings) {
+        text += &format!("\n## {heading}\n\n");
+        text += &pipes(&COLUMNS, legs.iter().map(cells));
     }
     if !findings.coverages.is_empty() {
         text += "\n## Coverage\n\n| area | pass | size | seen |\n|---|---|---|---|\n";
@@ -116,6 +167,15 @@ pub fn markdown(record: &Record, findings: &Findings) -> String {
     text += "\n## What happened\n\n";
     for happening in &record.happenings {
         text += &format!("- {} {}\n", clock(happening.time_s), happening.text);
+    }
+    text
+}
+
+/// A table of Markdown.
+fn pipes<const N: usize>(head: &[&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
+    let mut text = format!("| {} |\n|{}\n", head.join(" | "), "---|".repeat(N));
+    for row in rows {
+        text += &format!("| {} |\n", row.map(|cell| cell.replace('|', "\\|")).join(" | "));
     }
     text
 }
@@ -139,8 +199,16 @@ pub fn html(record: &Record, findings: &Findings) -> String {
         text +=
             &format!("<li class=\"{}\">{}</li>\n", if *holds { "good" } else { "bad" }, escaped(sentence));
     }
-    text += "</ul>\n<img src=\"map.png\" alt=\"map of the flight\">\n<img src=\"profile.png\" alt=\"altitude profile\">\n<h2>Legs</h2>\n";
-    text += &table(&COLUMNS.map(str::to_owned), findings.passages.iter().map(cells));
+    text += "</ul>\n<img src=\"map.png\" alt=\"map of the flight\">\n<img src=\"profile.png\" alt=\"altitude profile\">\n";
+    if findings.flights.len() > 1 {
+        text += "<h2>Flights</h2>\n";
+        let rows = findings.flights.iter().map(flight_cells);
+        text += &table(&FLIGHT_COLUMNS.map(str::to_owned), rows);
+    }
+    for (heading, legs) in legs_by_flight(findings) {
+        text += &format!("<h2>{heading}</h2>\n");
+        text += &table(&COLUMNS.map(str::to_owned), legs.iter().map(cells));
+    }
     if !findings.coverages.is_empty() {
         text += "<h2>Coverage</h2>\n";
         let rows = findings.coverages.iter().map(|c| {
@@ -222,10 +290,42 @@ mod tests {
             assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 20_000, "{name}: {} bytes", bytes.len());
         }
         let lines = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap().lines().count();
-        assert_eq!(lines("legs.csv"), findings.passages.len() + 1);
+        assert_eq!((lines("legs.csv"), lines("flights.csv")), (findings.passages.len() + 1, 2));
         assert_eq!(lines("events.jsonl"), record.happenings.len());
         let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
         assert!(page.contains("sweep") && page.contains("class=\"bad\""));
+    }
+
+    #[test]
+    fn each_flight_of_a_plan_has_its_section() {
+        let mut record = report::record::tests::record();
+        let mut flown = record.flown.clone();
+        let key = report::PassageKey { leg: "to2".into(), ..record.flown.passages()[0].key.clone() };
+        flown.begin(key, "take-off", "Again".into());
+        record.flown.points().iter().for_each(|p| {
+            flown.push(report::TrackPoint { time_s: p.time_s + 5000.0, ..*p });
+        });
+        record.flown = flown;
+        record.energy =
+            vec![Energy { used_j: 250_000.0, left: 0.4 }, Energy { used_j: 125_000.0, left: 0.71 }];
+        let findings = Findings::of(&record);
+        let page = markdown(&record, &findings);
+        for part in [
+            "## Flights",
+            "| 2 | 1:23:20 |",
+            "| 125 kJ | 71 % |",
+            "## Legs of flight 1",
+            "## Legs of flight 2",
+        ] {
+            assert!(page.contains(part), "{part} is missing in\n{page}");
+        }
+        let page = html(&record, &findings);
+        assert!(page.contains("<h2>Flights</h2>") && page.contains("<h2>Legs of flight 2</h2>"));
+        assert!(
+            csv(&findings).lines().last().unwrap().ends_with(",2")
+                && flights_csv(&findings).contains(",250000,0.4000")
+        );
+        assert_eq!(flights(&findings).count(), 2);
     }
 
     #[test]
