@@ -100,6 +100,51 @@ impl Field {
         )
     }
 
+    /// Two flights, each around the field and back; behind the landing of the first one the plan waits for a start. `second`: the field
+    /// that the second one takes off from, and lands on.
+    pub fn two_flights(&self, second: Field) -> String {
+        let runway = |id: &str, field: &Field| {
+            let (elevation, heading) = (field.elevation_m, field.heading_deg);
+            let place = field.place(0.0, 0.0);
+            format!(
+                r#"<runway id="{id}" {place} elevation="{elevation}" heading="{heading}" length="600" priority="1"/>"#
+            )
+        };
+        format!(
+            r#"<?xml version="1.0" encoding="UTF-8"?>
+<flightPlan xmlns="urn:legwork:flight-plan:1" name="Two flights" aircraft="trainer">
+  <runways>{first}{second_runway}</runways>
+  <mainPlan emergency="home">
+    {one}
+    {two}
+  </mainPlan>
+  <emergencyPlans>{home}</emergencyPlans>
+</flightPlan>
+"#,
+            first = runway("R", self),
+            second_runway = runway("S", &second),
+            one = self.flight("", "R", r#"turnaroundEnergy="0.9" turnaroundTime="60""#),
+            two = second.flight("2", "S", ""),
+            home = self.emergency("home", 700.0),
+        )
+    }
+
+    /// Take-off, two legs around the field, a final and the landing, with a suffix to each identifier.
+    fn flight(&self, suffix: &str, runway: &str, turnaround: &str) -> String {
+        format!(
+            r#"<stage id="to{suffix}" type="take-off" runway="{runway}" altitude="60" altitudeReference="home"/>
+    <stage id="around{suffix}" type="departure" altitude="110" altitudeReference="home">
+      <TF id="out{suffix}" {out}/>
+      <TF id="far{suffix}" {far}/>
+      <TF id="final{suffix}" {last} altitude="70" altitudeReference="home"/>
+    </stage>
+    <stage id="land{suffix}" type="land" runway="{runway}" {turnaround}/>"#,
+            out = self.place(1700.0, 0.0),
+            far = self.place(-600.0, 900.0),
+            last = self.place(-1000.0, 0.0),
+        )
+    }
+
     /// An emergency plan by way of a point of its own, so that a test sees which one is flown.
     fn emergency(&self, id: &str, left_m: f64) -> String {
         format!(
@@ -133,5 +178,14 @@ mod tests {
             let problems = flight_plan::compile(reading.plan, &profile, &flat).err();
             assert!(problems.is_none(), "{problems:#?}");
         }
+    }
+
+    #[test]
+    fn two_flights_can_be_flown() {
+        let reading = flight_plan::read(FIELD.two_flights(FIELD).as_bytes());
+        assert!(reading.problems.is_empty(), "{:?}", reading.problems);
+        let flat = terrain::Flat(FIELD.elevation_m);
+        let problems = flight_plan::compile(reading.plan, &aircraft::Profile::default(), &flat).err();
+        assert!(problems.is_none(), "{problems:#?}");
     }
 }

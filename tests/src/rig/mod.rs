@@ -132,12 +132,17 @@ impl Rig {
 
     /// Loads the mission and starts it; comes back when the aircraft is airborne.
     pub async fn fly_mission(&mut self) -> anyhow::Result<()> {
+        let mission = self.field.mission(1800.0);
+        self.fly(&mission).await
+    }
+
+    /// Loads a plan and starts it; comes back when the aircraft is airborne.
+    pub async fn fly(&mut self, plan: &str) -> anyhow::Result<()> {
         self.until("the autopilot is there", 60.0, |rig, _| {
             rig.gateway_status().is_some_and(|s| s.state == GatewayState::Stop)
         })
         .await?;
-        let mission = self.field.mission(1800.0);
-        self.load(&mission).await?;
+        self.load(plan).await?;
         self.command(Command::Start).await?;
         self.until("airborne", 120.0, |rig, _| rig.position().is_some_and(|p| !p.on_ground)).await
     }
