@@ -9,7 +9,7 @@ mod procedure;
 mod zone;
 
 pub use action::{Act, LegAction, Trigger};
-pub use pattern::{Area, Pattern, Scan, ScanEntry, ScanStyle, Spacing};
+pub use pattern::{Area, Pattern, Scan, ScanEntry, ScanOrder, ScanStyle, Spacing};
 pub use procedure::{Call, Parameter, Procedure};
 pub use zone::{Zone, ZoneKind, ZoneShape, ZoneTime};
 

@@ -210,7 +210,14 @@ fn check_set(plan: &FlightPlan, draft: &Draft, path: &[usize], property: &Proper
         return;
     }
     // what is so without being said is not said
-    let to = to.filter(|to| !(property.kind == Kind::Flag && property.without.is_some() && to == "false"));
+    let unsaid = |to: &String| match property.kind {
+        Kind::Flag => property.without.is_some() && to == "false",
+        Kind::Choice(words) => {
+            words.iter().any(|(word, label)| word == to && property.without == Some(*label))
+        }
+        _ => false,
+    };
+    let to = to.filter(|to| !unsaid(to));
     let now = property.value(draft.element().at(path).unwrap());
     let mut expected = draft.element().clone();
     let element = path.iter().fold(&mut expected, |e, i| &mut e.children[*i]);

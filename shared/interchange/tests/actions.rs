@@ -6,7 +6,7 @@ mod made;
 use flight_exec::Action;
 use flight_plan::{
     Act, Altitude, AltitudeReference, Area, IterativeForm, Leg, LegAction, LegKind, Scan, ScanEntry,
-    ScanStyle, Spacing, Trigger, TurnDirection, Value,
+    ScanOrder, ScanStyle, Spacing, Trigger, TurnDirection, Value,
 };
 use geometry::LatLon;
 use interchange::{Assumptions, Export, Format, Step, Written, read, write};
@@ -110,6 +110,7 @@ fn survey(actions: Vec<LegAction>) -> Leg {
         heading_deg: Some(Value::Constant(75.0)),
         overshoot_m: Value::Constant(30.0),
         entry: ScanEntry::StartRight,
+        order: ScanOrder::SideBySide,
     });
     let altitude = Altitude { metres: Value::Constant(500.0), reference: AltitudeReference::Amsl };
     Leg { altitude: Some(altitude), actions, ..leg("survey", kind) }

@@ -5,7 +5,8 @@ mod made;
 
 use flight_exec::Action;
 use flight_plan::{
-    Altitude, AltitudeReference, Area, Leg, LegKind, Pattern, Scan, ScanEntry, ScanStyle, Spacing, Value,
+    Altitude, AltitudeReference, Area, Leg, LegKind, Pattern, Scan, ScanEntry, ScanOrder, ScanStyle, Spacing,
+    Value,
 };
 use geometry::pattern::{Corridor, CorridorParameters, CrissCross, Route};
 use geometry::scan::{Corner, Entry, ScanParameters};
@@ -52,6 +53,7 @@ fn scanned(style: ScanStyle, corners: &[(f64, f64)], turn_radius_m: f64) -> Vec<
         heading_deg: Some(Value::Constant(30.0)),
         overshoot_m: Value::Constant(20.0),
         entry: ScanEntry::StartLeft,
+        order: ScanOrder::SideBySide,
     });
     let p = ScanParameters {
         spacing_m: SPACING_M,

@@ -6,7 +6,8 @@ mod made;
 use flight_exec::Action;
 use flight_plan::{
     Act, Altitude, AltitudeReference, Area, FlightPlan, Leg, LegAction, LegKind, Pattern, Place, Runway,
-    Scan, ScanEntry, ScanStyle, Spacing, Stage, StageKind, Trigger, Value, Zone, ZoneKind, ZoneShape,
+    Scan, ScanEntry, ScanOrder, ScanStyle, Spacing, Stage, StageKind, Trigger, Value, Zone, ZoneKind,
+    ZoneShape,
 };
 use geometry::LatLon;
 use interchange::{Assumptions, Export, Format, Import, Step, read, write};
@@ -172,6 +173,7 @@ fn surveys_and_corridors_come_back_as_patterns() {
         heading_deg: Some(Value::Constant(75.0)),
         overshoot_m: Value::Constant(30.0),
         entry: ScanEntry::StartRight,
+        order: ScanOrder::SideBySide,
     };
     let corridor = Pattern::Corridor {
         route: corners.iter().map(|c| Place::Position(Value::Constant(*c))).collect(),
@@ -221,6 +223,7 @@ fn scan_over(corners: &[LatLon]) -> Scan {
         heading_deg: Some(Value::Constant(75.0)),
         overshoot_m: Value::Constant(30.0),
         entry: ScanEntry::StartRight,
+        order: ScanOrder::SideBySide,
     }
 }
 

@@ -11,7 +11,7 @@ use crate::layout::path::distance_and_course;
 use crate::layout::world::turn_radius_m;
 use crate::rehearse::turn_rad;
 use aircraft::DESIGN_WIND_MPS;
-use flight_plan::{Edit, Id, LegKind, Pattern, Problem, Value};
+use flight_plan::{Edit, Id, LegKind, Pattern, Problem, ScanOrder, Value};
 use geometry::LatLon;
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
@@ -70,9 +70,9 @@ impl Track {
         if before.passage != to.passage || from.passage != to.passage {
             return None;
         }
-        let overshoot_m = match &view.program.leg(&to.waypoint.leg)?.kind {
-            LegKind::Scan(scan) => view.number(&scan.overshoot_m)?,
-            LegKind::Pattern(Pattern::Corridor { .. }) => 0.0,
+        let (overshoot_m, led_out) = match &view.program.leg(&to.waypoint.leg)?.kind {
+            LegKind::Scan(scan) => (view.number(&scan.overshoot_m)?, scan.order == ScanOrder::Interleaved),
+            LegKind::Pattern(Pattern::Corridor { .. }) => (0.0, true),
             _ => return None,
         };
         let [before_at, at, to_at] = [before, from, to].map(|w| w.waypoint.position);
@@ -80,7 +80,8 @@ impl Track {
         let (length_m, course_deg) = distance_and_course(at, to_at);
         let wind_mps = view.conditions.wind.speed_mps();
         let turn_m = turn_radius_m(view.profile, to.waypoint.airspeed_mps, wind_mps, DESIGN_WIND_MPS);
-        let track = Self { at, course_deg, aside_m, room_m: turn_m.max(overshoot_m) };
+        let room_m = if led_out { turn_m.max(overshoot_m) } else { overshoot_m };
+        let track = Self { at, course_deg, aside_m, room_m };
         let turns_round = (turn_rad(aside_deg, course_deg) - FRAC_PI_2).abs() < RIGHT_ANGLE_RAD;
         (turns_round && length_m > 2.0 * track.room_m).then_some(track)
     }

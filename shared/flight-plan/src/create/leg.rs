@@ -4,8 +4,8 @@ use super::course::{Approach, arc_centre};
 use super::kind::LegChoice;
 use crate::{
     Altitude, AltitudeReference, Area, Branch, Call, DecideBefore, EmergencyChoice, FlightPlan, Holding,
-    HoldingLength, Id, IterativeForm, Leg, LegKind, Pattern, Place, PlanWaypoint, Scan, ScanEntry, ScanStyle,
-    Spacing, TurnDirection, Value,
+    HoldingLength, Id, IterativeForm, Leg, LegKind, Pattern, Place, PlanWaypoint, Scan, ScanEntry, ScanOrder,
+    ScanStyle, Spacing, TurnDirection, Value,
 };
 use aircraft::Profile;
 use geometry::LatLon;
@@ -224,6 +224,7 @@ impl<'a> Maker<'a> {
             heading_deg: None,
             overshoot_m: Value::Constant(OVERSHOOT_M),
             entry: ScanEntry::Nearest,
+            order: ScanOrder::Interleaved,
         }))
     }
 

@@ -46,6 +46,7 @@ const DIRECTION: Row = P(property(
 
 const SCANS: &[Word] =
     &[("scan", "along the long side"), ("creepingLine", "along the short side"), ("crissCross", "both ways")];
+const ORDERS: &[Word] = &[("interleaved", "interleaved"), ("side-by-side", "side by side")];
 const ENTRIES: &[Word] = &[
     ("nearest", "nearest corner"),
     ("start-left", "start, left"),
@@ -86,6 +87,14 @@ pub(super) const ALL: &[Description] = &[
                 )
                 .without("nearest corner")
                 .first("start-left")),
+                P(property(
+                    "order",
+                    "Order",
+                    "Interleaved, no turn is tighter than the aircraft's; side by side the way is shorter, and turns swing wide.",
+                    Kind::Choice(ORDERS),
+                )
+                .without("interleaved")
+                .first("side-by-side")),
                 THE_AREA,
             ],
             TAIL,

@@ -70,6 +70,16 @@ pub enum ScanEntry {
     EndRight,
 }
 
+/// In which order the tracks of a scan are flown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ScanOrder {
+    /// Where neighbouring tracks are too near to turn between them, some are passed over and flown later: no turn is tighter than the
+    /// aircraft's.
+    Interleaved,
+    /// Each after its neighbour, whatever the aircraft's turn radius: the shortest way, with turns that swing wide.
+    SideBySide,
+}
+
 /// Straight tracks over an area.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scan {
@@ -85,6 +95,8 @@ pub struct Scan {
     pub overshoot_m: Value<f64>,
     /// Where it begins.
     pub entry: ScanEntry,
+    /// Which track follows which.
+    pub order: ScanOrder,
 }
 
 /// The other patterns.

@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use super::{Extent, Outline, Template, fix, leg, to};
 use crate::{
-    Area, Fix, IterativeForm, Leg, LegKind, Pattern, Place, Scan, ScanEntry, ScanStyle, Spacing,
+    Area, Fix, IterativeForm, Leg, LegKind, Pattern, Place, Scan, ScanEntry, ScanOrder, ScanStyle, Spacing,
     TurnDirection, Value, Variable, VariableValue,
 };
 use geometry::LatLon;
@@ -145,5 +145,6 @@ fn scan(area: Area, spacing: Spacing) -> Scan {
         heading_deg: None,
         overshoot_m: Value::Constant(50.0),
         entry: ScanEntry::Nearest,
+        order: ScanOrder::Interleaved,
     }
 }

@@ -4,8 +4,8 @@ use super::cursor::Element;
 use super::read::Document;
 use super::write::{Tag, Writer};
 use crate::{
-    Area, EmergencyChoice, Id, LegAction, LegKind, Pattern, Place, Problem, Scan, ScanEntry, ScanStyle,
-    Spacing, Value,
+    Area, EmergencyChoice, Id, LegAction, LegKind, Pattern, Place, Problem, Scan, ScanEntry, ScanOrder,
+    ScanStyle, Spacing, Value,
 };
 use geometry::LatLon;
 
@@ -16,14 +16,18 @@ const ENTRIES: [(&str, ScanEntry); 5] = [
     ("end-left", ScanEntry::EndLeft),
     ("end-right", ScanEntry::EndRight),
 ];
+const ORDERS: [(&str, ScanOrder); 2] =
+    [("interleaved", ScanOrder::Interleaved), ("side-by-side", ScanOrder::SideBySide)];
 const DIRECTIONS: [(&str, bool); 2] = [("inward", true), ("outward", false)];
 
 pub(super) fn scan_attributes(tag: Tag, scan: &Scan) -> Tag {
     let entry = ENTRIES.iter().find(|(_, entry)| *entry == scan.entry && *entry != ScanEntry::Nearest);
+    let order = ORDERS.iter().find(|(_, order)| *order == scan.order && *order != ScanOrder::Interleaved);
     spacing(tag, &scan.spacing)
         .maybe_value("heading", scan.heading_deg.as_ref())
         .value("overshoot", &scan.overshoot_m)
         .maybe("entry", entry.map(|(name, _)| *name))
+        .maybe("order", order.map(|(name, _)| *name))
 }
 
 pub(super) fn attributes(tag: Tag, pattern: &Pattern) -> Tag {
@@ -140,8 +144,9 @@ impl<'a> Document<'a> {
         let heading_deg = self.value(element, "heading");
         let overshoot_m = self.value(element, "overshoot").unwrap_or(Value::Constant(0.0));
         let entry = self.choice(element, "entry", &ENTRIES).unwrap_or(ScanEntry::Nearest);
+        let order = self.choice(element, "order", &ORDERS).unwrap_or(ScanOrder::Interleaved);
         let area = self.inside(element, "area", emergency, actions).area.unwrap_or_else(no_area);
-        LegKind::Scan(Scan { area, style, spacing, heading_deg, overshoot_m, entry })
+        LegKind::Scan(Scan { area, style, spacing, heading_deg, overshoot_m, entry, order })
     }
 
     fn about_centre(

@@ -111,9 +111,10 @@ fn scan() -> BoxedStrategy<LegKind> {
     let style = proptest::sample::select(vec![S::Parallel, S::Creeping, S::CrissCross]);
     let entry =
         proptest::sample::select(vec![E::Nearest, E::StartLeft, E::StartRight, E::EndLeft, E::EndRight]);
-    (area(), style, spacing(), of(value()), value(), entry)
-        .prop_map(|(area, style, spacing, heading_deg, overshoot_m, entry)| {
-            LegKind::Scan(Scan { area, style, spacing, heading_deg, overshoot_m, entry })
+    let order = proptest::sample::select(vec![ScanOrder::Interleaved, ScanOrder::SideBySide]);
+    (area(), style, spacing(), of(value()), value(), entry, order)
+        .prop_map(|(area, style, spacing, heading_deg, overshoot_m, entry, order)| {
+            LegKind::Scan(Scan { area, style, spacing, heading_deg, overshoot_m, entry, order })
         })
         .boxed()
 }

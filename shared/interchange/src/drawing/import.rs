@@ -9,8 +9,8 @@ use crate::synthetic::{self, Areas, Assumptions, Vehicle};
 use crate::xml::held;
 use crate::{Error, Import, MAX_ITEMS};
 use flight_plan::{
-    Altitude, AltitudeReference, Area, Fix, FlightPlan, Id, LegKind, Runway, Scan, ScanEntry, ScanStyle,
-    Spacing, Stage, StageKind, Value, Zone, ZoneKind, ZoneShape,
+    Altitude, AltitudeReference, Area, Fix, FlightPlan, Id, LegKind, Runway, Scan, ScanEntry, ScanOrder,
+    ScanStyle, Spacing, Stage, StageKind, Value, Zone, ZoneKind, ZoneShape,
 };
 use geometry::LatLon;
 
@@ -275,6 +275,7 @@ impl Importer<'_> {
             heading_deg: None,
             overshoot_m: Value::Constant(0.0),
             entry: ScanEntry::Nearest,
+            order: ScanOrder::Interleaved,
         };
         let mut stage = synthetic::stage(
             self.names.take(&format!("{id}-stage"), "stage"),

@@ -6,7 +6,7 @@ use crate::synthetic::altitude;
 use crate::xml::{Element, held};
 use flight_plan::{
     AltitudeReference, Area, Holding, HoldingLength, Id, Leg, LegKind, PlanWaypoint, Scan, ScanEntry,
-    ScanStyle, Spacing, TurnDirection, Value,
+    ScanOrder, ScanStyle, Spacing, TurnDirection, Value,
 };
 use geometry::LatLon;
 
@@ -193,6 +193,7 @@ impl Reader<'_> {
             heading_deg: self.number(element, &["heading", "direction"]).map(Value::Constant),
             overshoot_m: Value::Constant(0.0),
             entry: ScanEntry::Nearest,
+            order: ScanOrder::Interleaved,
         })
     }
 

@@ -1,7 +1,6 @@
 //! The order in which the tracks of a pattern are flown.
 
 use super::pattern;
-use crate::Step;
 use flight_plan::{Leg, LegKind, Pattern, ScanStyle};
 use geometry::{LatLon, LocalFrame, Vec2};
 
@@ -11,19 +10,18 @@ const NEXT: f64 = 1.25;
 const ON_TRACK: f64 = 0.1;
 
 /// On this way over a scan or a corridor, tracks are passed over and flown later: interleaved, or part of the area by part.
-pub fn is_mixed(leg: &Leg, way: &[Step]) -> bool {
-    let places: Vec<LatLon> = way.iter().map(|step| step.waypoint.position).collect();
+pub fn is_mixed(leg: &Leg, places: &[LatLon]) -> bool {
     let mixed = match &leg.kind {
         LegKind::Scan(scan) => {
             let heading_deg = scan.heading_deg.as_ref().and_then(pattern::constant);
             let crossed = scan.style == ScanStyle::CrissCross;
             heading_deg.zip(pattern::metres(&scan.spacing)).and_then(|(heading_deg, spacing_m)| {
-                Some(over_an_area(&seen_along(&places, *places.first()?, heading_deg), spacing_m, crossed))
+                Some(over_an_area(&seen_along(places, *places.first()?, heading_deg), spacing_m, crossed))
             })
         }
         LegKind::Pattern(Pattern::Corridor { route, spacing, .. }) => {
             let route: Option<Vec<LatLon>> = route.iter().map(pattern::at).collect();
-            route.zip(pattern::metres(spacing)).map(|(route, spacing_m)| along(&places, &route, spacing_m))
+            route.zip(pattern::metres(spacing)).map(|(route, spacing_m)| along(places, &route, spacing_m))
         }
         _ => None,
     };
@@ -32,16 +30,15 @@ pub fn is_mixed(leg: &Leg, way: &[Step]) -> bool {
 
 /// How long the way over an area is, and how long it would be from one track to the one beside it, metres; `None` for what is not flown
 /// track by track.
-pub fn lengths_m(leg: &Leg, way: &[Step]) -> Option<(f64, f64)> {
+pub fn lengths_m(leg: &Leg, places: &[LatLon]) -> Option<(f64, f64)> {
     let LegKind::Scan(scan) = &leg.kind else { return None };
     if scan.style == ScanStyle::CrissCross {
         return None;
     }
     let heading_deg = scan.heading_deg.as_ref().and_then(pattern::constant)?;
     let spacing_m = pattern::metres(&scan.spacing)?;
-    let places: Vec<LatLon> = way.iter().map(|step| step.waypoint.position).collect();
     let flown_m = places.windows(2).map(|pair| if let [a, b] = pair { a.distance_m(*b) } else { 0.0 }).sum();
-    let seen = seen_along(&places, *places.first()?, heading_deg);
+    let seen = seen_along(places, *places.first()?, heading_deg);
     // least and greatest place along each track, and where it is to the right
     let mut tracks: Vec<(f64, f64, f64)> = seen
         .chunk_by(|a, b| (a.1 - b.1).abs() < ON_TRACK * spacing_m)

@@ -2,13 +2,13 @@
 
 use super::camera::{self, Camera};
 use super::json::{flag, list, number, of, position};
-use super::way;
+use super::{order, way};
 use crate::note::Notes;
 use crate::synthetic::{Assumptions, altitude};
 use crate::{Error, MAX_POINTS};
 use flight_plan::{
-    Act, Altitude, Area, Id, Leg, LegAction, LegKind, Pattern, Place, Scan, ScanEntry, ScanStyle, Spacing,
-    Trigger, Value,
+    Act, Altitude, Area, Id, Leg, LegAction, LegKind, Pattern, Place, Scan, ScanEntry, ScanOrder, ScanStyle,
+    Spacing, Trigger, Value,
 };
 use geometry::LatLon;
 use serde_json::{Value as Json, json};
@@ -94,6 +94,12 @@ fn survey(
         heading_deg: angle_deg.map(Value::Constant),
         overshoot_m: Value::Constant(number(transect, "TurnAroundDistance").unwrap_or(0.0).clamp(0.0, 1e5)),
         entry: begun.or(named.copied()).unwrap_or(ScanEntry::Nearest),
+        // QGC leaves out every other track where it is told to, and asks for no turn radius
+        order: if flag(item, "flyAlternateTransects") {
+            ScanOrder::Interleaved
+        } else {
+            ScanOrder::SideBySide
+        },
     }
 }
 
@@ -145,7 +151,7 @@ fn lost(item: &Json, transect: &Json, camera: &Camera, place: &str, notes: &mut 
         (
             item,
             "flyAlternateTransects",
-            "alternate tracks are left out: tracks are interleaved where the turn radius asks for it",
+            "every other track is not left out for the way back: tracks are interleaved where the turn radius asks for it",
         ),
         (item, "splitConcavePolygons", "the area is not split into convex parts"),
     ];
@@ -177,8 +183,9 @@ fn lost(item: &Json, transect: &Json, camera: &Camera, place: &str, notes: &mut 
     }
 }
 
-/// The pattern as QGC knows it, at the altitude in force, around the items that fly it; `None` if this leg is none.
-pub fn write(leg: &Leg, altitude: Option<&Altitude>, items: &[Json], visual: Vec<Json>) -> Option<Json> {
+/// The pattern as QGC knows it, at the altitude in force, around the items that fly it, which lead to the places of `way`; `None` if this
+/// leg is none.
+pub fn write(leg: &Leg, altitude: Option<&Altitude>, items: &[Json], way: &[LatLon]) -> Option<Json> {
     let turnaround_m = match &leg.kind {
         LegKind::Scan(scan) => constant(&scan.overshoot_m)?,
         _ => 0.0,
@@ -198,14 +205,14 @@ pub fn write(leg: &Leg, altitude: Option<&Altitude>, items: &[Json], visual: Vec
         "Items": items,
         "Refly90Degrees": crossed,
         "TurnAroundDistance": turnaround_m,
-        "VisualTransectPoints": visual,
+        "VisualTransectPoints": way.iter().map(|at| json!([at.lat_deg, at.lon_deg])).collect::<Vec<_>>(),
         "version": 2,
     });
     if let Some(transect) = transect.as_object_mut() {
         transect.extend(camera::terrain(altitude.reference));
     }
     match &leg.kind {
-        LegKind::Scan(scan) => area(scan, transect),
+        LegKind::Scan(scan) => area(scan, transect, order::is_mixed(leg, way)),
         LegKind::Pattern(Pattern::Corridor { route, width_m, .. }) => {
             let corners: Option<Vec<Json>> = route.iter().map(|p| at(p).map(of)).collect();
             Some(json!({
@@ -232,7 +239,8 @@ pub fn every_m(leg: &Leg) -> Option<f64> {
     })
 }
 
-fn area(scan: &Scan, transect: Json) -> Option<Json> {
+/// `alternates`: tracks are passed over and flown later.
+fn area(scan: &Scan, transect: Json, alternates: bool) -> Option<Json> {
     let Area::Polygon { corners, holes } = &scan.area else { return None };
     // a direction that we find, or tracks along the short side, would be a different survey in QGC
     let heading_deg = constant(scan.heading_deg.as_ref()?)?;
@@ -246,7 +254,7 @@ fn area(scan: &Scan, transect: Json) -> Option<Json> {
         "angle": heading_deg,
         "complexItemType": "survey",
         "entryLocation": entry,
-        "flyAlternateTransects": false,
+        "flyAlternateTransects": alternates,
         "polygon": corners,
         "splitConcavePolygons": false,
         "type": "ComplexItem",

@@ -23,7 +23,7 @@ pub fn write(export: &Export<'_>, notes: &mut Notes) -> Result<Vec<u8>, Error> {
     let legs: HashMap<&str, &LegContext> = contexts.iter().map(|c| (c.leg.id.as_str(), c)).collect();
     let flown = mission::items(export, notes);
     let mut writer = Writer { legs: &legs, items: Vec::new(), number: 0, approach: None };
-    let whole = |leg: &Leg| writer.pattern(leg.id.as_str(), &[], Vec::new()).is_some();
+    let whole = |leg: &Leg| writer.pattern(leg.id.as_str(), &[], &[]).is_some();
     let kept = Kept { zones: true, actions: true, speeds: true, rally: true, ..Kept::default() };
     losses::note_losses(export, kept, &whole, notes);
     contexts.iter().filter(|c| whole(c.leg)).for_each(|c| pattern::note_losses(c.leg, notes));
@@ -67,10 +67,11 @@ fn note_track_order(
     let same = |a: &Step, b: &Step| a.passage == b.passage && a.waypoint.leg == b.waypoint.leg;
     for way in export.steps.chunk_by(same) {
         let leg = way.first().and_then(|first| legs.get(first.waypoint.leg.as_str()));
-        let leg = leg.map(|context| context.leg).filter(|leg| whole(leg) && order::is_mixed(leg, way));
+        let places: Vec<LatLon> = way.iter().map(|step| step.waypoint.position).collect();
+        let leg = leg.map(|context| context.leg).filter(|leg| whole(leg) && order::is_mixed(leg, &places));
         if let Some(leg) = leg.filter(|leg| noted.insert(leg.id.as_str())) {
             let message = "neighbouring tracks in the file are not flown one after the other, because the aircraft turns too wide for that: if QGC computes the pattern again, it flies them in its own order";
-            let compared = order::lengths_m(leg, way).map_or(String::new(), |(flown_m, in_order_m)| {
+            let compared = order::lengths_m(leg, &places).map_or(String::new(), |(flown_m, in_order_m)| {
                 format!(", {:.1} km instead of {:.1} km", in_order_m / 1e3, flown_m / 1e3)
             });
             notes.push("track-order", leg.id.as_str(), format!("{message}{compared}"));
@@ -92,7 +93,7 @@ impl Writer<'_> {
     fn passage(&mut self, passage: &[Flown]) {
         let moves = |item: &Flown| item.frame == commands::FRAME_GLOBAL;
         let leg = passage.first().map_or("", |first| first.leg.as_str());
-        if self.pattern(leg, &[], Vec::new()).is_none() {
+        if self.pattern(leg, &[], &[]).is_none() {
             return passage.iter().for_each(|item| self.simple(item));
         }
         let last = passage.iter().rposition(moves).unwrap_or(0);
@@ -110,14 +111,14 @@ impl Writer<'_> {
         beside(false).for_each(|item| self.simple(item));
         let inside: Vec<Value> =
             passage.iter().enumerate().filter(own).map(|(_, item)| self.numbered(item)).collect();
-        self.items.extend(self.pattern(leg, &inside, visual(passage)));
+        self.items.extend(self.pattern(leg, &inside, &places(passage)));
         self.approach = None;
         beside(true).for_each(|item| self.simple(item));
     }
 
-    fn pattern(&self, leg: &str, items: &[Value], visual: Vec<Value>) -> Option<Value> {
+    fn pattern(&self, leg: &str, items: &[Value], way: &[LatLon]) -> Option<Value> {
         let context = self.legs.get(leg)?;
-        pattern::write(context.leg, in_force(context), items, visual)
+        pattern::write(context.leg, in_force(context), items, way)
     }
 
     fn simple(&mut self, item: &Flown) {
@@ -218,7 +219,7 @@ fn simple(number: u64, item: &Flown) -> Value {
     value
 }
 
-fn visual(passage: &[Flown]) -> Vec<Value> {
+fn places(passage: &[Flown]) -> Vec<LatLon> {
     let moves = passage.iter().filter(|i| i.frame == commands::FRAME_GLOBAL);
-    moves.map(|i| json!([i.params[4], i.params[5]])).collect()
+    moves.map(|i| LatLon::new(i.params[4], i.params[5])).collect()
 }

@@ -6,7 +6,7 @@ use super::super::spacing::spacing_m;
 use super::super::track::Approach;
 use super::layout::LaidOut;
 use crate::layout::world::World;
-use flight_plan::{Scan, ScanEntry, ScanStyle};
+use flight_plan::{Scan, ScanEntry, ScanOrder, ScanStyle};
 use geometry::LatLon;
 use geometry::pattern::creeping_heading_deg;
 use geometry::scan::{CellScan as Pattern, Corner, Entry, ScanParameters};
@@ -28,6 +28,9 @@ pub struct Recipe {
     overshoot_m: f64,
     /// Stays what it was when the scan was begun: a gust must not move the tracks.
     pub turn_radius_m: f64,
+    /// Each track is flown after its neighbour, too near or not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    side_by_side: bool,
 }
 
 impl Recipe {
@@ -46,6 +49,7 @@ impl Recipe {
             entry: if second { ScanEntry::Nearest } else { scan.entry },
             overshoot_m: world.number(&scan.overshoot_m)?,
             turn_radius_m: world.turn_radius_m(approach.airspeed_mps),
+            side_by_side: scan.order == ScanOrder::SideBySide,
         })
     }
 
@@ -66,7 +70,7 @@ impl Recipe {
             heading_deg,
             overshoot_m: self.overshoot_m,
             entry: self.corner().map_or(Entry::Nearest(frame.to_local(from)), Entry::Corner),
-            turn_radius_m: self.turn_radius_m,
+            turn_radius_m: if self.side_by_side { 0.0 } else { self.turn_radius_m },
         };
         let pattern = Pattern::new(&polygon, &parameters).map_err(geometric)?;
         Ok(LaidOut::new(pattern, frame))
@@ -98,8 +102,8 @@ impl Recipe {
         Self { heading_deg: other.heading_deg, ..self.clone() } == *other
     }
 
-    /// How far beyond a track's end its turn begins.
+    /// How far beyond a track's end its turn begins. Side by side, tracks end where their author has them end.
     pub fn lead_m(&self) -> f64 {
-        (self.turn_radius_m - self.overshoot_m).max(0.0)
+        if self.side_by_side { 0.0 } else { (self.turn_radius_m - self.overshoot_m).max(0.0) }
     }
 }
