@@ -103,9 +103,9 @@ impl Zones {
         keep_in.all(|zone| !zone.active.is_empty()).then_some(&first.id)
     }
 
-    /// A zone to stay in is active then, or may be.
-    pub fn confines(&self, when: When) -> bool {
-        self.active(ZoneKind::KeepIn, when).next().is_some()
+    /// A zone to stay in is active there and then, or may be.
+    pub fn confines(&self, at: At) -> bool {
+        self.active(ZoneKind::KeepIn, at).next().is_some()
     }
 
     /// Where a straight piece of track breaks zones: each zone to keep out of, and the nearest of those to stay in; true: it

@@ -43,7 +43,8 @@ fn unconfined(view: &View) -> Option<Problem> {
         let message = "say when the flight starts, or remove its times: outside of them a zone to stay in does not count, and the flight may go anywhere; the start time is not known, and it is taken as always active";
         return Some(Problem::warning(UNCONFINED, message).of(zone));
     }
-    let (leg, at) = planned_track(planned).find(|(_, at)| !view.zones.confines(at.when))?;
+    let mut track = flights_of(planned).flat_map(|legs| planned_track(view, planned, legs));
+    let (leg, at) = track.find(|(_, at)| !view.zones.confines(*at))?;
     let (When::At(time_s) | When::From(time_s)) = at.when;
     let message = format!(
         "give `{zone}` another period, or the plan another zone to stay in: {:.0} min after the start none is active, and the flight may go anywhere then",
