@@ -90,6 +90,7 @@ async fn arduplane_waits_on_the_ground_and_flies_the_second_flight() {
     flies_two_flights(&["--wind", "270,5"]).await;
 }
 
+#[cfg_attr(debug_assertions, ignore = "flown with --release")]
 #[tokio::test(flavor = "multi_thread")]
 async fn px4_waits_on_the_ground_and_flies_the_second_flight() {
     flies_two_flights(&["--personality", "px4", "--param", "MIS_TKO_LAND_REQ=0"]).await;
