@@ -224,12 +224,18 @@ impl Gateway {
         }
     }
 
+    /// The pilot gave the aircraft back when he switched to the waypoints: they are what is wanted again.
+    pub(super) fn take_back(&mut self, out: &mut Vec<Output>) {
+        let given_back = self.state == GatewayState::Manual && self.flies_waypoints();
+        if given_back && self.buffer.course().aboard && self.control.intent != Intent::Fly {
+            self.control.set_intent(Intent::Fly, self.telemetry.mode);
+            out.push(Output::Save);
+        }
+    }
+
     /// The human pilot has priority: a mode that we did not ask for is respected.
     fn yield_to_pilot(&mut self, now: Time, out: &mut Vec<Output>) {
         let (Some(mode), armed) = (self.telemetry.mode, self.telemetry.armed) else { return };
-        if self.state == GatewayState::Manual && self.flies_waypoints() && self.buffer.course().aboard {
-            self.control.set_intent(Intent::Fly, Some(mode));
-        }
         let Some(wanted) = self.control.wanted_mode().filter(|_| armed) else {
             self.control.disobeys_since = None;
             return;

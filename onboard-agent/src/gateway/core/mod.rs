@@ -250,6 +250,8 @@ impl Gateway {
         if is_flying(self.state) && self.telemetry.is_landed() {
             return self.land(out);
         }
+        // before the state says that he has: what is wanted then is what a next takeover is seen by
+        self.take_back(out);
         if let Some((trigger, cause)) = self.seen() {
             self.change(trigger, cause, out);
         }

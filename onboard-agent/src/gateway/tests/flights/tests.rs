@@ -301,6 +301,23 @@ fn the_pilot_has_priority_and_gives_back() {
 }
 
 #[test]
+fn a_pilot_who_gave_back_may_take_over_again_and_is_seen() {
+    let mut flight = Flight::on_zigzag(7, &[], 30, 300.0);
+    flight.run(10.0);
+    for mode in [sim::Mode::ReturnToLaunch, sim::Mode::Manual, sim::Mode::Guided, sim::Mode::Loiter] {
+        assert!(flight.sim.autopilot.set_mode(mode));
+        flight.run_until(3.0, "Manual", |f| f.state() == GatewayState::Manual);
+        flight.run(5.0);
+        assert!(flight.sim.autopilot.set_mode(sim::Mode::Auto));
+        flight.run_until(3.0, "Nav", |f| f.state() == GatewayState::Nav);
+        flight.run(5.0);
+    }
+    // and what watches over a flight of the plan does so again
+    flight.alive = false;
+    flight.run_until(10.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
+}
+
+#[test]
 fn hold_resume_direct_and_terminate_are_confirmed_by_the_autopilot() {
     let mut flight = Flight::on_zigzag(8, &[], 40, 300.0);
     flight.ask(GatewayRequest::Hold).unwrap();
