@@ -45,7 +45,7 @@ struct Options {
     /// Let the partner on the link drive time (TIMESYNC before every step).
     #[arg(long)]
     lockstep: bool,
-    /// A fault: packet-loss=SHARE, duplicate=SHARE, reorder=SHARE, gps-loss, engine-out, low-battery, silence or no-rpm, with
+    /// A fault: packet-loss=SHARE, duplicate=SHARE, reorder=SHARE, gps-loss, engine-out, low-battery, silence, no-rpm or ice, with
     /// @SECOND and +SECONDS; may be given often.
     #[arg(long, value_name = "FAULT")]
     fault: Vec<FaultRequest>,

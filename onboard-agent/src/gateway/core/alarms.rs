@@ -4,6 +4,7 @@ mod watches;
 
 use super::telemetry::Telemetry;
 use crate::gateway::order::Time;
+use geometry::LatLon;
 use std::time::Duration;
 use usal::contract::{Alarm, GatewayEvent};
 use watches::{WATCHES, Watch};
@@ -36,6 +37,8 @@ pub struct AlarmInputs {
     pub sinks_below_target: bool,
     /// It sinks below the altitude that it was told to fly at.
     pub sinks: bool,
+    /// It flies far slower than it was told to.
+    pub slow: bool,
     /// It ought to fly, and does not move.
     pub stands_still: bool,
     /// Somebody else steers the flying aircraft.
@@ -59,16 +62,30 @@ pub struct AlarmInputs {
 pub struct Alarms {
     raised: Vec<Watch>,
     suspected: Vec<(Watch, Time)>,
+    /// Where it stood when it was found to stand still.
+    stands_at: Option<LatLon>,
 }
 
 impl Alarms {
     /// Alarms that are raised now.
     pub fn raised(&self) -> Vec<Alarm> {
-        self.raised.iter().map(|w| w.alarm()).collect()
+        self.raised.iter().map(|w| self.alarm(*w)).collect()
+    }
+
+    /// What is down has to be found: that alarm says where.
+    fn alarm(&self, watch: Watch) -> Alarm {
+        let mut alarm = watch.alarm();
+        if let (Watch::StandsStill, Some(place)) = (watch, self.stands_at) {
+            alarm.advice += &format!(" It is at {:.5}, {:.5}.", place.lat_deg, place.lon_deg);
+        }
+        alarm
     }
 
     /// Looks at everything once; events go to `out`.
     pub fn update(&mut self, now: Time, t: &Telemetry, inputs: AlarmInputs, out: &mut Vec<GatewayEvent>) {
+        if !self.raised.contains(&Watch::StandsStill) {
+            self.stands_at = t.fix.map(|(_, fix)| fix.position);
+        }
         for watch in WATCHES {
             let raised = self.raised.contains(&watch);
             let wrong = is_wrong(watch, now, t, inputs, raised);
@@ -97,7 +114,7 @@ impl Alarms {
         };
         if now.saturating_sub(since) >= watch.patience() {
             self.raised.push(watch);
-            out.push(GatewayEvent::AlarmRaised(watch.alarm()));
+            out.push(GatewayEvent::AlarmRaised(self.alarm(watch)));
         }
     }
 }
@@ -110,8 +127,9 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
             let needed = raised || inputs.sinks_below_target;
             t.is_airborne() && t.engine.is_some_and(|(_, e)| has_stopped(e, needed))
         }
-        Watch::EngineSuspected => t.is_airborne() && t.engine.is_none() && strains(t, inputs.sinks, raised),
+        Watch::EngineSuspected => t.is_airborne() && t.engine.is_none() && strains(t, inputs, raised),
         Watch::Sinks => inputs.sinks,
+        Watch::Slow => inputs.slow,
         Watch::StandsStill => inputs.stands_still,
         Watch::NotInCommand => inputs.not_in_command,
         Watch::EnergyLow => {
@@ -130,11 +148,14 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
     }
 }
 
-/// It sinks at full throttle; once that was seen, until it climbs again: on the way down nothing else shows it.
-fn strains(t: &Telemetry, sinks: bool, raised: bool) -> bool {
+/// It sinks or slows down at full throttle; once that was seen, until it climbs again: on the way down nothing else shows
+/// it. An autopilot that pulls up to keep the altitude gives away its speed first.
+fn strains(t: &Telemetry, inputs: AlarmInputs, raised: bool) -> bool {
     match raised {
-        true => t.fix.is_none_or(|(_, fix)| fix.down_mps > -CLIMBING_MPS),
-        false => sinks && t.throttle.is_some_and(|(_, throttle)| throttle > FULL_THROTTLE),
+        true => inputs.slow || t.fix.is_none_or(|(_, fix)| fix.down_mps > -CLIMBING_MPS),
+        false => {
+            (inputs.sinks || inputs.slow) && t.throttle.is_some_and(|(_, throttle)| throttle > FULL_THROTTLE)
+        }
     }
 }
 
@@ -155,7 +176,6 @@ fn is_stale(now: Time, t: &Telemetry) -> bool {
 mod tests {
     use super::*;
     use crate::gateway::order::{Fix, Mode, Report};
-    use geometry::LatLon;
     use usal::contract::{Engine, Gps, Power};
 
     /// Ten seconds of a good flight at 10 Hz, then ten with a fault, then ten good ones again.
@@ -268,6 +288,9 @@ mod tests {
         let events =
             story(&[(20, sinks, throttle(0.5)), (100, sinks, throttle(1.0)), (50, well, moving(3.0))]);
         assert_eq!(events, [(50, "+sinks".into()), (70, "+engine-suspected".into()), (120, "-sinks".into())]);
+        let slow = AlarmInputs { slow: true, ..AlarmInputs::default() };
+        let events = story(&[(20, slow, throttle(0.5)), (40, slow, throttle(1.0)), (20, slow, moving(-1.0))]);
+        assert_eq!(events, [(50, "+slow".into()), (70, "+engine-suspected".into())]);
         let climbing = story(&[(100, sinks, throttle(1.0)), (5, well, moving(-1.0))]);
         assert!(climbing.contains(&(100, "-engine-suspected".into())), "{climbing:?}");
     }
@@ -286,6 +309,19 @@ mod tests {
         let flooded = AlarmInputs { flooded: true, ..AlarmInputs::default() };
         let events = story(&[(5, flooded, moving(0.0)), (2, AlarmInputs::default(), moving(0.0))]);
         assert_eq!(events, [(0, "+port-flooded".into()), (5, "-port-flooded".into())]);
+    }
+
+    #[test]
+    fn what_stands_still_says_where_it_is() {
+        let (mut alarms, mut telemetry) = (Alarms::default(), Telemetry::default());
+        telemetry.take(Duration::ZERO, &moving(0.0));
+        let still = AlarmInputs { stands_still: true, ..AlarmInputs::default() };
+        for second in [0, 10] {
+            alarms.update(Duration::from_secs(second), &telemetry, still, &mut vec![]);
+        }
+        let raised = alarms.raised();
+        let told = raised.iter().find(|a| a.id == "stands-still").unwrap();
+        assert!(told.advice.ends_with("It is at 37.00000, -84.00000."), "{}", told.advice);
     }
 
     #[test]

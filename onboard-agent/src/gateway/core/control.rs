@@ -109,6 +109,11 @@ impl Control {
         self.retry_at = None;
     }
 
+    /// The airspeed that the autopilot was told last, and confirmed, m/s.
+    pub fn confirmed_speed_mps(&self) -> Option<f64> {
+        self.speed_mps
+    }
+
     /// A change of mode is on its way.
     pub fn mode_pending(&self) -> bool {
         !self.confirmed

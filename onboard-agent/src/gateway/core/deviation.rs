@@ -13,6 +13,8 @@ const TROUBLE_M: f64 = 30.0;
 const TROUBLE_MPS: f64 = 1.0;
 /// A circle is level: it does not sink faster than this, m/s.
 const LEVEL_MPS: f64 = 2.0;
+/// Slower than this share of the airspeed that was commanded, something holds it back: a climb takes less.
+const SLOW: f64 = 0.7;
 /// Slower than this nothing with wings flies, neither over the ground nor through the air, m/s.
 const STANDING_MPS: f64 = 1.5;
 
@@ -24,8 +26,7 @@ impl Gateway {
 
     /// It sinks although it was told to fly higher, or to circle.
     pub(super) fn sinks(&self) -> bool {
-        use GatewayState::{Approach, Directed, Hold, Nav, SafeHold, SafeReturn};
-        if !matches!(self.state, Nav | Hold | Directed | Approach | SafeHold | SafeReturn) {
+        if !self.is_on_its_way() {
             return false;
         }
         match self.control.intent {
@@ -33,6 +34,19 @@ impl Gateway {
             Intent::Fly | Intent::Direct => self.is_below(TROUBLE_M, TROUBLE_MPS),
             Intent::Nothing | Intent::Return => false,
         }
+    }
+
+    /// It flies far slower through the air than it was told to.
+    pub(super) fn is_slow(&self) -> bool {
+        let (wanted, air) = (self.control.confirmed_speed_mps(), self.telemetry.air);
+        let slow = |wanted_mps: f64| air.is_some_and(|(_, air)| air.airspeed_mps < SLOW * wanted_mps);
+        self.is_on_its_way() && self.telemetry.is_airborne() && wanted.is_some_and(slow)
+    }
+
+    /// It flies by what was commanded, and neither takes off nor lands.
+    fn is_on_its_way(&self) -> bool {
+        use GatewayState::{Approach, Directed, Hold, Nav, SafeHold, SafeReturn};
+        matches!(self.state, Nav | Hold | Directed | Approach | SafeHold | SafeReturn)
     }
 
     /// It is armed in a state that flies, and does not move. On a runway it may: that is a take-off or a landing.

@@ -213,6 +213,7 @@ impl Gateway {
             stands_still: self.stands_still(),
             not_in_command: self.state == GatewayState::Manual,
             no_safe_runway: self.control.intent == Intent::Return,
+            slow: self.is_slow(),
             exposed: self.settings.exposed,
             other_fp_manager: self.fp_manager.has_heard_another(now),
             no_runway_stored: self.runways.is_empty() && self.fp_manager.plan.is_some(),

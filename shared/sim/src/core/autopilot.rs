@@ -63,6 +63,8 @@ pub struct Autopilot {
     pub guided: Option<Guided>,
     /// Satellite navigation works.
     pub gps_ok: bool,
+    /// Full throttle is only enough for the slowest airspeed.
+    pub iced: bool,
     rules: &'static Rules,
     mode: Mode,
     armed: bool,
@@ -91,6 +93,7 @@ impl Autopilot {
             run: Run::default(),
             guided: None,
             gps_ok: true,
+            iced: false,
             rules,
             mode: rules.first_mode,
             armed: false,
@@ -121,6 +124,9 @@ impl Autopilot {
         let (s, p, demand) = (self.aircraft.state(), self.aircraft.profile(), &self.demanded);
         if !self.armed || (s.on_ground && demand.airspeed_mps <= 0.0) {
             return 0.0;
+        }
+        if self.iced && !s.on_ground {
+            return 1.0;
         }
         // it does not try to climb better than the aircraft can; on the take-off roll it gives all
         let climb_mps = if s.on_ground { p.max_climb_mps } else { demand.climb_mps.min(p.max_climb_mps) };
@@ -283,6 +289,9 @@ impl Autopilot {
         // without power it comes down, and the only ground known is home's
         if self.powerless() || !self.armed {
             demand.ground_amsl_m.get_or_insert(self.home.altitude_amsl_m);
+        }
+        if self.iced {
+            demand.airspeed_mps = demand.airspeed_mps.min(self.aircraft.profile().min_airspeed_mps);
         }
         self.aircraft.step(dt_s, &demand, &self.wind);
         self.disarm_when_landed(dt_s, &demand);

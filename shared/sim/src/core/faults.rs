@@ -26,6 +26,8 @@ pub enum Fault {
     Silence,
     /// Nothing says how fast the engine turns.
     NoRpm,
+    /// Ice: full throttle is only enough for the slowest airspeed.
+    Ice,
 }
 
 impl Fault {
@@ -39,6 +41,7 @@ impl Fault {
             Fault::LowBattery => "low-battery",
             Fault::Silence => "silence",
             Fault::NoRpm => "no-rpm",
+            Fault::Ice => "ice",
         }
     }
 }
@@ -75,7 +78,7 @@ impl fmt::Display for FaultRequest {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{0:?} is no fault; write one of packet-loss=SHARE, duplicate=SHARE, reorder=SHARE (shares from 0 to 1), gps-loss, \
-     engine-out, low-battery, silence, no-rpm, then @SECOND and +SECONDS if it has its time, as in silence@120+10"
+     engine-out, low-battery, silence, no-rpm, ice, then @SECOND and +SECONDS if it has its time, as in silence@120+10"
 )]
 pub struct FaultSyntax(String);
 
@@ -108,6 +111,7 @@ impl FromStr for FaultRequest {
             ("low-battery", _, None) => Fault::LowBattery,
             ("silence", _, None) => Fault::Silence,
             ("no-rpm", _, None) => Fault::NoRpm,
+            ("ice", _, None) => Fault::Ice,
             _ => return Err(bad()),
         };
         Ok(Self { fault, at_s, for_s })
@@ -133,6 +137,8 @@ pub struct Effects {
     pub low_battery: bool,
     /// No message says how fast the engine turns.
     pub no_rpm: bool,
+    /// Full throttle is only enough for the slowest airspeed.
+    pub ice: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -178,6 +184,7 @@ impl Schedule {
                 Fault::LowBattery => effects.low_battery = true,
                 Fault::Silence => effects.silent = true,
                 Fault::NoRpm => effects.no_rpm = true,
+                Fault::Ice => effects.ice = true,
             }
         }
         effects
@@ -256,6 +263,7 @@ mod tests {
             "engine-out",
             "low-battery@1.5+2",
             "silence@120+10",
+            "ice@60",
         ] {
             let request: FaultRequest = text.parse().unwrap();
             assert_eq!(request.to_string(), text);

@@ -203,6 +203,7 @@ impl Simulator {
         self.effects = new;
         self.autopilot.gps_ok = !new.gps_lost;
         self.autopilot.aircraft.set_engine_healthy(!new.engine_out);
+        self.autopilot.iced = new.ice;
         if new.low_battery && !old.low_battery {
             self.autopilot.aircraft.set_battery_share(LOW_BATTERY_SHARE);
         }

@@ -22,6 +22,8 @@ pub enum Watch {
     Disobeys,
     /// It sinks below what was commanded.
     Sinks,
+    /// It is far slower than what was commanded.
+    Slow,
     /// It ought to fly and does not move.
     StandsStill,
     /// Somebody else steers.
@@ -53,7 +55,7 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 16] = [
+pub const WATCHES: [Watch; 17] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
@@ -62,6 +64,7 @@ pub const WATCHES: [Watch; 16] = [
     Watch::PositionStale,
     Watch::Disobeys,
     Watch::Sinks,
+    Watch::Slow,
     Watch::StandsStill,
     Watch::NotInCommand,
     Watch::NoSafeRunway,
@@ -142,6 +145,15 @@ const WORDS: [Words; WATCHES.len()] = [
         severity: Severity::Warning,
         source: "autopilot",
         advice: "The aircraft sinks below the altitude that it was told to fly at. Look at airspeed, engine and ice; be ready to take over by hand.",
+        cause: None,
+        patience: Duration::from_secs(5),
+    },
+    Words {
+        watch: Watch::Slow,
+        id: "slow",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "The aircraft flies far slower than it was told to. Look at engine, airspeed sensor and ice; be ready to take over by hand.",
         cause: None,
         patience: Duration::from_secs(5),
     },

@@ -427,6 +427,17 @@ fn an_engine_that_fails_and_has_no_rpm_reading_is_suspected_before_the_ground() 
     assert!(flight.sim.autopilot.aircraft.state().altitude_amsl_m > 400.0);
 }
 
+/// As ArduPlane does with a stopped engine: it pulls up to keep the altitude, and gives away its speed first.
+#[test]
+fn an_aircraft_that_gets_slow_at_full_throttle_is_told_and_its_engine_suspected() {
+    let mut flight = Flight::on_zigzag(10, &["no-rpm", "ice@90"], 40, 300.0);
+    let raised = |f: &Flight, id: &str| {
+        f.events.iter().any(|(_, e)| matches!(e, GatewayEvent::AlarmRaised(a) if a.id == id))
+    };
+    flight.run_until(110.0, "slow", |f| raised(f, "slow") && raised(f, "engine-suspected"));
+    assert!(!raised(&flight, "sinks"), "it has lost no height yet");
+}
+
 #[test]
 fn somebody_else_in_command_is_an_alarm_until_the_plan_is_flown_again() {
     let mut flight = Flight::on_zigzag(7, &[], 30, 300.0);
