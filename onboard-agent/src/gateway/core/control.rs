@@ -212,21 +212,28 @@ impl Gateway {
 
     /// A gateway that starts while the aircraft flies: it finds out what is flown before it acts.
     fn meet_in_flight(&mut self, out: &mut Vec<Output>) {
+        use GatewayState::{Manual, Off, Stop};
         let unknown = !self.buffer.course().aboard && self.control.intent == Intent::Nothing;
         let aloft = self.telemetry.is_airborne() && self.telemetry.on_ground == Some(false);
-        if is_flying(self.state) || !unknown || !aloft || self.control.adopt.is_some() {
+        if !unknown || !aloft || self.control.adopt.is_some() {
             return;
         }
-        match self.telemetry.mode {
-            Some(Mode::Waypoints | Mode::Hold | Mode::Direct) => {
-                let known = self.adopting.as_ref().map_or_else(Vec::new, |k| k.waypoints.clone());
-                self.control.adopting = self.buffer.number(known);
-                let order = Order::Adopt(self.control.adopting.clone());
-                self.control.adopt = Some(self.order(order, out));
+        match (self.state, self.telemetry.mode) {
+            (Off | Stop, Some(Mode::Waypoints | Mode::Hold | Mode::Direct)) => self.ask_what_flies(out),
+            (Off | Stop, Some(_)) => {
+                self.change(Trigger::PilotTook, "met in flight under a pilot's control", out);
             }
-            Some(_) => self.change(Trigger::PilotTook, "met in flight under a pilot's control", out),
-            None => {}
+            // he gives back what an earlier gateway had put aboard
+            (Manual, Some(Mode::Waypoints)) if self.adopting.is_some() => self.ask_what_flies(out),
+            _ => {}
         }
+    }
+
+    fn ask_what_flies(&mut self, out: &mut Vec<Output>) {
+        let known = self.adopting.as_ref().map_or_else(Vec::new, |k| k.waypoints.clone());
+        self.control.adopting = self.buffer.number(known);
+        let order = Order::Adopt(self.control.adopting.clone());
+        self.control.adopt = Some(self.order(order, out));
     }
 
     /// The pilot gave the aircraft back when he switched to the waypoints: they are what is wanted again.

@@ -192,7 +192,8 @@ impl Gateway {
         self.control.forget(id);
         let mut waypoints = std::mem::take(&mut self.control.adopting);
         let known = self.adopting.take();
-        let intent = known.as_ref().map_or(Intent::Fly, |k| k.intent);
+        let given_back = |intent: &Intent| *intent == Intent::Nothing && self.flies_waypoints();
+        let intent = known.as_ref().map(|k| k.intent).filter(|i| !given_back(i)).unwrap_or(Intent::Fly);
         self.fp_manager.plan = known.as_ref().and_then(|k| k.plan.clone()).or(self.fp_manager.plan.take());
         if let Some(count) = aboard {
             waypoints.truncate(count);
@@ -210,10 +211,10 @@ impl Gateway {
             disobeys_since: self.control.disobeys_since,
             sinks_below_target: self.sinks_below_target(),
             sinks: self.sinks(),
+            slow: self.is_slow(),
             stands_still: self.stands_still(),
             not_in_command: self.state == GatewayState::Manual,
             no_safe_runway: self.control.intent == Intent::Return,
-            slow: self.is_slow(),
             exposed: self.settings.exposed,
             other_fp_manager: self.fp_manager.has_heard_another(now),
             no_runway_stored: self.runways.is_empty() && self.fp_manager.plan.is_some(),

@@ -11,6 +11,8 @@ use usal::contract::{GatewayRequest, GatewayState, SafeParameters, SafeRunway};
 const DIRECT_M: f64 = 20_000.0;
 /// Most runways that are stored.
 const MAX_RUNWAYS: usize = 32;
+/// Why nothing can be gone on with.
+const NO_WAYPOINTS: &str = "There are no waypoints to go on with.";
 
 impl Gateway {
     /// Does what is asked, or says why not.
@@ -23,7 +25,7 @@ impl Gateway {
         match asked {
             GatewayRequest::Launch => self.launch(out),
             GatewayRequest::Hold => self.hold(out),
-            GatewayRequest::Resume => self.resume(out),
+            GatewayRequest::Resume => self.resume(now, out),
             GatewayRequest::Direct { heading_deg, altitude_amsl_m, airspeed_mps } => {
                 self.direct(heading_deg, altitude_amsl_m, airspeed_mps, out)
             }
@@ -79,14 +81,30 @@ impl Gateway {
         Ok(())
     }
 
-    fn resume(&mut self, out: &mut Vec<Output>) -> Result<(), String> {
+    fn resume(&mut self, now: Time, out: &mut Vec<Output>) -> Result<(), String> {
         if self.state != GatewayState::Manual {
             self.is_free()?;
         }
+        if self.buffer.is_empty() && self.state == GatewayState::Manual {
+            return self.take_over(now, out);
+        }
         if self.buffer.is_empty() {
-            return Err("There are no waypoints to go on with.".into());
+            return Err(NO_WAYPOINTS.into());
         }
         self.control.set_intent(Intent::Fly, self.telemetry.mode);
+        out.push(Output::Save);
+        Ok(())
+    }
+
+    /// An aircraft that somebody else flies, with nothing of ours aboard, circles until the FP Manager that waits has joined
+    /// and sent waypoints.
+    fn take_over(&mut self, now: Time, out: &mut Vec<Output>) -> Result<(), String> {
+        if !self.fp_manager.waits_to_join(now, &self.safe) || !self.telemetry.is_airborne() {
+            return Err(NO_WAYPOINTS.into());
+        }
+        self.control.set_intent(Intent::Hold, self.telemetry.mode);
+        self.fp_manager.expect(now);
+        self.fp_manager.awaited_since = Some(now);
         out.push(Output::Save);
         Ok(())
     }

@@ -107,7 +107,7 @@ pub fn next(from: GatewayState, trigger: Trigger) -> Option<GatewayState> {
         (TakeOff | Hold | Directed | Manual | Approach | Land, Cruising) => Nav,
         (TakeOff | Nav | Hold | Directed | Manual | Land, Approaching) => Approach,
         (TakeOff | Nav | Hold | Directed | Manual | Approach, Landing) => Land,
-        (TakeOff | Nav | Directed | Approach | Land, HoldConfirmed) => Hold,
+        (TakeOff | Nav | Directed | Manual | Approach | Land, HoldConfirmed) => Hold,
         (TakeOff | Nav | Hold | Approach | Land, DirectConfirmed) => Directed,
 
         // Safe mode; a landing is finished first, and a take-off until clear of the ground
@@ -147,7 +147,7 @@ mod tests {
     Nav          . . . . Approach Land Stop Hold Directed Manual SafeHold . . . Terminate
     Hold         . . TakeOff Nav Approach Land Stop . Directed Manual SafeHold . . . Terminate
     Directed     . . TakeOff Nav Approach Land Stop Hold . Manual SafeHold . . . Terminate
-    Manual       . . TakeOff Nav Approach Land Stop . . . . . . . Terminate
+    Manual       . . TakeOff Nav Approach Land Stop Hold . . . . . . Terminate
     Approach     . . . Nav . Land Stop Hold Directed Manual SafeHold . . . Terminate
     Land         . . . Nav Approach . Stop Hold Directed Manual . . . . Terminate
     SafeHold     . . . . . . Stop . . Manual . SafeReturn Nav Hold Terminate

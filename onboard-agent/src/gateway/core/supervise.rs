@@ -142,7 +142,8 @@ impl Gateway {
 
     /// When an FP Manager that was given the aircraft back has to have sent waypoints.
     pub(super) fn waypoints_due(&self) -> Option<Time> {
-        self.fp_manager.awaited_since.map(|since| since + seconds(self.safe.t2_s))
+        let since = self.fp_manager.awaited_since.filter(|_| self.state == GatewayState::Hold);
+        since.map(|since| since + seconds(self.safe.t2_s))
     }
 
     /// The end of the plan is in the buffer, or was flown.

@@ -307,4 +307,5 @@ mod met_in_flight;
 mod px4;
 mod runways;
 mod strangers;
+mod taken_over;
 mod tests;
