@@ -131,6 +131,10 @@ impl GatewaySession {
 
     /// Its state, as published.
     pub fn state(&mut self, now: Time, state: GatewayState) {
+        if state == GatewayState::Manual && self.state != Some(state) {
+            // whoever asked for that did not mean to take the aircraft from the pilot
+            self.unwant(GatewayRequest::Resume);
+        }
         self.state = Some(state);
         // neither is given up as long as it makes sense
         self.unwant(if is_down(state) { GatewayRequest::Safe } else { GatewayRequest::Launch });
@@ -224,11 +228,35 @@ impl GatewaySession {
         }
     }
 
-    /// The executor flies on: if the gateway holds, it should too.
+    /// The executor flies on: if the gateway holds or follows a direct command, it should too.
     pub fn flies_on(&mut self) {
-        if self.state == Some(GatewayState::Hold) || self.wanted() == Some(&GatewayRequest::Hold) {
+        let led_away = matches!(self.state, Some(GatewayState::Hold | GatewayState::Directed));
+        if led_away || self.wanted() == Some(&GatewayRequest::Hold) {
             self.want(GatewayRequest::Resume);
         }
+    }
+
+    /// The operator wants the plan flown on. False: nobody but the plan leads the aircraft, as far as is known.
+    pub fn take_back(&mut self) -> bool {
+        let pilot = self.state == Some(GatewayState::Manual);
+        if pilot {
+            self.want(GatewayRequest::Resume);
+        } else {
+            self.flies_on();
+        }
+        self.wanted() == Some(&GatewayRequest::Resume)
+    }
+
+    /// What is to be asked of a gateway whose aircraft the pilot has: to take it back, if the operator wants that. It can't be
+    /// joined before.
+    pub fn request_back(&mut self, now: Time) -> Option<GatewayRequest> {
+        let due = |pending: &&Pending| pending.request == GatewayRequest::Resume && pending.is_due(now);
+        if self.asking || self.state != Some(GatewayState::Manual) {
+            return None;
+        }
+        let request = self.wanted.as_ref().filter(due)?.request.clone();
+        self.asking = true;
+        Some(request)
     }
 
     /// The request to be made now, if any; runways come first, and all but them, a hold and Safe mode
@@ -300,6 +328,19 @@ mod tests {
             Some(&GatewayRequest::Hold),
             "on the ground nobody waits for it"
         );
+    }
+
+    #[test]
+    fn a_resume_that_was_on_its_way_takes_nothing_from_the_pilot() {
+        let mut session = GatewaySession::default();
+        session.state(Duration::ZERO, GatewayState::Hold);
+        session.flies_on();
+        assert_eq!(session.wanted(), Some(&GatewayRequest::Resume));
+        session.state(Duration::ZERO, GatewayState::Manual);
+        assert_eq!(session.request_back(Duration::ZERO), None);
+        assert!(session.take_back(), "but who asks for it now gets it");
+        session.state(Duration::ZERO, GatewayState::Manual);
+        assert_eq!(session.request_back(Duration::ZERO), Some(GatewayRequest::Resume));
     }
 
     fn answer(instance: Option<&str>) -> Option<JoinAnswer> {

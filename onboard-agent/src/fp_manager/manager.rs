@@ -67,7 +67,7 @@ pub struct Manager {
     pub(super) steered: Token,
     pub(super) last_request: u64,
     /// Commands that may have taken the flight elsewhere.
-    turns: u64,
+    pub(super) turns: u64,
     /// The time of day when it was received last, seconds since 1970.
     day: Option<(Time, i64)>,
     /// As recorded last.
@@ -179,53 +179,6 @@ impl Manager {
         }
     }
 
-    pub(super) fn order(
-        &mut self,
-        now: Time,
-        command: Command,
-        by: &str,
-        out: &mut Vec<Effect>,
-    ) -> Result<(), Refusal> {
-        let (starts, rewinds) = (command == Command::Start, command == Command::Rewind);
-        if rewinds && !self.gateway_session.stands_disarmed() {
-            let reason =
-                "the gateway does not say that the aircraft stands disarmed on the ground: wait for that";
-            return Err(Refusal { code: "in-the-air".into(), reason: reason.into() });
-        }
-        // writes are reviewed one after the other
-        self.turns += u64::from(!matches!(command, Command::SetVariable { .. }));
-        let in_emergency = self.is_in_emergency();
-        let request = self.next_request();
-        let answer = self.step(now, Input::Command { request, by: by.into(), command }, out);
-        answer.unwrap_or_else(|| Err(unanswered())).map(drop).map_err(|r| self.explained(r))?;
-        if starts {
-            self.gateway_session.want(GatewayRequest::Launch);
-            // whatever became of them since the commit
-            self.want_runways();
-            self.alarms.new_flight();
-            self.plan_history.new_flight();
-        } else if rewinds {
-            // nothing of the earlier flight is wanted any more
-            self.gateway_session.forget_wanted();
-        } else if in_emergency && !self.is_in_emergency() {
-            self.alarms.read_again();
-        }
-        self.send(now, out);
-        Ok(())
-    }
-
-    /// Without a plan because the earlier one could not be restored, that is said with every refusal.
-    fn explained(&self, refusal: Refusal) -> Refusal {
-        let reason = self.without_past.as_ref().filter(|_| self.executor.program().is_none());
-        match reason {
-            Some(why) => Refusal {
-                reason: format!("{}. The flight before the restart is lost: {why}", refusal.reason),
-                ..refusal
-            },
-            None => refusal,
-        }
-    }
-
     /// A plan is put forward; `based_on` is the revision that the proposer has seen.
     ///
     /// # Errors
@@ -265,7 +218,7 @@ impl Manager {
         self.send(now, out);
     }
 
-    fn is_in_emergency(&self) -> bool {
+    pub(super) fn is_in_emergency(&self) -> bool {
         self.executor.status().emergency.is_some()
     }
 
@@ -289,7 +242,7 @@ impl Manager {
         }
     }
 
-    fn next_request(&mut self) -> RequestId {
+    pub(super) fn next_request(&mut self) -> RequestId {
         self.last_request += 1;
         RequestId(self.last_request)
     }
@@ -352,6 +305,7 @@ impl Manager {
             out.push(Effect::Join(self.presentation()));
         }
         if !self.gateway_session.is_joined() {
+            out.extend(self.gateway_session.request_back(now).map(Effect::Request));
             return;
         }
         if let Some(feed) = self.feeder.send(now) {
@@ -397,7 +351,7 @@ fn reply_id(by: &str, id: &str, command: &Command) -> Option<String> {
     Some(format!("{by}/{id}/{:08x}", crc32fast::hash(&asked)))
 }
 
-fn unanswered() -> Refusal {
+pub(super) fn unanswered() -> Refusal {
     Refusal {
         code: "unanswered".into(),
         reason: "the executor gave no answer; look at the log and try again".into(),

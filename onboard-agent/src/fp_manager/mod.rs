@@ -1,4 +1,4 @@
-//! The FP Manager: flies the plan. Pure parts (`manager`, `gateway_events`, `joining`, `feeder`, `gateway_session`, `plan_history`,
+//! The FP Manager: flies the plan. Pure parts (`manager`, `orders`, `gateway_events`, `joining`, `feeder`, `gateway_session`, `plan_history`,
 //! `aircraft`, `alarms`, `runways`, `timeline`) around the executor, the `journal` by which `restart` goes on after a
 //! crash; `service` declares it, and the shell is the journal's disk.
 
@@ -13,6 +13,7 @@ mod gateway_session;
 mod joining;
 pub mod journal;
 mod manager;
+mod orders;
 mod plan_history;
 mod proposals;
 mod publish;

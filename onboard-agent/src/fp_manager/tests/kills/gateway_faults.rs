@@ -182,6 +182,45 @@ fn holding_when_safe_mode_ends_it_holds_again() {
     }
 }
 
+#[test]
+fn resume_is_one_word_whoever_led_the_aircraft_away() {
+    for by in [GatewayState::Hold, GatewayState::Directed, GatewayState::Manual] {
+        for held in [false, true] {
+            let mut flight = flown(10, STARTED);
+            if held {
+                flight.ask_once(&What::Command(Command::Hold), "hold").unwrap();
+            }
+            run(&mut flight, 2);
+            flight.gateway.state = by;
+            run(&mut flight, 4);
+            let before = flight.gateway.flown.len();
+            flight.ask_once(&What::Command(Command::Resume), "resume").unwrap();
+            run(&mut flight, 6);
+            let reached = (flight.gateway.state, flight.gateway.flown.len() > before);
+            assert_eq!(reached, (GatewayState::Nav, true), "{by:?}, held: {held}");
+        }
+    }
+}
+
+#[test]
+fn a_command_to_lead_elsewhere_ends_a_direct_command_but_takes_nothing_from_the_pilot() {
+    let home = Command::Emergency { cause: flight_plan::Cause::Operator, plan: None };
+    for command in [Command::GoTo { leg: Id::new("back") }, home] {
+        let led_away_and_told = |by| {
+            let mut flight = flown(10, STARTED);
+            flight.gateway.state = by;
+            run(&mut flight, 4);
+            flight.ask_once(&What::Command(command.clone()), "elsewhere").unwrap();
+            flight
+        };
+        let mut directed = led_away_and_told(GatewayState::Directed);
+        run_until(&mut directed, "Nav", |f| f.gateway.state == GatewayState::Nav);
+        let mut piloted = led_away_and_told(GatewayState::Manual);
+        run(&mut piloted, 6);
+        assert_eq!(piloted.gateway.state, GatewayState::Manual, "{command:?}");
+    }
+}
+
 /// What is reported of legs and actions, and what is asked of services.
 fn reports_of_plan(flight: &Flight) -> usize {
     use Event::*;
