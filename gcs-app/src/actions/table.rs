@@ -325,7 +325,11 @@ fn in_the_air(scene: &Scene<'_>, command: PlanCommand) -> Asked {
 }
 
 fn resume(scene: &Scene<'_>) -> Asked {
-    if scene.vehicle.phase() == Phase::Holding { plan(PlanCommand::Resume) } else { Err("Nothing is held") }
+    if flight::can_resume(scene) {
+        plan(PlanCommand::Resume)
+    } else {
+        Err("The plan is being flown, or none is")
+    }
 }
 
 fn start(scene: &Scene<'_>) -> Asked {

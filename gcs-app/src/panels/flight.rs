@@ -159,7 +159,7 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if flying && ui.button("⏸ Hold").clicked() {
         queue.plan(Command::Hold);
     }
-    if phase == Phase::Holding && ui.add(super::primary_button("▶ Resume", p)).clicked() {
+    if can_resume(scene) && ui.add(super::primary_button("▶ Resume", p)).clicked() {
         queue.plan(Command::Resume);
     }
     if flying && ui.button("⏭ Skip leg").on_hover_text("Shows what would follow, then asks").clicked() {
@@ -187,6 +187,17 @@ fn nothing_to_do(scene: &Scene<'_>) -> Option<&'static str> {
         Phase::Grounded if !can_launch(scene) => Some("Landed: the next flight waits for its start"),
         Phase::Idle if !can_launch(scene) => Some("The plan aboard was not started"),
         _ => None,
+    }
+}
+
+/// The plan holds, or is not what leads the aircraft: the gateway holds or follows a direct command, or a pilot flies.
+pub fn can_resume(scene: &Scene<'_>) -> bool {
+    use GatewayState::{Directed, Hold, Manual};
+    let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
+    match scene.vehicle.phase() {
+        Phase::Holding => true,
+        Phase::Flying | Phase::AwaitingDecision => matches!(state, Some(Hold | Directed | Manual)),
+        _ => false,
     }
 }
 
