@@ -4,7 +4,7 @@
 use crate::panels::Scene;
 use crate::units::Units;
 use flight_plan::describe::Subject;
-use flight_plan::{Altitude, AltitudeReference, FlightPlan, Leg, Value, transform};
+use flight_plan::{Altitude, AltitudeReference, FlightPlan, Leg, Runway, Value, transform};
 use geometry::LatLon;
 
 /// What came of it.
@@ -23,7 +23,7 @@ pub fn recounted(scene: &Scene<'_>, of: &Subject, altitude: &Altitude, to: Altit
     };
     let Value::Constant(metres) = altitude.metres else { return kept("it is a formula") };
     let ground = ground_amsl_m(scene, of);
-    let datum = |reference| datum_amsl_m(scene.document.plan(), reference, ground);
+    let datum = |reference| datum_amsl_m(scene.document.plan(), of, reference, ground);
     match (datum(altitude.reference), datum(to)) {
         (Ok(from_m), Ok(to_m)) => Recounted {
             // to 10 cm: there and back is the same number
@@ -37,17 +37,28 @@ pub fn recounted(scene: &Scene<'_>, of: &Subject, altitude: &Altitude, to: Altit
 /// Where a reference is, metres AMSL.
 fn datum_amsl_m(
     plan: &FlightPlan,
+    of: &Subject,
     reference: AltitudeReference,
     ground: Option<f64>,
 ) -> Result<f64, &'static str> {
     match reference {
         AltitudeReference::Amsl => Ok(0.0),
         AltitudeReference::Agl => ground.ok_or("nothing is known of the ground there"),
-        AltitudeReference::Home => plan
-            .home()
+        AltitudeReference::Home => home(plan, of)
             .map(|runway| runway.elevation_amsl_m)
-            .ok_or("home is the runway of the take-off, and there is none"),
+            .ok_or("home is the runway of the take-off, and there is none, or one at another elevation"),
     }
+}
+
+/// Of a leg or stage of the main plan, that of its flight; else that of all flights.
+fn home<'a>(plan: &'a FlightPlan, of: &Subject) -> Option<&'a Runway> {
+    let stage = match of {
+        Subject::Leg(id) => plan.leg(id).map(|context| &context.stage.id),
+        Subject::Stage(id) => Some(id),
+        _ => None,
+    };
+    let index = stage.and_then(|id| plan.stages.iter().position(|stage| stage.id == *id));
+    index.map_or_else(|| plan.common_home(), |index| plan.home_at(index))
 }
 
 /// The ground under one place is meant, and the leg may lead over other ground.
@@ -83,4 +94,28 @@ fn place(plan: &FlightPlan, of: &Subject) -> Option<LatLon> {
 fn place_of_leg(plan: &FlightPlan, leg: &Leg) -> Option<LatLon> {
     let own = transform::places(plan, leg).first().copied();
     own.or_else(|| leg.body().iter().find_map(|inner| place_of_leg(plan, inner)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn home_is_the_field_from_which_the_flight_took_off() {
+        let plan = flight_plan::read(
+            r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><runways>
+              <runway id="low" lat="36.3" lon="-84.1" elevation="300" heading="52" length="600"/>
+              <runway id="high" lat="36.4" lon="-84.1" elevation="500" heading="52" length="600"/></runways><mainPlan>
+              <stage id="to1" type="take-off" runway="low"/><stage id="one" type="mission"><TF id="a" lat="36.3" lon="-84.2"/></stage>
+              <stage id="land1" type="land" runway="high"/><stage id="to2" type="take-off" runway="high"/>
+              <stage id="two" type="mission"><TF id="b" lat="36.4" lon="-84.2"/></stage>
+              <stage id="land2" type="land" runway="low"/></mainPlan></flightPlan>"#,
+        )
+        .plan;
+        let of = |subject| home(&plan, &subject).map(|runway| runway.id.to_string());
+        assert_eq!(of(Subject::Leg("a".into())).as_deref(), Some("low"));
+        assert_eq!(of(Subject::Leg("b".into())).as_deref(), Some("high"));
+        assert_eq!(of(Subject::Stage("two".into())).as_deref(), Some("high"));
+        assert_eq!(of(Subject::Zone("z".into())), None, "it is of both flights");
+    }
 }
