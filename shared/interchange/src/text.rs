@@ -1,4 +1,4 @@
-//! Bytes as text: UTF-8, or the one-byte encoding of older Western programs, which says so.
+//! Bytes as text: UTF-8, UTF-16 by its mark, or the one-byte encoding of older Western programs; the last two are told.
 
 use crate::Error;
 use crate::note::Notes;
