@@ -40,7 +40,8 @@ pub struct Options {
     /// Where the FP Manager and storage find the gateway [default: as --listen].
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Option<String>,
-    /// The autopilot: udp:HOST:PORT (listen there), udpout:HOST:PORT or tcp:HOST:PORT [default: udp:127.0.0.1:14550].
+    /// The autopilot: udp:HOST:PORT (listen there), udpout:HOST:PORT, tcp:HOST:PORT or serial:DEVICE:BAUD, as
+    /// serial:/dev/ttyUSB0:57600 [default: udp:127.0.0.1:14550].
     #[arg(long, value_name = "ADDRESS")]
     pub autopilot: Option<String>,
     /// The autopilot's driver, by its name.

@@ -10,8 +10,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use tokio::sync::mpsc;
 use usal::contract::{
-    Ahead, Air, Attitude, Engine, GatewayEvent, GatewayRequest, GatewayStatus, Gps, Navigation,
-    PlanVariables, Position, Power, Propose, Recording, Stamped,
+    Ahead, Air, Attitude, AutopilotLinks, Engine, GatewayEvent, GatewayRequest, GatewayStatus, Gps,
+    Navigation, PlanVariables, Position, Power, Propose, Recording, Stamped,
 };
 
 /// Which connection. Counts up, never used twice in a run: of two links to a vehicle the greater one holds.
@@ -136,6 +136,7 @@ pub enum Telemetry {
     Gps(Stamped<Gps>),
     Engine(Stamped<Engine>),
     Power(Stamped<Power>),
+    Links(Stamped<AutopilotLinks>),
     Navigation(Stamped<Navigation>),
     Gateway(Stamped<GatewayStatus>),
     Status(Box<Stamped<Status>>),

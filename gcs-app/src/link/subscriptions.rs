@@ -56,6 +56,7 @@ const DECODED: &[Decoded] = &[
     variable!(gateway::GPS, Telemetry::Gps),
     variable!(gateway::ENGINE, Telemetry::Engine),
     variable!(gateway::POWER, Telemetry::Power),
+    variable!(gateway::LINKS, Telemetry::Links),
     variable!(gateway::NAVIGATION, Telemetry::Navigation),
     variable!(gateway::STATE, Telemetry::Gateway),
     events!(gateway::EVENTS, Telemetry::GatewayEvent),

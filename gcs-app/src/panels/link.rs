@@ -1,5 +1,7 @@
-//! The link: which vehicle is shown, how its link does, and what was lost on it. It opens the list of
-//! vehicles and the form for another connection.
+//! The link: which vehicle is shown, how its link does, what was lost on it, and how its autopilot's links do (`autopilot`). It
+//! opens the list of vehicles and the form for another connection.
+
+mod autopilot;
 
 use super::{Scene, tour};
 use crate::command::{LinkCommand, Queue};
@@ -16,7 +18,9 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     let (symbol, state, colour) = style(scene.vehicle, scene.now_s, p);
     let name = scene.vehicles.shown_name().map_or_else(String::new, |name| format!("{name} · "));
-    let text = RichText::new(format!("{symbol} {name}{state}")).color(colour);
+    let autopilot = autopilot::short(scene.vehicle, scene.now_s);
+    let colour = if autopilot.is_empty() { colour } else { p.caution };
+    let text = RichText::new(format!("{symbol} {name}{state}{autopilot}")).color(colour);
     // who clicks into a field wants to type
     let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let (button, _) = MenuButton::new(text).config(stays).ui(ui, |ui| {
@@ -27,8 +31,8 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         form(ui, scene, queue);
     });
     tour::mark(ui.ctx(), tour::LINK, button.rect);
-    button.on_hover_text(details(scene.vehicle));
-    lost(ui, scene.vehicle);
+    button.on_hover_text(details(scene.vehicle, scene.now_s));
+    lost(ui, scene);
 }
 
 /// Symbol, words and colour of a vehicle's link.
@@ -46,17 +50,18 @@ fn style(vehicle: &Vehicle, now_s: f64, p: &Palette) -> (&'static str, String, C
     }
 }
 
-fn details(vehicle: &Vehicle) -> String {
+fn details(vehicle: &Vehicle, now_s: f64) -> String {
     let losses = vehicle.losses.text().map_or_else(String::new, |text| format!("\n{text}"));
-    format!("{}{losses}", vehicle.link.text())
+    let autopilot = autopilot::in_full(vehicle, now_s);
+    format!("{}{losses}{autopilot}", vehicle.link.text())
 }
 
 /// How many events are missing; nothing as long as none is.
-fn lost(ui: &mut Ui, vehicle: &Vehicle) {
-    let events = vehicle.losses.events;
+fn lost(ui: &mut Ui, scene: &Scene<'_>) {
+    let events = scene.vehicle.losses.events;
     if events > 0 {
         let text = RichText::new(format!("⚠ {events} lost")).color(theme::of(ui).caution);
-        ui.label(text).on_hover_text(details(vehicle));
+        ui.label(text).on_hover_text(details(scene.vehicle, scene.now_s));
     }
 }
 

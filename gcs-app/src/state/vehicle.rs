@@ -14,8 +14,8 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 use terrain::Terrain;
 use usal::contract::{
-    Ahead, Air, Alarm, Attitude, Engine, GatewayEvent, GatewayStatus, Gps, Navigation, PlanVariables,
-    Position, Power, Recording, Severity, Stamped,
+    Ahead, Air, Alarm, Attitude, AutopilotLinks, Engine, GatewayEvent, GatewayStatus, Gps, Navigation,
+    PlanVariables, Position, Power, Recording, Severity, Stamped,
 };
 
 /// A vehicle's name: what everything known of it is kept under.
@@ -62,6 +62,8 @@ pub struct Vehicle {
     pub engine: Option<Aged<Engine>>,
     /// Battery.
     pub power: Option<Aged<Power>>,
+    /// How the links between its gateway and its autopilot do.
+    pub links: Option<Aged<AutopilotLinks>>,
     /// Where it is going.
     pub navigation: Option<Aged<Navigation>>,
     /// What the gateway is doing.
@@ -208,6 +210,7 @@ impl Vehicle {
             Telemetry::Gps(v) => remember!(self.gps, v, now_s),
             Telemetry::Engine(v) => remember!(self.engine, v, now_s),
             Telemetry::Power(v) => remember!(self.power, v, now_s),
+            Telemetry::Links(v) => remember!(self.links, v, now_s),
             Telemetry::Navigation(v) => remember!(self.navigation, v, now_s),
             Telemetry::Gateway(v) => remember!(self.gateway, v, now_s),
             Telemetry::Status(v) => {

@@ -8,7 +8,7 @@ use flight_exec::{Command, Phase};
 use gcs_app::link::{Call, LinkEvent, LinkId, LinkState, Loss, Order, PlainValue, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Outcome};
 use std::sync::Arc;
-use usal::contract::{Recording, Stamped};
+use usal::contract::{AutopilotLink, AutopilotLinks, Recording, Stamped};
 
 const ONE: LinkId = LinkId(1);
 const TWO: LinkId = LinkId(2);
@@ -158,6 +158,20 @@ fn services_are_shown_with_what_they_say_and_only_under_their_vehicle() {
     window.steps(3);
     tab(&mut window, "Services");
     assert!(!window.shows("my-camera") && !window.shows("plan · revision") && !window.shows("uav2-1"));
+}
+
+#[test]
+fn chip_tells_when_a_link_of_the_autopilot_is_lost() {
+    let mut window = two();
+    connected(&mut window, "uav2", TWO, 900.0);
+    let link = |alive| AutopilotLink { alive, in_use: alive, received: 9, ..AutopilotLink::default() };
+    for (links, shown) in [(vec![link(true)], false), (vec![link(true), link(false)], true)] {
+        let value = AutopilotLinks { links };
+        let stamped = Stamped { time_s: 1.0, validity_s: 3.0, value };
+        window.send_of("uav2", TWO, LinkEvent::Telemetry(Telemetry::Links(stamped)));
+        window.steps(2);
+        assert_eq!(window.shows("1 of 2 autopilot links"), shown);
+    }
 }
 
 #[test]

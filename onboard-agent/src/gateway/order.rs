@@ -5,7 +5,7 @@
 
 use geometry::LatLon;
 use std::borrow::Cow;
-use usal::contract::{Air, Attitude, Engine, Gps, Power, Waypoint};
+use usal::contract::{Air, Attitude, AutopilotLinks, Engine, Gps, Power, Waypoint};
 
 /// Monotonic time since an arbitrary start; in simulation, simulated time.
 pub type Time = std::time::Duration;
@@ -155,6 +155,8 @@ pub enum Report {
     },
     /// Whether it stands on the ground.
     OnGround(bool),
+    /// How the links to it do; no sign of life.
+    Links(AutopilotLinks),
     /// The autopilot started anew: nothing that was verified still holds.
     Rebooted,
     /// What kind of autopilot it is, and why it can't be flown if it can't.

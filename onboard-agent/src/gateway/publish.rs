@@ -13,6 +13,9 @@ pub fn show(now: Time, gateway: &Gateway, board: &mut Board) {
     board.measured(topic::GPS, t.gps);
     board.measured(topic::ENGINE, t.engine);
     board.measured(topic::POWER, t.power);
+    if let Some((looked, links)) = &t.links {
+        board.changing(topic::LINKS, *looked, |_| links.clone());
+    }
     let urgent = gateway.urgent();
     board.changing(topic::NAVIGATION, urgent, |_| gateway.navigation());
     board.changing(topic::STATE, urgent, |_| gateway.status(now));

@@ -80,7 +80,7 @@ impl Service for FcsGateway {
         match input {
             Input::Tick => self.station.tick(now),
             Input::Received(event, bytes) => {
-                self.station.receive(from_link(event, &bytes));
+                self.station.receive(0, from_link(event, &bytes));
                 self.process(now, out);
             }
             Input::Feed(asked) => self.feed(now, asked, out),

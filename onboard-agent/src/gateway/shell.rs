@@ -3,7 +3,7 @@
 use super::config::Config;
 use super::core::Settings;
 use super::door::Door;
-use super::driver::Registration;
+use super::driver::{Registration, Setup};
 use super::service::{FILE, FcsGateway, Input, Output};
 use super::station::Station;
 use crate::exposure::{WHAT_A_STRANGER_CAN_DO, is_loopback};
@@ -61,7 +61,8 @@ async fn open(
     let Config { vehicle, profile, terrain, .. } = config;
     let settings = Settings { vehicle, profile, terrain, exposed };
     let Registration { recognises, make, .. } = config.driver;
-    let station = Station::new(settings, restored, make(config.simulated));
+    let setup = Setup { lockstep: config.simulated, links: vec![config.autopilot.to_string()] };
+    let station = Station::new(settings, restored, make(&setup));
     Ok((FcsGateway::new(station, config.simulated), Outside { link, door, recognises, received: Vec::new() }))
 }
 

@@ -34,9 +34,9 @@ impl Station {
         &self.gateway
     }
 
-    /// Takes in what the link brought; [`Self::process`] handles it.
-    pub fn receive(&mut self, incoming: FromLink<'_>) {
-        self.driver.receive(incoming);
+    /// Takes in what a link brought, by its number; [`Self::process`] handles it.
+    pub fn receive(&mut self, link: usize, incoming: FromLink<'_>) {
+        self.driver.receive(link, incoming);
     }
 
     /// Goes through what was received, message by message, up to a step of the simulator: that has to be

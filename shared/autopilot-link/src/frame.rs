@@ -29,10 +29,16 @@ pub struct Frame<'a> {
     version: MavlinkVersion,
     /// Who sent it.
     pub sender: Sender,
+    /// Its number: the sender counts up by one on each link, and from 255 to 0.
+    pub sequence: u8,
     /// Message id.
     pub id: u32,
     /// Payload; MAVLink 2 cuts trailing zeros.
     pub payload: &'a [u8],
+    /// Its checksum.
+    pub checksum: u16,
+    /// The whole frame.
+    pub bytes: &'a [u8],
 }
 
 impl Frame<'_> {
@@ -53,6 +59,8 @@ pub struct Decoder {
     datagram: bool,
     /// Bytes that belonged to no good frame.
     pub ignored_bytes: u64,
+    /// What looked like a frame and had another checksum: damaged, or of a kind that the dialect does not know.
+    pub bad_frames: u64,
 }
 
 /// What stands at the beginning of some bytes.
@@ -60,6 +68,8 @@ enum Cut {
     NeedMore,
     /// So many bytes belong to no frame.
     Skip(usize),
+    /// It begins as a frame does, and its checksum is wrong.
+    Bad,
     Frame(Shape),
 }
 
@@ -100,6 +110,10 @@ impl Decoder {
             match cut(rest) {
                 Cut::Frame(shape) => break shape,
                 Cut::Skip(bytes) => self.skip(bytes),
+                Cut::Bad => {
+                    self.bad_frames += 1;
+                    self.skip(1);
+                }
                 Cut::NeedMore if self.datagram => self.skip(rest.len()),
                 Cut::NeedMore => return None,
             }
@@ -142,7 +156,7 @@ fn cut(bytes: &[u8]) -> Cut {
     match bytes.get(..shape.total) {
         None => Cut::NeedMore,
         Some(frame) if is_intact(shape, frame) => Cut::Frame(shape),
-        Some(_) => Cut::Skip(1),
+        Some(_) => Cut::Bad,
     }
 }
 
@@ -164,13 +178,17 @@ fn message_id(version: MavlinkVersion, frame: &[u8]) -> Option<u32> {
 }
 
 fn parse(shape: Shape, frame: &[u8]) -> Option<Frame<'_>> {
-    // system and component id stand before the message id
-    let at = if shape.version == MavlinkVersion::V2 { 5 } else { 3 };
+    // number, system and component id stand before the message id
+    let at = if shape.version == MavlinkVersion::V2 { 4 } else { 2 };
+    let end = shape.header + shape.payload;
     Some(Frame {
         version: shape.version,
-        sender: Sender { system: *frame.get(at)?, component: *frame.get(at + 1)? },
+        sender: Sender { system: *frame.get(at + 1)?, component: *frame.get(at + 2)? },
+        sequence: *frame.get(at)?,
         id: message_id(shape.version, frame)?,
-        payload: frame.get(shape.header..shape.header + shape.payload)?,
+        payload: frame.get(shape.header..end)?,
+        checksum: u16::from_le_bytes([*frame.get(end)?, *frame.get(end + 1)?]),
+        bytes: frame,
     })
 }
 
@@ -263,11 +281,24 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_checksum_loses_only_that_frame() {
+    fn a_damaged_checksum_loses_only_that_frame_and_is_counted() {
         let mut bytes = bytes_of(1);
         *bytes.last_mut().unwrap() ^= 0x55;
         bytes.extend(bytes_of(2));
-        assert_eq!(decode(&bytes).0, [(AUTOPILOT, Some(timesync(2)))]);
+        let mut decoder = Decoder::default();
+        decoder.push(&bytes);
+        assert_eq!(take(&mut decoder), [(AUTOPILOT, Some(timesync(2)))]);
+        assert_eq!(decoder.bad_frames, 1);
+    }
+
+    #[test]
+    fn a_frame_knows_its_number_its_checksum_and_its_bytes() {
+        let bytes = encode(AUTOPILOT, 200, &timesync(1));
+        let mut decoder = Decoder::default();
+        decoder.push(&[&[0, 1], &bytes[..], &[9]].concat());
+        let frame = decoder.next_frame().unwrap();
+        let checksum = u16::from_le_bytes([bytes[bytes.len() - 2], bytes[bytes.len() - 1]]);
+        assert_eq!((frame.sequence, frame.checksum, frame.bytes), (200, checksum, &bytes[..]));
     }
 
     #[test]

@@ -43,6 +43,6 @@ pub use recording::Recording;
 pub use status::{
     BranchOption, Branching, DecisionRequest, Heartbeat, IterationPlace, Phase, PlacePointer, PlanStatus,
 };
-pub use telemetry::{Air, Attitude, Engine, Gps, Position, Power};
+pub use telemetry::{Air, Attitude, AutopilotLink, AutopilotLinks, Engine, Gps, Position, Power};
 pub use value::{Id, VariableValue};
 pub use waypoint::{Action, Ahead, Feed, FeedAnswer, Join, JoinAnswer, Token, Waypoint};

@@ -120,6 +120,7 @@ pub const GATEWAY: Spec = {
             Said::variable(GPS, Rate::Measured, 3.0),
             Said::variable(ENGINE, Rate::Measured, 3.0),
             Said::variable(POWER, Rate::Measured, 3.0),
+            Said::variable(LINKS, Rate::Changed { repeated_ms: 1000 }, 3.0),
             Said::variable(NAVIGATION, STATES, 3.0),
             Said::variable(STATE, STATES, 3.0),
             Said::unstamped(Variable::<ClockTick>::new(topics::GATEWAY, "clock")),

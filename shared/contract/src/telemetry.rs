@@ -97,3 +97,39 @@ pub struct Power {
     #[serde(default)]
     pub fuel: Option<f64>,
 }
+
+/// Gateway variable `links`: how the links to the autopilot do, in the order in which they were given.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AutopilotLinks {
+    /// Each of them.
+    pub links: Vec<AutopilotLink>,
+}
+
+/// How a link to the autopilot does. What is counted, is counted since the gateway started.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AutopilotLink {
+    /// Its address, as it was given.
+    pub address: String,
+    /// The autopilot was heard over it within the last two seconds.
+    pub alive: bool,
+    /// Orders go over it.
+    pub in_use: bool,
+    /// Messages that came.
+    pub received: u64,
+    /// Messages that did not come, by the gaps in their senders' numbers.
+    pub lost: u64,
+    /// Messages that came more than once.
+    pub duplicates: u64,
+    /// Frames with a wrong checksum, or of an unknown kind.
+    pub bad: u64,
+    /// Messages a second, over the last five.
+    pub messages_per_s: f64,
+    /// Bytes received a second, over the last five.
+    pub received_bytes_per_s: f64,
+    /// Bytes sent a second, over the last five.
+    pub sent_bytes_per_s: f64,
+    /// Share of the messages that was lost over the last five seconds, 0..1.
+    pub loss: f64,
+    /// There and back, ms; nothing, if the autopilot doesn't answer or time is simulated.
+    pub round_trip_ms: Option<f64>,
+}

@@ -88,8 +88,8 @@ pub const fn describe(service: &'static str) -> Invocation<Empty, Description> {
 pub mod gateway {
     use super::{Events, GATEWAY, Invocation, Variable};
     use crate::{
-        Air, Attitude, Empty, Engine, Feed, FeedAnswer, GatewayRequest, GatewayStatus, Gps, Join, JoinAnswer,
-        Navigation, Position, Power, TimedGatewayEvent,
+        Air, Attitude, AutopilotLinks, Empty, Engine, Feed, FeedAnswer, GatewayRequest, GatewayStatus, Gps,
+        Join, JoinAnswer, Navigation, Position, Power, TimedGatewayEvent,
     };
 
     /// Where the aircraft is.
@@ -104,6 +104,8 @@ pub mod gateway {
     pub const ENGINE: Variable<Engine> = Variable::new(GATEWAY, "engine");
     /// The battery.
     pub const POWER: Variable<Power> = Variable::new(GATEWAY, "power");
+    /// How the links to the autopilot do.
+    pub const LINKS: Variable<AutopilotLinks> = Variable::new(GATEWAY, "links");
     /// Where it is steering to, and the waypoint buffer.
     pub const NAVIGATION: Variable<Navigation> = Variable::new(GATEWAY, "navigation");
     /// What the gateway is doing.

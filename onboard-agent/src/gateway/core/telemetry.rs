@@ -4,7 +4,7 @@ use crate::gateway::order::{Fix, Mode, Report, Time};
 use geometry::LatLon;
 use std::borrow::Cow;
 use std::time::Duration;
-use usal::contract::{Air, Attitude, Engine, Gps, Position, Power};
+use usal::contract::{Air, Attitude, AutopilotLinks, Engine, Gps, Position, Power};
 
 /// A value and when it came.
 pub type Timed<T> = Option<(Time, T)>;
@@ -48,6 +48,8 @@ pub struct Telemetry {
     pub home: Option<(LatLon, f64)>,
     /// Stands on the ground, if it says.
     pub on_ground: Option<bool>,
+    /// How the links to it do.
+    pub links: Timed<AutopilotLinks>,
 }
 
 /// Anything that the autopilot says of itself is a sign of life: heartbeats alone are too few on
@@ -60,6 +62,7 @@ fn is_voice(report: &Report) -> bool {
             | Report::PutOff(..)
             | Report::Adopted(..)
             | Report::Course(_)
+            | Report::Links(_)
             | Report::Rebooted
             | Report::Capability(_)
     )
@@ -83,6 +86,7 @@ impl Default for Telemetry {
             power: None,
             home: None,
             on_ground: None,
+            links: None,
         }
     }
 }
@@ -116,6 +120,7 @@ impl Telemetry {
                 self.home = Some((*position, *altitude_amsl_m));
             }
             Report::OnGround(v) => self.on_ground = Some(*v),
+            Report::Links(v) => self.links = Some((now, v.clone())),
             _ => {}
         }
     }

@@ -27,8 +27,8 @@ pub enum FromLink<'a> {
 
 /// A state machine without socket and clock that speaks with one autopilot.
 pub trait Driver: Send + Sync {
-    /// Takes in what the link brought; [`Self::process`] handles it.
-    fn receive(&mut self, incoming: FromLink<'_>);
+    /// Takes in what a link brought, by its number; [`Self::process`] handles it.
+    fn receive(&mut self, link: usize, incoming: FromLink<'_>);
 
     /// Handles the next message of what was received, so that what it leads to is done before the one after
     /// it. False: there is no whole message left.
@@ -61,6 +61,15 @@ pub trait Driver: Send + Sync {
     fn hello(&mut self) {}
 }
 
+/// What a driver is made for.
+#[derive(Debug, Clone, Default)]
+pub struct Setup {
+    /// In lockstep the simulator asks before each step.
+    pub lockstep: bool,
+    /// Addresses of the links, as people gave them; a link is known by its place among them.
+    pub links: Vec<String>,
+}
+
 /// A driver in the list of drivers.
 #[derive(Debug, Clone, Copy)]
 pub struct Registration {
@@ -69,8 +78,8 @@ pub struct Registration {
     /// A datagram from an unknown sender is from such an autopilot: its sender becomes the link's partner.
     pub recognises: fn(&[u8]) -> bool,
     /// Makes a driver that has received nothing. It reports in [`Report::Capability`] whether it can fly the
-    /// autopilot at the other end. In lockstep the simulator asks before each step.
-    pub make: fn(lockstep: bool) -> Box<dyn Driver>,
+    /// autopilot at the other end.
+    pub make: fn(&Setup) -> Box<dyn Driver>,
     /// Makes an examination, for `doctor`; `None`: it can't look an autopilot over.
     pub examine: Option<fn() -> Box<dyn Examination>>,
 }

@@ -4,7 +4,7 @@
 use super::flights::{settings, take_off, zigzag};
 use crate::gateway::Station;
 use crate::gateway::core::{Answer, Input};
-use crate::gateway::driver::{Driver, FromLink, Registration};
+use crate::gateway::driver::{Driver, FromLink, Registration, Setup};
 use crate::gateway::order::{Aim, Course, Fed, Fix, Mode, Order, OrderId, Report, Serial, Target, Time};
 use autopilot_link::Outbox;
 use std::collections::VecDeque;
@@ -152,7 +152,7 @@ pub const REGISTRATION: Registration = Registration {
 };
 
 impl Driver for GliderDriver {
-    fn receive(&mut self, from: FromLink<'_>) {
+    fn receive(&mut self, _: usize, from: FromLink<'_>) {
         match from {
             FromLink::Connected => self.received.clear(),
             FromLink::Stream(bytes) | FromLink::Datagram(bytes) => self.received.extend(bytes),
@@ -216,7 +216,7 @@ impl Rig {
         // in two pieces, as a stream may bring them
         let (first, second) = lines.as_bytes().split_at(lines.len() / 3);
         for piece in [first, second] {
-            self.station.receive(FromLink::Stream(piece));
+            self.station.receive(0, FromLink::Stream(piece));
             assert_eq!(self.station.process(self.now), None);
         }
         let heartbeat =
@@ -267,7 +267,7 @@ impl Rig {
 
 #[test]
 fn an_autopilot_with_a_protocol_of_its_own_is_flown_by_the_same_core() {
-    let station = Station::new(settings(), None, (REGISTRATION.make)(false));
+    let station = Station::new(settings(), None, (REGISTRATION.make)(&Setup::default()));
     assert!((REGISTRATION.recognises)(b"GLIDER 1") && !(REGISTRATION.recognises)(b"\xFD"));
     let (glider, outbox) = (Glider::default(), Outbox::default());
     let mut rig = Rig { glider, station, outbox, now: Time::ZERO, events: vec![] };

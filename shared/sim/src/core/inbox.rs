@@ -99,7 +99,7 @@ impl Simulator {
     fn raw_ack(&mut self, peer: Peer, sender: Sender, code: u16, result: MavResult) {
         let mut payload = code.to_le_bytes().to_vec();
         payload.extend([result as u8, 0, 0, 0, 0, 0, sender.system, sender.component]);
-        let bytes = frame::encode_payload(self.next_sequence(), COMMAND_ACK_ID, &payload);
+        let bytes = frame::encode_payload(self.next_sequence(peer), COMMAND_ACK_ID, &payload);
         self.emit(Outgoing { to: peer, bytes });
     }
 

@@ -69,7 +69,8 @@ pub struct Simulator {
     inward: BadLink<(Peer, Frame)>,
     outward: BadLink<Outgoing>,
     outgoing: Vec<Outgoing>,
-    sequence: u8,
+    /// Each link has numbers of its own.
+    sequences: BTreeMap<Peer, u8>,
     sync_answers: Vec<(Peer, i64)>,
     counters: Counters,
     battery_level: usize,
@@ -102,7 +103,7 @@ impl Simulator {
             inward: BadLink::default(),
             outward: BadLink::default(),
             outgoing: Vec::new(),
-            sequence: 0,
+            sequences: BTreeMap::new(),
             sync_answers: Vec::new(),
             counters: Counters::default(),
             battery_level: 0,
@@ -132,6 +133,7 @@ impl Simulator {
     /// A partner is gone.
     pub fn disconnect(&mut self, peer: Peer) {
         self.peers.remove(&peer);
+        self.sequences.remove(&peer);
     }
 
     /// Asks for a fault; false if there are too many already.
@@ -286,7 +288,7 @@ impl Simulator {
 
     /// Sends a message, as far as the faults let it through.
     fn send(&mut self, to: Peer, message: &MavMessage) {
-        let bytes = frame::encode(self.next_sequence(), message);
+        let bytes = frame::encode(self.next_sequence(to), message);
         self.emit(Outgoing { to, bytes });
     }
 
@@ -297,13 +299,14 @@ impl Simulator {
     }
 
     fn emit_always(&mut self, to: Peer, message: &MavMessage) {
-        let bytes = frame::encode(self.next_sequence(), message);
+        let bytes = frame::encode(self.next_sequence(to), message);
         self.outgoing.push(Outgoing { to, bytes });
     }
 
-    fn next_sequence(&mut self) -> u8 {
-        self.sequence = self.sequence.wrapping_add(1);
-        self.sequence
+    fn next_sequence(&mut self, to: Peer) -> u8 {
+        let sequence = self.sequences.entry(to).or_default();
+        *sequence = sequence.wrapping_add(1);
+        *sequence
     }
 }
 

@@ -5,6 +5,7 @@ use super::super::mavlink::item::{Item, ItemKind, matches};
 use super::super::mavlink::mission::Outcome;
 use super::super::mavlink::session::{Session, SessionEvent};
 use super::*;
+use crate::gateway::driver::Setup;
 use crate::gateway::order::Time;
 use autopilot_link::frame::{Decoder, Sender, encode};
 use geometry::LatLon;
@@ -56,7 +57,7 @@ impl Rig {
         sim.connect(PEER);
         let mut rig = Self {
             sim,
-            session: Session::new(false),
+            session: Session::new(&Setup::default()),
             events: vec![],
             decoder: Decoder::default(),
             sim_decoder: Decoder::default(),
@@ -78,7 +79,7 @@ impl Rig {
             while let Some(frame) = self.decoder.next_frame() {
                 let (sender, message) = (frame.sender, frame.message().unwrap());
                 if pass(To::Driver, &message) {
-                    self.session.on_message(self.now, sender, &message, &mut self.events);
+                    self.session.on_message(self.now, 0, sender, &message, &mut self.events);
                 }
             }
         }
@@ -297,7 +298,7 @@ fn acks_left_over_from_another_transfer_prove_nothing() {
     let mut seed = 5_u32;
     rig.begin(Task::Upload(list.clone()));
     for _ in 0..3000 {
-        rig.session.on_message(rig.now, AUTOPILOT, &ack, &mut rig.events);
+        rig.session.on_message(rig.now, 0, AUTOPILOT, &ack, &mut rig.events);
         rig.step(&mut |t, m| {
             let is_item = t == To::Autopilot && matches!(m, MavMessage::MISSION_ITEM_INT(_));
             if is_item {
@@ -344,11 +345,11 @@ fn another_system_and_nonsense_in_fields_change_nothing() {
         (own, position(380_000_000)),
         (own, nan),
     ];
-    rig.session.on_message(rig.now, own, &position(364_905_000), &mut rig.events);
+    rig.session.on_message(rig.now, 0, own, &position(364_905_000), &mut rig.events);
     rig.events.clear();
     for (i, (sender, message)) in cases.into_iter().enumerate() {
         let ignored = rig.session.ignored;
-        rig.session.on_message(rig.now, sender, &message, &mut rig.events);
+        rig.session.on_message(rig.now, 0, sender, &message, &mut rig.events);
         assert_eq!(rig.events, [], "case {i}");
         assert_eq!(rig.session.ignored, ignored + 1, "case {i}");
     }

@@ -7,7 +7,7 @@ mod capability;
 
 pub use capability::unsupported;
 
-use super::super::{Driver, FromLink, Registration};
+use super::super::{Driver, FromLink, Registration, Setup};
 use super::Peer;
 use super::commands::{Client, Command, Refusal};
 use super::dialect::Dialect;
@@ -25,7 +25,7 @@ use std::collections::VecDeque;
 pub const REGISTRATION: Registration = Registration {
     name: "mavlink",
     recognises: session::recognises,
-    make: |lockstep| Box::new(MavlinkDriver::new(lockstep)),
+    make: |setup| Box::new(MavlinkDriver::new(setup)),
     examine: Some(|| Box::<Looked>::default()),
 };
 
@@ -79,9 +79,9 @@ pub struct MavlinkDriver {
 }
 
 impl MavlinkDriver {
-    /// A driver that has received nothing. `lockstep`: TIMESYNC requests are the simulator's steps.
-    pub fn new(lockstep: bool) -> Self {
-        Self { session: Session::new(lockstep), ..Self::default() }
+    /// A driver that has received nothing.
+    pub fn new(setup: &Setup) -> Self {
+        Self { session: Session::new(setup), ..Self::default() }
     }
 
     fn dialect(&self) -> Option<&'static Dialect> {
@@ -326,8 +326,8 @@ impl MavlinkDriver {
 }
 
 impl Driver for MavlinkDriver {
-    fn receive(&mut self, from: FromLink<'_>) {
-        self.session.receive(from);
+    fn receive(&mut self, link: usize, from: FromLink<'_>) {
+        self.session.receive(link, from);
     }
 
     fn process(&mut self, now: Time) -> bool {

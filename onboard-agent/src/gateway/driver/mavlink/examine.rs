@@ -133,7 +133,7 @@ impl Looked {
         while let Some(frame) = self.decoder.next_frame() {
             let (sender, message) = (frame.sender, frame.message());
             let Some(message) = message else { continue };
-            self.session.on_message(now, sender, &message, &mut events);
+            self.session.on_message(now, 0, sender, &message, &mut events);
             if self.session.peer() == Some(sender) {
                 self.on_message(now, &message);
             }

@@ -1,4 +1,4 @@
-//! The driver of MAVLink autopilots and what their dialects share: the conversation (`session`), the waypoints (`chain`)
+//! The driver of MAVLink autopilots and what their dialects share: the conversation (`session`) over the `links`, the waypoints (`chain`)
 //! and the list that they go to (`list`, `item`), what is done to it (`mission`, by `transfer` and `partial_write`),
 //! commands, parameters, streams, telemetry, words and timeouts. It knows no autopilot's habits: those are a `dialect`.
 
@@ -8,12 +8,14 @@ pub mod dialect;
 pub mod driver;
 pub mod examine;
 pub mod item;
+mod links;
 pub mod list;
 pub mod mission;
 pub mod parameters;
 mod partial_write;
 mod rto;
 pub mod session;
+mod statistics;
 mod streams;
 mod telemetry;
 mod transfer;

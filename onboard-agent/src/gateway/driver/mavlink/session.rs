@@ -1,4 +1,4 @@
-//! A conversation with one MAVLink autopilot: whom we listen to, heartbeats, time, commands, the list.
+//! A conversation with one MAVLink autopilot, over its links: whom we listen to, heartbeats, time, commands, the list.
 //!
 //! It binds to the first autopilot it receives and ignores every other system; a message with nonsense in it loses
 //! that message and nothing else. What it means is for the driver of that autopilot to say.
@@ -6,14 +6,15 @@
 use super::Peer;
 use super::commands::{Client, Command, Commands, Refusal, Shown};
 use super::dialect::Manner;
+use super::links::{Links, Received};
 use super::mission::{Mission, Outcome};
 use super::streams::Streams;
 use super::telemetry::Readings;
 use super::words::Words;
-use crate::gateway::driver::FromLink;
+use crate::gateway::driver::{FromLink, Setup};
 use crate::gateway::order::{Report, Time};
 use autopilot_link::Outbox;
-use autopilot_link::frame::{Decoder, Sender, encode_into};
+use autopilot_link::frame::{Decoder, Sender};
 use mavlink::dialects::ardupilotmega::*;
 use std::time::Duration;
 
@@ -47,7 +48,7 @@ pub enum SessionEvent {
 #[derive(Debug, Default)]
 pub struct Session {
     lockstep: bool,
-    decoder: Decoder,
+    links: Links,
     /// When bytes that were no frames were logged, and how many there were.
     logged: (Time, u64),
     peer: Option<Peer>,
@@ -63,15 +64,14 @@ pub struct Session {
     pub words: Words,
     beat_at: Time,
     stepped: Option<i64>,
-    sequence: u8,
     /// What is to be sent.
     pub out: Vec<MavMessage>,
 }
 
 impl Session {
-    /// A session that has received nothing. `lockstep`: TIMESYNC requests are the simulator's steps.
-    pub fn new(lockstep: bool) -> Self {
-        Self { lockstep, ..Self::default() }
+    /// A session that has received nothing. In lockstep, TIMESYNC requests are the simulator's steps.
+    pub fn new(setup: &Setup) -> Self {
+        Self { lockstep: setup.lockstep, links: Links::new(&setup.links), ..Self::default() }
     }
 
     /// The autopilot, once it was received.
@@ -84,21 +84,16 @@ impl Session {
         Sender { system: self.peer.map_or(FIRST_SYSTEM, |p| p.system), component: OWN_COMPONENT }
     }
 
-    /// Takes in what the link brought.
-    pub fn receive(&mut self, from: FromLink<'_>) {
-        match from {
-            FromLink::Connected => self.decoder.restart(),
-            FromLink::Stream(bytes) => self.decoder.push(bytes),
-            FromLink::Datagram(bytes) => self.decoder.push_datagram(bytes),
-        }
+    /// Takes in what a link brought.
+    pub fn receive(&mut self, link: usize, from: FromLink<'_>) {
+        self.links.receive(link, from);
     }
 
     /// Handles the next message of what was received. False: there is none left.
     pub fn process(&mut self, now: Time, events: &mut Vec<SessionEvent>) -> bool {
-        let Some(frame) = self.decoder.next_frame() else { return false };
-        let (sender, message) = (frame.sender, frame.message());
+        let Some(Received { link, sender, message }) = self.links.next() else { return false };
         match message {
-            Some(message) => self.on_message(now, sender, &message, events),
+            Some(message) => self.on_message(now, link, sender, &message, events),
             // an unknown value in an enumeration loses this message only
             None => self.ignored += 1,
         }
@@ -107,11 +102,7 @@ impl Session {
 
     /// Hands over the frames to be sent.
     pub fn send(&mut self, outbox: &mut Outbox) {
-        let own = self.own();
-        for message in self.out.drain(..) {
-            outbox.push(|bytes| encode_into(own, self.sequence, &message, bytes));
-            self.sequence = self.sequence.wrapping_add(1);
-        }
+        self.links.send(self.own(), self.peer, &mut self.out, outbox);
     }
 
     /// Gives a command, in its turn.
@@ -152,7 +143,7 @@ impl Session {
         if now >= self.beat_at {
             self.beat_at = now + HEARTBEAT;
             self.out.push(heartbeat(self.manner.we_are));
-            self.log_garbage(now);
+            self.look_at_links(now, events);
         }
         let Some(peer) = self.peer else { return };
         self.streams.tick(now, peer, self.manner.wind, &mut self.out);
@@ -161,8 +152,17 @@ impl Session {
         events.extend(self.mission.tick(now, peer, &mut self.out).map(SessionEvent::Mission));
     }
 
+    /// In lockstep nobody asks for the time but the simulator.
+    fn look_at_links(&mut self, now: Time, events: &mut Vec<SessionEvent>) {
+        events.push(SessionEvent::Telemetry(Report::Links(self.links.figures(now))));
+        if !self.lockstep && self.peer.is_some() {
+            self.links.ask_time(now);
+        }
+        self.log_garbage(now);
+    }
+
     fn log_garbage(&mut self, now: Time) {
-        let bytes = self.decoder.ignored_bytes;
+        let bytes = self.links.ignored_bytes();
         if bytes > self.logged.1 && now >= self.logged.0 + LOG_EVERY {
             tracing::warn!(bytes, "bytes that are no MAVLink were ignored on the autopilot's link");
             self.logged = (now, bytes);
@@ -173,6 +173,7 @@ impl Session {
     pub fn on_message(
         &mut self,
         now: Time,
+        link: usize,
         sender: Sender,
         message: &MavMessage,
         events: &mut Vec<SessionEvent>,
@@ -191,10 +192,12 @@ impl Session {
             self.ignored += 1;
             return;
         };
+        self.links.heard(now, link);
         self.streams.seen(mavlink::Message::message_id(message));
         match message {
             MavMessage::HEARTBEAT(beat) => self.on_heartbeat(now, beat, events),
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => self.synchronise(now, sync.ts1),
+            MavMessage::TIMESYNC(sync) => self.links.time_answered(now, link, sync.ts1),
             MavMessage::COMMAND_ACK(ack) => {
                 let ended = self.commands.acked(now, ack);
                 events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));

@@ -2,7 +2,7 @@
 
 use crate::gateway::Station;
 use crate::gateway::core::{Answer, Input, Settings, Snapshot};
-use crate::gateway::driver::{self, FromLink};
+use crate::gateway::driver::{self, FromLink, Setup};
 use crate::gateway::order::Time;
 use autopilot_link::Outbox;
 use geometry::LatLon;
@@ -45,7 +45,7 @@ pub fn settings() -> Settings {
 
 /// A station that starts, in lockstep with the simulator.
 pub fn station(restored: Option<Snapshot>) -> Station {
-    Station::new(settings(), restored, (driver::DEFAULT.make)(true))
+    Station::new(settings(), restored, (driver::DEFAULT.make)(&Setup { lockstep: true, ..Setup::default() }))
 }
 
 impl Flight {
@@ -85,7 +85,7 @@ impl Flight {
         self.now = Duration::from_nanos(self.sim.now_ns());
         let mut step = None;
         for outgoing in self.sim.take_outgoing() {
-            self.station.receive(FromLink::Stream(&outgoing.bytes));
+            self.station.receive(0, FromLink::Stream(&outgoing.bytes));
             while let Some(asked) = self.station.process(self.now) {
                 step = Some(asked);
             }

@@ -2,7 +2,7 @@
 
 mod fake;
 
-use crate::gateway::driver::{DEFAULT, Driver, FromLink};
+use crate::gateway::driver::{DEFAULT, Driver, FromLink, Setup};
 use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Report, Serial, Target, Time};
 use autopilot_link::Outbox;
 use autopilot_link::frame::{Decoder, encode};
@@ -56,7 +56,7 @@ impl Rig {
     fn new() -> Self {
         Self {
             px4: Px4::new(),
-            driver: (DEFAULT.make)(false),
+            driver: (DEFAULT.make)(&Setup::default()),
             now: Time::ZERO,
             reports: vec![],
             decoder: Decoder::default(),
@@ -91,7 +91,7 @@ impl Rig {
     }
 
     fn hear(&mut self, message: &MavMessage) {
-        self.driver.receive(FromLink::Datagram(&encode(SENDER, 0, message)));
+        self.driver.receive(0, FromLink::Datagram(&encode(SENDER, 0, message)));
         while self.driver.process(self.now) {}
         self.reports.extend(std::iter::from_fn(|| self.driver.next_report()));
     }
