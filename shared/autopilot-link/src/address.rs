@@ -1,7 +1,11 @@
 //! Addresses of autopilots.
 
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 use std::str::FromStr;
+
+/// Rates that a serial line may have, bits a second.
+const BAUD: RangeInclusive<u32> = 50..=4_000_000;
 
 /// Where the autopilot is to be found.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -13,12 +17,24 @@ pub enum Address {
     UdpOut(String),
     /// It listens for a connection there (`tcp:`).
     Tcp(String),
+    /// It is on a serial line (`serial:`).
+    Serial(Line),
+}
+
+/// A serial line: 8 bits, no parity, one stop bit, no flow control.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Line {
+    /// The device, as `/dev/ttyUSB0`.
+    pub device: String,
+    /// Bits a second.
+    pub baud: u32,
 }
 
 /// Why a text is no address.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{0:?} is no autopilot address; write udp:HOST:PORT (listen for the autopilot there), udpout:HOST:PORT or tcp:HOST:PORT"
+    "{0:?} is no autopilot address; write udp:HOST:PORT (listen for the autopilot there), udpout:HOST:PORT, tcp:HOST:PORT or \
+     serial:DEVICE:BAUD, as serial:/dev/ttyUSB0:57600"
 )]
 pub struct AddressError(String);
 
@@ -29,7 +45,14 @@ impl FromStr for Address {
         let wrong = || AddressError(text.to_owned());
         let (scheme, place) = text.split_once(':').ok_or_else(wrong)?;
         let (host, port) = place.rsplit_once(':').ok_or_else(wrong)?;
-        if host.is_empty() || port.parse::<u16>().is_err() {
+        if host.is_empty() {
+            return Err(wrong());
+        }
+        if scheme == "serial" {
+            let baud = port.parse().ok().filter(|baud| BAUD.contains(baud)).ok_or_else(wrong)?;
+            return Ok(Address::Serial(Line { device: host.to_owned(), baud }));
+        }
+        if port.parse::<u16>().is_err() {
             return Err(wrong());
         }
         match scheme {
@@ -47,6 +70,7 @@ impl std::fmt::Display for Address {
             Address::UdpIn(place) => write!(f, "udp:{place}"),
             Address::UdpOut(place) => write!(f, "udpout:{place}"),
             Address::Tcp(place) => write!(f, "tcp:{place}"),
+            Address::Serial(Line { device, baud }) => write!(f, "serial:{device}:{baud}"),
         }
     }
 }
@@ -81,7 +105,16 @@ mod tests {
             ("tcp:5760", None),
             ("tcp:host:65536", None),
             ("tcp::5760", None),
-            ("serial:/dev/ttyS0:57600", None),
+            ("serial:/dev/ttyUSB0:57600", Some("serial:/dev/ttyUSB0:57600")),
+            ("serial:COM3:115200", Some("serial:COM3:115200")),
+            (
+                "serial:/dev/serial/by-path/usb-0:1:1.0:921600",
+                Some("serial:/dev/serial/by-path/usb-0:1:1.0:921600"),
+            ),
+            ("serial:/dev/ttyUSB0", None),
+            ("serial:/dev/ttyUSB0:0", None),
+            ("serial:/dev/ttyUSB0:fast", None),
+            ("serial::57600", None),
         ];
         for (text, expected) in cases {
             assert_eq!(text.parse::<Address>().ok().map(|a| a.to_string()).as_deref(), expected, "{text}");

@@ -9,6 +9,6 @@ pub mod frame;
 mod link;
 mod outbox;
 
-pub use address::{Address, AddressError};
+pub use address::{Address, AddressError, Line};
 pub use link::{Event, Link, Partners, Peer, Stats};
 pub use outbox::Outbox;

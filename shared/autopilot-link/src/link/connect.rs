@@ -1,39 +1,59 @@
-//! A TCP connection that we make, and make again when it breaks.
+//! A connection that we make, by TCP or over a serial line, and make again when it breaks.
 
 use super::connection::Connection;
+use super::wire::Wire;
 use super::{Event, Peer};
+use crate::address::Line;
+use std::fmt;
 use std::io;
 use std::time::Duration;
-use tokio::net::TcpStream;
 use tokio::task::JoinHandle;
 
 /// Waiting time before the first and between later attempts.
 const BACKOFF: (Duration, Duration) = (Duration::from_millis(50), Duration::from_secs(2));
-/// An attempt takes no longer.
-const CONNECT_WITHIN: Duration = Duration::from_secs(3);
 /// The one at the other end.
 const PEER: Peer = Peer(1);
 
+/// What is connected to.
+#[derive(Debug, Clone)]
+pub enum Far {
+    /// A place that listens.
+    Tcp(String),
+    /// A device.
+    Serial(Line),
+}
+
+impl fmt::Display for Far {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Far::Tcp(to) => f.write_str(to),
+            Far::Serial(Line { device, .. }) => f.write_str(device),
+        }
+    }
+}
+
 enum State {
     /// An attempt that goes on in the background.
-    Connecting(JoinHandle<io::Result<TcpStream>>),
+    Connecting(JoinHandle<io::Result<Wire>>),
     Open(Connection),
 }
 
 /// The connection.
 pub struct Connect {
-    to: String,
+    to: Far,
     state: State,
     backoff: Duration,
+    /// Why there is no connection, as it was logged.
+    told: Option<String>,
     /// It broke, and that was not reported yet.
     broke: bool,
 }
 
 impl Connect {
     /// Begins to connect.
-    pub fn to(to: &str) -> Self {
-        let state = attempt(to.to_owned(), Duration::ZERO);
-        Self { to: to.to_owned(), state, backoff: BACKOFF.0, broke: false }
+    pub fn to(to: Far) -> Self {
+        let state = attempt(to.clone(), Duration::ZERO);
+        Self { to, state, backoff: BACKOFF.0, told: None, broke: false }
     }
 
     /// Who is at the other end, while there is a connection.
@@ -49,7 +69,7 @@ impl Connect {
             }
             match &mut self.state {
                 State::Connecting(attempt) => match attempt.await {
-                    Ok(Ok(stream)) => return self.connected(stream),
+                    Ok(Ok(wire)) => return self.connected(wire),
                     Ok(Err(error)) => self.again(&error.to_string()),
                     Err(error) => self.again(&error.to_string()),
                 },
@@ -61,10 +81,11 @@ impl Connect {
         }
     }
 
-    fn connected(&mut self, stream: TcpStream) -> Event {
-        tracing::info!(to = self.to, "connected to the autopilot");
+    fn connected(&mut self, wire: Wire) -> Event {
+        tracing::info!(to = %self.to, "connected to the autopilot");
         self.backoff = BACKOFF.0;
-        self.state = State::Open(Connection::new(stream));
+        self.told = None;
+        self.state = State::Open(Connection::new(wire));
         Event::Connected(PEER)
     }
 
@@ -74,7 +95,11 @@ impl Connect {
     }
 
     fn again(&mut self, why: &str) {
-        tracing::debug!(to = self.to, why, "no connection to the autopilot; trying again");
+        // the same reason time after time would fill the log
+        if self.told.as_deref() != Some(why) {
+            tracing::warn!(to = %self.to, "no connection to the autopilot, trying again: {why}");
+            self.told = Some(why.to_owned());
+        }
         self.state = attempt(self.to.clone(), self.backoff);
         self.backoff = (self.backoff * 2).min(BACKOFF.1);
     }
@@ -86,7 +111,7 @@ impl Connect {
             return false;
         }
         let room = connection.queue(frame);
-        if !room {
+        if !room && connection.ends_when_full() {
             self.broken("it does not take in what is sent");
         }
         room
@@ -109,9 +134,12 @@ impl Drop for Connect {
     }
 }
 
-fn attempt(to: String, after: Duration) -> State {
+fn attempt(to: Far, after: Duration) -> State {
     State::Connecting(tokio::spawn(async move {
         tokio::time::sleep(after).await;
-        tokio::time::timeout(CONNECT_WITHIN, TcpStream::connect(&to)).await?
+        match &to {
+            Far::Tcp(to) => Wire::tcp(to).await,
+            Far::Serial(line) => Wire::serial(line),
+        }
     }))
 }

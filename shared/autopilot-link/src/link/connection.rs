@@ -1,24 +1,18 @@
-//! A TCP connection that exists, whoever made it.
+//! A connection that exists, whoever made it.
 
+use super::wire::Wire;
 use std::io::{self, ErrorKind};
-use tokio::net::TcpStream;
-
-/// Unsent bytes that are kept before whole frames are dropped.
-const MAX_PENDING: usize = 256 * 1024;
-const READ_AT_ONCE: usize = 16 * 1024;
 
 /// The connection.
 pub struct Connection {
-    stream: TcpStream,
+    wire: Wire,
     pending: Vec<u8>,
 }
 
 impl Connection {
     /// A connection in use.
-    pub fn new(stream: TcpStream) -> Self {
-        // small frames must not wait for each other; if that can't be had, it still works
-        let _ = stream.set_nodelay(true);
-        Self { stream, pending: vec![] }
+    pub fn new(wire: Wire) -> Self {
+        Self { wire, pending: vec![] }
     }
 
     /// Waits for bytes, and sends meanwhile what waits. Can be cancelled without loss.
@@ -26,20 +20,19 @@ impl Connection {
     /// # Errors
     /// If the connection is over.
     pub async fn receive(&mut self, into: &mut Vec<u8>) -> io::Result<()> {
-        into.reserve(READ_AT_ONCE);
         loop {
             let waiting = !self.pending.is_empty();
             tokio::select! {
-                ready = self.stream.readable() => {
+                ready = self.wire.readable() => {
                     ready?;
-                    match self.stream.try_read_buf(into) {
+                    match self.wire.try_read(into) {
                         Ok(0) => return Err(io::Error::new(ErrorKind::UnexpectedEof, "closed by the other end")),
                         Ok(_) => return Ok(()),
                         Err(error) if error.kind() == ErrorKind::WouldBlock => {}
                         Err(error) => return Err(error),
                     }
                 }
-                ready = self.stream.writable(), if waiting => {
+                ready = self.wire.writable(), if waiting => {
                     ready?;
                     self.flush()?;
                 }
@@ -47,9 +40,14 @@ impl Connection {
         }
     }
 
+    /// A full queue means that it is over.
+    pub fn ends_when_full(&self) -> bool {
+        self.wire.ends_when_full()
+    }
+
     /// Puts a frame into the queue. False: the queue is full.
     pub fn queue(&mut self, frame: &[u8]) -> bool {
-        let room = self.pending.len() < MAX_PENDING;
+        let room = self.pending.len() < self.wire.room();
         if room {
             self.pending.extend_from_slice(frame);
         }
@@ -62,7 +60,7 @@ impl Connection {
     /// If the connection is over.
     pub fn flush(&mut self) -> io::Result<()> {
         while !self.pending.is_empty() {
-            match self.stream.try_write(&self.pending) {
+            match self.wire.try_write(&self.pending) {
                 Ok(0) => return Err(ErrorKind::WriteZero.into()),
                 Ok(length) => {
                     self.pending.drain(..length);

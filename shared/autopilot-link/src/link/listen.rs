@@ -1,6 +1,7 @@
 //! TCP connections that others make to us, one at a time.
 
 use super::connection::Connection;
+use super::wire::Wire;
 use super::{Event, Peer};
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -39,7 +40,7 @@ impl Listen {
                 if let Ok((stream, _)) = self.listener.accept().await {
                     self.clients = self.clients.wrapping_add(1);
                     let peer = Peer(self.clients);
-                    self.client = Some((peer, Connection::new(stream)));
+                    self.client = Some((peer, Connection::new(Wire::of(stream))));
                     return Event::Connected(peer);
                 }
                 tokio::time::sleep(PAUSE).await;

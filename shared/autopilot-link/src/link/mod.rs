@@ -5,9 +5,10 @@ mod connect;
 mod connection;
 mod listen;
 mod udp;
+mod wire;
 
 use crate::{Address, Outbox};
-use connect::Connect;
+use connect::{Connect, Far};
 use listen::Listen;
 use std::io;
 use std::net::SocketAddr;
@@ -73,7 +74,8 @@ impl Link {
         Ok(Self::new(match address {
             Address::UdpIn(at) => Kind::Udp(Udp::new(UdpSocket::bind(at).await?, Partners::AUTOPILOT)),
             Address::UdpOut(to) => Kind::Udp(Udp::to(to).await?),
-            Address::Tcp(to) => Kind::Connect(Connect::to(to)),
+            Address::Tcp(to) => Kind::Connect(Connect::to(Far::Tcp(to.clone()))),
+            Address::Serial(line) => Kind::Connect(Connect::to(Far::Serial(line.clone()))),
         }))
     }
 
