@@ -3,6 +3,8 @@
 pub mod environment;
 pub mod file;
 
+mod links;
+
 use crate::gateway::driver::{self, Registration};
 use crate::inside::Address;
 use crate::registry::{Entry, SERVICES};
@@ -21,7 +23,6 @@ const FILE_MAX: u64 = 64 << 20;
 /// Folder of the recordings in the state directory.
 const RECORDINGS: &str = "recordings";
 const DEFAULT_VEHICLE: &str = "uav1";
-const DEFAULT_AUTOPILOT: &str = "udp:127.0.0.1:14550";
 const DEFAULT_AIRCRAFT: &str = "trainer";
 
 /// Options of the services. The configuration file has the same names, with `_` for `-`.
@@ -41,9 +42,11 @@ pub struct Options {
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Option<String>,
     /// The autopilot: udp:HOST:PORT (listen there), udpout:HOST:PORT, tcp:HOST:PORT or serial:DEVICE:BAUD, as
-    /// serial:/dev/ttyUSB0:57600 [default: udp:127.0.0.1:14550].
+    /// serial:/dev/ttyUSB0:57600; tlog:FILE plays a telemetry log. Given several times: links to one autopilot, the
+    /// preferred one first [default: udp:127.0.0.1:14550].
     #[arg(long, value_name = "ADDRESS")]
-    pub autopilot: Option<String>,
+    #[serde(deserialize_with = "links::one_or_more")]
+    pub autopilot: Vec<String>,
     /// The autopilot's driver, by its name.
     #[arg(long, value_name = "NAME", help = driver_help())]
     pub driver: Option<String>,
@@ -65,6 +68,20 @@ pub struct Options {
     /// So many MiB of the disk are left free by the recordings [default: 512].
     #[arg(long, value_name = "MIB")]
     pub record_reserve_mib: Option<u64>,
+    /// File with the key of MAVLink 2 signing: 64 hexadecimal digits, or the passphrase that the autopilot was given. Only its
+    /// owner may read it. What is sent is signed; what comes unsigned is refused.
+    #[arg(long, value_name = "FILE")]
+    pub signing_key: Option<PathBuf>,
+    /// Where QGroundControl, Mission Planner or MAVProxy may watch, and change nothing: udpout:HOST:PORT (sends there) or
+    /// tcp-listen:HOST:PORT (one program connects there).
+    #[arg(long, value_name = "ADDRESS")]
+    pub mirror: Option<String>,
+    /// Log what goes over the links to the autopilot as .tlog files, in `tlogs` of the state directory.
+    #[arg(long)]
+    pub tlog: bool,
+    /// All these logs together take at most so many MiB, the oldest go first [default: 1024].
+    #[arg(long, value_name = "MIB")]
+    pub tlog_quota_mib: Option<u64>,
     /// Configuration file (TOML; JSON is read as well) for what is not given here.
     #[arg(long, value_name = "FILE")]
     #[serde(skip)]
@@ -100,7 +117,7 @@ impl Options {
             listen: self.listen.or(file.listen),
             insecure: self.insecure || file.insecure,
             connect: self.connect.or(file.connect),
-            autopilot: self.autopilot.or(file.autopilot),
+            autopilot: if self.autopilot.is_empty() { file.autopilot } else { self.autopilot },
             driver: self.driver.or(file.driver),
             aircraft: self.aircraft.or(file.aircraft),
             terrain: if self.terrain.is_empty() { file.terrain } else { self.terrain },
@@ -108,6 +125,10 @@ impl Options {
             state_dir: self.state_dir.or(file.state_dir),
             record_quota_mib: self.record_quota_mib.or(file.record_quota_mib),
             record_reserve_mib: self.record_reserve_mib.or(file.record_reserve_mib),
+            signing_key: self.signing_key.or(file.signing_key),
+            mirror: self.mirror.or(file.mirror),
+            tlog: self.tlog || file.tlog,
+            tlog_quota_mib: self.tlog_quota_mib.or(file.tlog_quota_mib),
             log_format: self.log_format.or(file.log_format),
             config: self.config.or(file.config),
             simulated: self.simulated || file.simulated,
@@ -147,12 +168,14 @@ impl Options {
     /// An address, profile or tile can't be used.
     pub fn gateway(&self) -> anyhow::Result<gateway::Config> {
         exposure::allow(self.listen(), self.insecure)?;
-        let autopilot = self.autopilot.as_deref().unwrap_or(DEFAULT_AUTOPILOT);
         Ok(gateway::Config {
             vehicle: self.vehicle().to_owned(),
             listen: self.listen().to_owned(),
             inside: self.inside.as_ref().map(Address::new),
-            autopilot: autopilot.parse().context("--autopilot")?,
+            autopilots: self.autopilots()?,
+            key: self.key()?,
+            mirror: self.mirror()?,
+            tlog: self.tlogs()?,
             driver: self.driver()?,
             profile: self.profile()?,
             terrain: match self.tiles()? {
@@ -218,8 +241,8 @@ impl Options {
             ("--vehicle", &self.vehicle),
             ("--listen", &self.listen),
             ("--connect", &self.connect),
-            ("--autopilot", &self.autopilot),
             ("--driver", &self.driver),
+            ("--mirror", &self.mirror),
             ("--aircraft", &self.aircraft),
         ];
         for (name, value) in texts.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
@@ -228,21 +251,30 @@ impl Options {
         if let Some(format) = self.log_format {
             arguments.extend(["--log-format".into(), format.name().into()]);
         }
-        let paths = [("--plan", &self.plan), ("--state-dir", &self.state_dir), ("--inside", &self.inside)];
+        let paths = [
+            ("--plan", &self.plan),
+            ("--state-dir", &self.state_dir),
+            ("--inside", &self.inside),
+            ("--signing-key", &self.signing_key),
+        ];
         for (name, value) in paths.into_iter().filter_map(|(name, value)| Some((name, value.as_ref()?))) {
             arguments.extend([name.into(), value.into()]);
         }
         let sizes = [
             ("--record-quota-mib", self.record_quota_mib),
             ("--record-reserve-mib", self.record_reserve_mib),
+            ("--tlog-quota-mib", self.tlog_quota_mib),
         ];
         for (name, value) in sizes.into_iter().filter_map(|(name, value)| Some((name, value?))) {
             arguments.extend([name.into(), value.to_string().into()]);
         }
+        for address in &self.autopilot {
+            arguments.extend(["--autopilot".into(), address.into()]);
+        }
         for tile in &self.terrain {
             arguments.extend(["--terrain".into(), tile.into()]);
         }
-        let flags = [("--insecure", self.insecure), ("--simulated", self.simulated)];
+        let flags = [("--insecure", self.insecure), ("--simulated", self.simulated), ("--tlog", self.tlog)];
         arguments.extend(flags.into_iter().filter(|(_, given)| *given).map(|(name, _)| name.into()));
         arguments
     }
@@ -374,7 +406,7 @@ mod tests {
 
     #[test]
     fn every_option_reaches_the_children() {
-        let line = "onboard-agent run --vehicle v --listen tcp/127.0.0.1:1 --connect tcp/127.0.0.1:2 --autopilot tcp:h:3 --driver d \
+        let line = "onboard-agent run --vehicle v --listen tcp/127.0.0.1:1 --connect tcp/127.0.0.1:2 --autopilot tcp:h:3 --autopilot serial:/dev/ttyUSB0:57600 --tlog --tlog-quota-mib 7 --signing-key k --mirror udpout:h:4 --driver d \
                     --aircraft trainer --plan p.xml --state-dir s --record-quota-mib 9 --record-reserve-mib 8 --terrain a.hgt --terrain b.hgt --inside i.sock --log-format json --insecure --simulated";
         let options = parse(line);
         let mut again = Cli::try_parse_from(
@@ -431,15 +463,15 @@ mod tests {
         }
         // the defaults are the true ones
         let mut options = Options::default();
-        for line in
-            shown.iter().filter(|line| !["terrain", "plan", "state_dir"].iter().any(|n| line.starts_with(n)))
-        {
+        for line in shown.iter().filter(|line| {
+            !["terrain", "plan", "state_dir", "signing_key"].iter().any(|n| line.starts_with(n))
+        }) {
             options = options.over(file::parse("agent.toml", line).unwrap());
         }
         let (shown, usual) = (options.gateway().unwrap(), Options::default().gateway().unwrap());
         assert_eq!(
-            (shown.vehicle, shown.listen, shown.autopilot),
-            (usual.vehicle, usual.listen, usual.autopilot)
+            (shown.vehicle, shown.listen, shown.autopilots),
+            (usual.vehicle, usual.listen, usual.autopilots)
         );
         assert_eq!((shown.driver.name, shown.profile.name), (usual.driver.name, usual.profile.name));
     }

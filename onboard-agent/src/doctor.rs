@@ -57,9 +57,15 @@ pub async fn examine(config: &Config, mut shutdown: Shutdown) -> anyhow::Result<
     let make = driver
         .examine
         .with_context(|| format!("the driver `{}` can't look an autopilot over", driver.name))?;
-    let link = Link::open(&config.autopilot).await;
+    if config.key.is_some() {
+        bail!(
+            "it does not sign: look the autopilot over on a link that needs no key, as its USB port, without --signing-key"
+        );
+    }
+    let address = config.autopilots.first().context("no autopilot is named")?;
+    let link = Link::open(address).await;
     let mut link = link.with_context(|| {
-        format!("the autopilot's link {}: does the agent run already? End it first", config.autopilot)
+        format!("the autopilot's link {address}: does the agent run already? End it first")
     })?;
     let mut examination = make();
     let (began, mut beat) = (Instant::now(), tokio::time::interval(BEAT));
@@ -67,23 +73,22 @@ pub async fn examine(config: &Config, mut shutdown: Shutdown) -> anyhow::Result<
     loop {
         tokio::select! {
             () = shutdown.requested() => bail!("it was ended before it was done"),
-            event = link.next(&mut received, driver.recognises) => {
+            event = link.next(&mut received, |datagram| (driver.recognises)(datagram, None)) => {
                 examination.receive(began.elapsed(), from_link(event, &received));
             }
             _ = beat.tick() => examination.tick(began.elapsed()),
         }
         outbox.clear();
         examination.send(&mut outbox);
-        link.send_all(&outbox);
+        link.send_all(0, &outbox);
         let now = began.elapsed();
         if examination.is_complete(now) {
             return Ok(Diagnosis(examination.findings(now)));
         }
         if !examination.has_heard() && now > HEARD_WITHIN {
             bail!(
-                "nobody answers at {} within {} s: check that the autopilot is powered, the cable or the network, the port \
+                "nobody answers at {address} within {} s: check that the autopilot is powered, the cable or the network, the port \
                  and the baud rate, that this port speaks MAVLink 2, and that no other program (an agent that runs) has it",
-                config.autopilot,
                 HEARD_WITHIN.as_secs()
             );
         }

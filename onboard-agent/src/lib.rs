@@ -7,6 +7,7 @@ pub mod exposure;
 pub mod fp_manager;
 pub mod gateway;
 pub mod inside;
+mod key_file;
 pub mod registry;
 pub mod services;
 pub mod supervisor;

@@ -8,7 +8,7 @@ use std::ffi::{OsStr, OsString};
 pub const PREFIX: &str = "LEGWORK_";
 
 /// What is said of them with the options.
-pub const HELP: &str = "Every option can also stand in the environment (LEGWORK_STATE_DIR for --state-dir; several tiles as in PATH) or \
+pub const HELP: &str = "Every option can also stand in the environment (LEGWORK_STATE_DIR for --state-dir; several tiles as in PATH, several links with commas between) or \
 in the file that --config names. The command line counts first, then the environment, then the file. An annotated file: \
 assets/onboard-agent/agent.toml.";
 
@@ -46,6 +46,11 @@ fn set(option: &Arg, value: &OsStr) -> Result<Options, String> {
             Some("false" | "0" | "no" | "off") => vec![],
             _ => return Err("say true or false".into()),
         },
+        // an address has colons in it
+        ArgAction::Append if option.get_id() == "autopilot" => {
+            let addresses = value.to_str().ok_or("write it as UTF-8")?.split(',');
+            addresses.map(|address| typed(address.trim().as_ref())).collect()
+        }
         ArgAction::Append => std::env::split_paths(value).map(|path| typed(path.as_os_str())).collect(),
         _ => vec![typed(value)],
     };

@@ -208,9 +208,9 @@ mod tests {
 
     #[test]
     fn values_that_cannot_be_used_are_all_found_at_their_places() {
-        let text = "aircraft = 'zeppelin'\nvehicle = 'v'\nautopilot = 'pigeon'\n";
+        let text = "aircraft = 'zeppelin'\nvehicle = 'v'\ndriver = 'pigeon'\n";
         let check = |options: &Options| {
-            let wrong = [("--aircraft", &options.aircraft), ("--autopilot", &options.autopilot)];
+            let wrong = [("--aircraft", &options.aircraft), ("--driver", &options.driver)];
             match wrong.into_iter().find_map(|(name, value)| Some((name, value.as_ref()?))) {
                 Some((name, value)) => Err(anyhow::anyhow!("{name} {value}: can't be")),
                 None => Ok(()),
@@ -219,7 +219,7 @@ mod tests {
         let told = parse_and_check("agent.toml", text, check).unwrap_err().to_string();
         assert_eq!(
             told,
-            "agent.toml:1:12: --aircraft zeppelin: can't be\nagent.toml:3:13: --autopilot pigeon: can't be"
+            "agent.toml:1:12: --aircraft zeppelin: can't be\nagent.toml:3:10: --driver pigeon: can't be"
         );
         let vague = parse_and_check("agent.toml", text, |_| Err(anyhow::anyhow!("no"))).unwrap_err();
         assert_eq!(vague.to_string(), "agent.toml:1:1: no");

@@ -1,8 +1,11 @@
 //! What the gateway is started with.
 
 use super::driver::{self, Registration};
+use super::mirror::Mirror;
+use super::tlog;
 use crate::inside::Address;
 use aircraft::Profile;
+use autopilot_link::signing::Key;
 use std::path::PathBuf;
 use std::sync::Arc;
 use terrain::Terrain;
@@ -16,8 +19,14 @@ pub struct Config {
     pub listen: String,
     /// Where the vehicle's own services connect; `None`: at a place that nobody else is told.
     pub inside: Option<Address>,
-    /// The autopilot's address.
-    pub autopilot: autopilot_link::Address,
+    /// The links to the autopilot, the one that is preferred first.
+    pub autopilots: Vec<autopilot_link::Address>,
+    /// The key with which what is sent over them is signed, and what comes has to be; `None`: nothing is signed.
+    pub key: Option<Key>,
+    /// Where other programs may watch; `None`: nowhere.
+    pub mirror: Option<Mirror>,
+    /// Where what goes over them is logged; `None`: nowhere.
+    pub tlog: Option<tlog::Config>,
     /// The autopilot's driver.
     pub driver: Registration,
     /// The aircraft.
@@ -37,7 +46,10 @@ impl Config {
             vehicle: vehicle.into(),
             listen: listen.into(),
             inside: None,
-            autopilot,
+            autopilots: vec![autopilot],
+            key: None,
+            mirror: None,
+            tlog: None,
             driver: driver::DEFAULT,
             profile: Profile::default(),
             terrain: None,

@@ -9,6 +9,8 @@ mod config;
 pub mod core;
 mod door;
 pub mod driver;
+mod links;
+pub mod mirror;
 pub mod order;
 mod publish;
 mod service;
@@ -16,6 +18,7 @@ mod shell;
 mod station;
 #[cfg(test)]
 mod tests;
+pub mod tlog;
 
 pub(crate) use self::service::from_link;
 pub use autopilot_link::{Address, AddressError};

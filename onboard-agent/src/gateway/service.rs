@@ -23,8 +23,8 @@ pub(super) const FILE: &str = "gateway.json";
 pub enum Input {
     /// Time has passed.
     Tick,
-    /// The link brought something.
-    Received(Event, Vec<u8>),
+    /// A link brought something.
+    Received(usize, Event, Vec<u8>),
     /// Waypoints for the buffer.
     Feed(Request<Feed, FeedAnswer>),
     /// The FP Manager presents itself.
@@ -43,7 +43,7 @@ pub enum Input {
     Stepped,
 }
 
-/// What it wants of the link: to send frames.
+/// What it wants of the links: to send frames.
 pub type Output = Outbox;
 
 type Out = service::Out<Input, Output>;
@@ -79,8 +79,8 @@ impl Service for FcsGateway {
     fn step(&mut self, now: Time, input: Input, out: &mut Out) {
         match input {
             Input::Tick => self.station.tick(now),
-            Input::Received(event, bytes) => {
-                self.station.receive(0, from_link(event, &bytes));
+            Input::Received(link, event, bytes) => {
+                self.station.receive(link, from_link(event, &bytes));
                 self.process(now, out);
             }
             Input::Feed(asked) => self.feed(now, asked, out),

@@ -1,25 +1,26 @@
-//! Shell: the gateway as it is run, with the autopilot's link and the port for everybody as its adapter.
+//! Shell: the gateway as it is run, with the links to the autopilot and the port for everybody as its adapter.
 
 use super::config::Config;
 use super::core::Settings;
 use super::door::Door;
 use super::driver::{Registration, Setup};
+use super::links::Links;
 use super::service::{FILE, FcsGateway, Input, Output};
 use super::station::Station;
+use super::tlog::Tlog;
 use crate::exposure::{WHAT_A_STRANGER_CAN_DO, is_loopback};
 use crate::inside::{Address, Inside};
 use anyhow::Context;
 use autopilot_link::Link;
+use autopilot_link::signing::Signing;
 use service::{Adapter, Beginning, Shutdown, Tasks, Time, Timing};
+use std::time::SystemTime;
 use usal::Role;
 
-/// What the gateway has to do with: the autopilot's link, and who comes to its port.
+/// What the gateway has to do with: the links to the autopilot, and who comes to its port.
 struct Outside {
-    link: Link,
+    links: Links,
     door: Door,
-    /// A datagram from an unknown sender is from the autopilot.
-    recognises: fn(&[u8]) -> bool,
-    received: Vec<u8>,
 }
 
 /// Runs the gateway until `shutdown`: the session is the vehicle's hub.
@@ -46,11 +47,6 @@ async fn open(
 ) -> anyhow::Result<(FcsGateway, Outside)> {
     let door = Door::open(&config.listen, &inside).await?;
     let restored = beginning.load(FILE, |bytes| serde_json::from_slice(bytes));
-    let link = Link::open(&config.autopilot).await;
-    let link = link.with_context(|| format!("the autopilot's link {}", config.autopilot))?;
-    if let Some(at) = link.local_address() {
-        tracing::info!(%at, "listening for the autopilot");
-    }
     let exposed = !is_loopback(&config.listen);
     if exposed {
         tracing::warn!(
@@ -58,28 +54,53 @@ async fn open(
             config.listen
         );
     }
+    let mut links = open_links(&config.autopilots).await?;
+    let tlog = match config.tlog {
+        Some(tlog) => Some(Tlog::begin(tlog, links.len()).context("--tlog")?),
+        None => None,
+    };
+    if let Some(mirror) = &config.mirror {
+        links.push(mirror.open().await.context("--mirror")?);
+    }
+    let replay = config.autopilots.iter().any(autopilot_link::Address::is_replay);
     let Config { vehicle, profile, terrain, .. } = config;
-    let settings = Settings { vehicle, profile, terrain, exposed };
+    let settings = Settings { vehicle, profile, terrain, exposed, replay };
     let Registration { recognises, make, .. } = config.driver;
-    let setup = Setup { lockstep: config.simulated, links: vec![config.autopilot.to_string()] };
+    let addresses = config.autopilots.iter().map(ToString::to_string).collect();
+    let key = config.key.clone();
+    let unix = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    let signing = config.key.map(|key| Signing::new(key, unix));
+    let setup =
+        Setup { lockstep: config.simulated, links: addresses, mirror: config.mirror.is_some(), signing };
     let station = Station::new(settings, restored, make(&setup));
-    Ok((FcsGateway::new(station, config.simulated), Outside { link, door, recognises, received: Vec::new() }))
+    let recognises = move |datagram: &[u8]| recognises(datagram, key.as_ref());
+    let links = Links::new(links, Box::new(recognises), tlog);
+    Ok((FcsGateway::new(station, config.simulated), Outside { links, door }))
+}
+
+async fn open_links(addresses: &[autopilot_link::Address]) -> anyhow::Result<Vec<Link>> {
+    let mut links = Vec::with_capacity(addresses.len());
+    for address in addresses {
+        let link = Link::open(address).await.with_context(|| format!("the autopilot's link {address}"))?;
+        if let Some(at) = link.local_address() {
+            tracing::info!(%at, "listening for the autopilot");
+        }
+        links.push(link);
+    }
+    Ok(links)
 }
 
 impl Adapter<FcsGateway> for Outside {
     async fn next(&mut self) -> Input {
         tokio::select! {
-            event = self.link.next(&mut self.received, self.recognises) => {
-                // the bytes go on to the driver as they are, and the next ones get a buffer of their own
-                Input::Received(event, std::mem::take(&mut self.received))
-            }
+            input = self.links.event() => input,
             flooded = self.door.changed() => Input::Flooded(flooded),
         }
     }
 
     async fn perform(&mut self, _: Time, outputs: Vec<Output>, _: bool, _: &mut Tasks<Input>) {
         for outbox in &outputs {
-            self.link.send_all(outbox);
+            self.links.send(outbox);
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
+use std::path::PathBuf;
 use std::str::FromStr;
 
 /// Rates that a serial line may have, bits a second.
@@ -19,6 +20,15 @@ pub enum Address {
     Tcp(String),
     /// It is on a serial line (`serial:`).
     Serial(Line),
+    /// It spoke once, and a telemetry log of that is played (`tlog:`). Nothing can be sent.
+    Tlog(PathBuf),
+}
+
+impl Address {
+    /// A log is played, and nobody is at the other end.
+    pub fn is_replay(&self) -> bool {
+        matches!(self, Address::Tlog(_))
+    }
 }
 
 /// A serial line: 8 bits, no parity, one stop bit, no flow control.
@@ -33,8 +43,8 @@ pub struct Line {
 /// Why a text is no address.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{0:?} is no autopilot address; write udp:HOST:PORT (listen for the autopilot there), udpout:HOST:PORT, tcp:HOST:PORT or \
-     serial:DEVICE:BAUD, as serial:/dev/ttyUSB0:57600"
+    "{0:?} is no autopilot address; write udp:HOST:PORT (listen for the autopilot there), udpout:HOST:PORT, tcp:HOST:PORT, \
+     serial:DEVICE:BAUD, as serial:/dev/ttyUSB0:57600, or tlog:FILE to play a telemetry log"
 )]
 pub struct AddressError(String);
 
@@ -44,6 +54,9 @@ impl FromStr for Address {
     fn from_str(text: &str) -> Result<Self, AddressError> {
         let wrong = || AddressError(text.to_owned());
         let (scheme, place) = text.split_once(':').ok_or_else(wrong)?;
+        if scheme == "tlog" && !place.is_empty() {
+            return Ok(Address::Tlog(place.into()));
+        }
         let (host, port) = place.rsplit_once(':').ok_or_else(wrong)?;
         if host.is_empty() {
             return Err(wrong());
@@ -70,6 +83,7 @@ impl std::fmt::Display for Address {
             Address::UdpIn(place) => write!(f, "udp:{place}"),
             Address::UdpOut(place) => write!(f, "udpout:{place}"),
             Address::Tcp(place) => write!(f, "tcp:{place}"),
+            Address::Tlog(path) => write!(f, "tlog:{}", path.display()),
             Address::Serial(Line { device, baud }) => write!(f, "serial:{device}:{baud}"),
         }
     }
@@ -111,6 +125,8 @@ mod tests {
                 "serial:/dev/serial/by-path/usb-0:1:1.0:921600",
                 Some("serial:/dev/serial/by-path/usb-0:1:1.0:921600"),
             ),
+            ("tlog:C:\\flights\\1.tlog", Some("tlog:C:\\flights\\1.tlog")),
+            ("tlog:", None),
             ("serial:/dev/ttyUSB0", None),
             ("serial:/dev/ttyUSB0:0", None),
             ("serial:/dev/ttyUSB0:fast", None),

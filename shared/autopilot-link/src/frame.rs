@@ -10,9 +10,9 @@ use mavlink::{MAV_STX, MAV_STX_V2, MAVLinkV2MessageRaw, MavHeader, MavlinkVersio
 
 /// The longest frame, bytes: header 10, payload 255, checksum 2, signature 13.
 pub const LONGEST: usize = 280;
-const SIGNED: u8 = 0x01;
-const SIGNATURE_BYTES: usize = 13;
-const CHECKSUM_BYTES: usize = 2;
+pub(crate) const SIGNED: u8 = 0x01;
+pub(crate) const SIGNATURE_BYTES: usize = 13;
+pub(crate) const CHECKSUM_BYTES: usize = 2;
 
 /// Who sent a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,6 +42,12 @@ pub struct Frame<'a> {
 }
 
 impl Frame<'_> {
+    /// What stands behind the checksum of a signed frame.
+    pub(crate) fn signature(&self) -> Option<&[u8; SIGNATURE_BYTES]> {
+        let signed = self.version == MavlinkVersion::V2 && self.bytes.get(2) == Some(&SIGNED);
+        if signed { self.bytes.last_chunk() } else { None }
+    }
+
     /// The message; `None` if it has a value that the dialect does not know.
     pub fn message(&self) -> Option<MavMessage> {
         MavMessage::parse(self.version, self.id, self.payload).ok()
@@ -132,6 +138,26 @@ impl Decoder {
     }
 }
 
+/// A frame at the very beginning of these bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Beginning {
+    /// There is one, so many bytes long.
+    Frame(usize),
+    /// There may be one, with more bytes.
+    NeedMore,
+    /// There is none.
+    Nothing,
+}
+
+/// Whether these bytes begin with a frame.
+pub fn begins(bytes: &[u8]) -> Beginning {
+    match cut(bytes) {
+        Cut::Frame(shape) => Beginning::Frame(shape.total),
+        Cut::NeedMore => Beginning::NeedMore,
+        Cut::Skip(_) | Cut::Bad => Beginning::Nothing,
+    }
+}
+
 /// Looks at the beginning of the bytes.
 fn cut(bytes: &[u8]) -> Cut {
     let Some(start) = bytes.iter().position(|b| matches!(*b, MAV_STX | MAV_STX_V2)) else {
@@ -170,7 +196,7 @@ fn is_intact(shape: Shape, frame: &[u8]) -> bool {
     calculate_crc(covered, MavMessage::extra_crc(id)) == u16::from_le_bytes([low, high])
 }
 
-fn message_id(version: MavlinkVersion, frame: &[u8]) -> Option<u32> {
+pub(crate) fn message_id(version: MavlinkVersion, frame: &[u8]) -> Option<u32> {
     match version {
         MavlinkVersion::V2 => Some(u32::from_le_bytes([*frame.get(7)?, *frame.get(8)?, *frame.get(9)?, 0])),
         MavlinkVersion::V1 => frame.get(5).map(|id| u32::from(*id)),
@@ -200,6 +226,11 @@ pub fn encode_into(sender: Sender, sequence: u8, message: &MavMessage, out: &mut
     out.extend_from_slice(raw.raw_bytes());
 }
 
+/// Its checksum, over all but the first byte of a frame without one.
+pub(crate) fn checksum(frame: &[u8], id: u32) -> [u8; CHECKSUM_BYTES] {
+    calculate_crc(frame.get(1..).unwrap_or_default(), MavMessage::extra_crc(id)).to_le_bytes()
+}
+
 /// A message's MAVLink 2 frame.
 pub fn encode(sender: Sender, sequence: u8, message: &MavMessage) -> Vec<u8> {
     let mut bytes = vec![];
@@ -215,8 +246,8 @@ pub fn encode_payload(sender: Sender, sequence: u8, id: u32, payload: &[u8]) -> 
     let Sender { system, component } = sender;
     let mut bytes = vec![MAV_STX_V2, length, 0, 0, sequence, system, component, id0, id1, id2];
     bytes.extend_from_slice(payload);
-    let crc = calculate_crc(bytes.get(1..).unwrap_or_default(), MavMessage::extra_crc(id));
-    bytes.extend_from_slice(&crc.to_le_bytes());
+    let checksum = checksum(&bytes, id);
+    bytes.extend_from_slice(&checksum);
     bytes
 }
 

@@ -39,7 +39,7 @@ async fn the_return_path_of_datagrams_belongs_to_the_autopilot_and_strangers_are
     assert_eq!(next(&mut link).await.1, b"anything", "there is only one autopilot");
     assert_eq!((link.stats().strangers, link.stats().stranger_bytes), (3, 5 + 7 + 8));
 
-    link.send_all(&outbox(&[b"to you", b"and again"]));
+    link.send_all(0, &outbox(&[b"to you", b"and again"]));
     own.set_read_timeout(Some(WITHIN)).unwrap();
     let mut buffer = [0; 300];
     for expected in [&b"to you"[..], b"and again"] {
@@ -85,7 +85,7 @@ async fn a_tcp_connection_that_breaks_is_told_and_made_again() {
         };
         tokio::join!(follow, serve);
     }
-    link.send_all(&outbox(&[b"nobody hears this"]));
+    link.send_all(0, &outbox(&[b"nobody hears this"]));
     assert_eq!(link.peers(), []);
 }
 
@@ -105,7 +105,7 @@ async fn one_client_at_a_time_is_served_and_hears_what_is_sent_to_it() {
     }
     client.write_all(b"hello").await.unwrap();
     assert_eq!(next(&mut link).await, (Event::Stream(peer), b"hello".to_vec()));
-    link.send_all(&outbox(&[b"an", b"swer"]));
+    link.send_all(0, &outbox(&[b"an", b"swer"]));
     let mut answer = [0; 6];
     client.read_exact(&mut answer).await.unwrap();
     assert_eq!(&answer, b"answer");

@@ -1,5 +1,6 @@
 //! Serial lines, over pseudo-terminals: what is sent and received, and what happens when one is unplugged.
-#![cfg(all(test, unix))]
+#![cfg(test)]
+#![cfg(unix)]
 
 use autopilot_link::{Event, Link, Outbox};
 use std::os::unix::fs::symlink;
@@ -53,7 +54,7 @@ async fn every_byte_goes_through_both_ways_and_a_device_that_was_unplugged_is_fo
         assert_eq!(receive(&mut link, every.len()).await, every);
         let mut outbox = Outbox::default();
         outbox.push(|bytes| bytes.extend(0..=255));
-        link.send_all(&outbox);
+        link.send_all(0, &outbox);
         let mut sent = vec![0; every.len()];
         far.read_exact(&mut sent).await.unwrap();
         assert_eq!(sent, every);
@@ -74,7 +75,7 @@ async fn a_device_that_takes_nothing_in_loses_frames_and_not_its_connection() {
     assert!(matches!(next(&mut link).await.0, Event::Connected(_)));
     let mut outbox = Outbox::default();
     (0..1000).for_each(|_| outbox.push(|bytes| bytes.extend([7; 250])));
-    link.send_all(&outbox);
+    link.send_all(0, &outbox);
     assert!(link.stats().unsent > 500, "{:?}", link.stats());
     far.write_all(b"still there").await.unwrap();
     assert_eq!(receive(&mut link, 11).await, b"still there");

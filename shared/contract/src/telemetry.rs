@@ -110,7 +110,7 @@ pub struct AutopilotLinks {
 pub struct AutopilotLink {
     /// Its address, as it was given.
     pub address: String,
-    /// The autopilot was heard over it within the last two seconds.
+    /// The autopilot was heard over it a moment ago.
     pub alive: bool,
     /// Orders go over it.
     pub in_use: bool,
@@ -122,6 +122,9 @@ pub struct AutopilotLink {
     pub duplicates: u64,
     /// Frames with a wrong checksum, or of an unknown kind.
     pub bad: u64,
+    /// Messages that were refused, because they are not signed with the key or were sent before.
+    #[serde(default)]
+    pub refused: u64,
     /// Messages a second, over the last five.
     pub messages_per_s: f64,
     /// Bytes received a second, over the last five.

@@ -39,7 +39,7 @@ pub use finding::{Damage, Finding};
 pub use foxglove::Level;
 pub use frame::{Frame, Payload};
 pub use json::from_cbor;
-pub use names::{file_name, is_recording};
+pub use names::{file_name, is_recording, stem};
 pub use recorder::{Config, Input, Output, Recorder, Report, Schema, Status};
 pub use repair::repair;
 pub use retention::{Limits, Room, Stored, excess};

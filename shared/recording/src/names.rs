@@ -7,9 +7,14 @@ const EXTENSION: &str = ".mcap";
 
 /// The name of the `number`-th file of a run: vehicle, the time at which it begins (UTC), number.
 pub fn file_name(vehicle: &str, unix: Duration, number: u32) -> String {
+    format!("{}{EXTENSION}", stem(vehicle, unix, number))
+}
+
+/// The same without its extension.
+pub fn stem(vehicle: &str, unix: Duration, number: u32) -> String {
     let seconds = i64::try_from(unix.as_secs()).unwrap_or(i64::MAX);
     let began = jiff::Timestamp::from_second(seconds).unwrap_or(jiff::Timestamp::MAX);
-    format!("{vehicle}-{}-{number:03}{EXTENSION}", began.strftime("%Y%m%dT%H%M%SZ"))
+    format!("{vehicle}-{}-{number:03}", began.strftime("%Y%m%dT%H%M%SZ"))
 }
 
 /// A file of this name is a recording.

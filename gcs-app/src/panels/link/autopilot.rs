@@ -9,7 +9,7 @@ const WORTH_A_WORD: f64 = 0.05;
 /// The links, as long as what is known of them is to be believed.
 fn links(vehicle: &Vehicle, now_s: f64) -> &[AutopilotLink] {
     let known = vehicle.links.as_ref().filter(|known| !known.is_expired(now_s));
-    known.map_or(&[], |known| &known.value.links)
+    known.map_or(&[][..], |known| known.value.links.as_slice())
 }
 
 /// For the chip: what is wrong with them; nothing, if nothing is.
@@ -43,10 +43,11 @@ fn describe(link: &AutopilotLink) -> String {
         (true, false) => "stands by",
         (false, _) => "silent",
     };
+    let refused = if link.refused > 0 { format!(", {} refused", link.refused) } else { String::new() };
     let round_trip = link.round_trip_ms.map_or_else(String::new, |ms| format!(", {ms:.0} ms there and back"));
     format!(
         "Autopilot at {}: {state}\n{:.0} messages/s, {:.1} kB/s in, {:.1} kB/s out{round_trip}\n{} received, {} lost \
-         ({:.1} % now), {} twice, {} bad",
+         ({:.1} % now), {} twice, {} bad{refused}",
         link.address,
         link.messages_per_s,
         link.received_bytes_per_s / 1e3,

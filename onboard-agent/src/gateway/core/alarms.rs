@@ -47,6 +47,8 @@ pub struct AlarmInputs {
     pub no_safe_runway: bool,
     /// It listens where strangers can connect.
     pub exposed: bool,
+    /// A log is played.
+    pub replay: bool,
     /// Heartbeats come from another program than the one that joined.
     pub other_fp_manager: bool,
     /// A plan is to be flown, and Safe mode would have no runway.
@@ -143,6 +145,7 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::NoRunwayStored => inputs.no_runway_stored,
         Watch::OtherFpManager => inputs.other_fp_manager,
         Watch::Exposed => inputs.exposed,
+        Watch::Replay => inputs.replay,
         Watch::NotStored => inputs.not_stored,
         Watch::Flooded => inputs.flooded,
     }

@@ -36,6 +36,7 @@ impl Gateway {
     }
 
     fn may_join(&self, join: &Join) -> Result<(), String> {
+        self.is_real()?;
         match self.state {
             GatewayState::Manual => Err("The pilot flies; join again when he gives back control.".into()),
             GatewayState::SafeApproach | GatewayState::SafeLand => {

@@ -22,6 +22,8 @@ pub struct Settings {
     pub terrain: Option<Arc<dyn Terrain>>,
     /// It listens where strangers can connect.
     pub exposed: bool,
+    /// What it hears is a log that is played: nothing can be commanded.
+    pub replay: bool,
 }
 
 /// Everything that can happen to the core.

@@ -216,6 +216,7 @@ impl Gateway {
             not_in_command: self.state == GatewayState::Manual,
             no_safe_runway: self.control.intent == Intent::Return,
             exposed: self.settings.exposed,
+            replay: self.settings.replay,
             other_fp_manager: self.fp_manager.has_heard_another(now),
             no_runway_stored: self.runways.is_empty() && self.fp_manager.plan.is_some(),
             not_stored: self.not_stored,

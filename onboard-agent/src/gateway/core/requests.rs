@@ -22,6 +22,7 @@ impl Gateway {
         asked: GatewayRequest,
         out: &mut Vec<Output>,
     ) -> Result<(), String> {
+        self.is_real()?;
         match asked {
             GatewayRequest::Launch => self.launch(out),
             GatewayRequest::Hold => self.hold(out),
@@ -35,6 +36,14 @@ impl Gateway {
             GatewayRequest::SetSafe(safe) => self.set_safe(safe, out),
             GatewayRequest::Terminate { confirm } => self.terminate(&confirm, out),
         }
+    }
+
+    /// An aircraft is at the other end.
+    pub(super) fn is_real(&self) -> Result<(), String> {
+        if self.settings.replay {
+            return Err("This is a replay of a telemetry log: nothing can be commanded.".into());
+        }
+        Ok(())
     }
 
     fn launch(&mut self, out: &mut Vec<Output>) -> Result<(), String> {

@@ -11,6 +11,7 @@ mod px4;
 
 use super::order::{Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
+use autopilot_link::signing::{Key, Signing};
 use examination::Examination;
 use mavlink::dialect::Dialect;
 
@@ -68,6 +69,10 @@ pub struct Setup {
     pub lockstep: bool,
     /// Addresses of the links, as people gave them; a link is known by its place among them.
     pub links: Vec<String>,
+    /// Behind the links to the autopilot comes one to another ground station's program, which may only watch.
+    pub mirror: bool,
+    /// What is sent is signed, and what is not is refused.
+    pub signing: Option<Signing>,
 }
 
 /// A driver in the list of drivers.
@@ -75,8 +80,9 @@ pub struct Setup {
 pub struct Registration {
     /// Its name in the configuration.
     pub name: &'static str,
-    /// A datagram from an unknown sender is from such an autopilot: its sender becomes the link's partner.
-    pub recognises: fn(&[u8]) -> bool,
+    /// A datagram from an unknown sender is from such an autopilot: its sender becomes the link's partner. With a key, only what is
+    /// signed with it.
+    pub recognises: fn(&[u8], Option<&Key>) -> bool,
     /// Makes a driver that has received nothing. It reports in [`Report::Capability`] whether it can fly the
     /// autopilot at the other end.
     pub make: fn(&Setup) -> Box<dyn Driver>,

@@ -147,7 +147,7 @@ impl GliderDriver {
 pub const REGISTRATION: Registration = Registration {
     examine: None,
     name: "glider",
-    recognises: |datagram| datagram.starts_with(b"GLIDER"),
+    recognises: |datagram, _| datagram.starts_with(b"GLIDER"),
     make: |_| Box::<GliderDriver>::default(),
 };
 
@@ -268,7 +268,7 @@ impl Rig {
 #[test]
 fn an_autopilot_with_a_protocol_of_its_own_is_flown_by_the_same_core() {
     let station = Station::new(settings(), None, (REGISTRATION.make)(&Setup::default()));
-    assert!((REGISTRATION.recognises)(b"GLIDER 1") && !(REGISTRATION.recognises)(b"\xFD"));
+    assert!((REGISTRATION.recognises)(b"GLIDER 1", None) && !(REGISTRATION.recognises)(b"\xFD", None));
     let (glider, outbox) = (Glider::default(), Outbox::default());
     let mut rig = Rig { glider, station, outbox, now: Time::ZERO, events: vec![] };
     rig.run_until("heard", |r| r.state() == GatewayState::Stop);

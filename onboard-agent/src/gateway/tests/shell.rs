@@ -1,8 +1,10 @@
 //! The whole gateway over sockets: simulator, link, session.
 
 use super::other_autopilot::{self, Glider};
-use crate::gateway::{Address, Config, run};
-use std::net::{TcpListener, UdpSocket};
+use crate::gateway::{Address, Config, run, tlog};
+use crate::services::storage::Limits;
+use std::net::{SocketAddr, TcpListener, UdpSocket};
+use std::path::Path;
 use std::time::{Duration, Instant};
 use usal::Session;
 use usal::contract::{GatewayRequest, GatewayState, LatLon, SafeRunway};
@@ -106,6 +108,59 @@ async fn killed_after_an_answer_what_was_accepted_is_on_the_disk() {
         let stored = std::fs::read_to_string(directory.path().join("gateway.json")).unwrap();
         assert!(stored.contains(&format!("\"id\":\"{id}\"")), "{id}: {stored}");
     }
+    trigger.shut_down();
+    tokio::time::timeout(Duration::from_secs(10), task).await.unwrap().unwrap().unwrap();
+}
+
+/// A flight over two links is logged, and the log is played to another gateway.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn two_links_are_logged_and_a_log_that_is_played_can_not_be_commanded() {
+    let directory = tempfile::tempdir().unwrap();
+    let link = sim::Link::Udp(SocketAddr::from(([127, 0, 0, 1], 0)));
+    let sim = sim::spawn(sim::Config { link, ..sim::Config::default() }).unwrap();
+    let autopilot: Address = format!("udpout:{}", sim.address()).parse().unwrap();
+    let limits = Limits { quota_bytes: 100 << 20, reserve_bytes: 0 };
+    let log = tlog::Config { folder: directory.path().into(), limits, vehicle: "test".into() };
+    let listen = free_endpoint();
+    let usual = Config::new("test", &listen, autopilot.clone());
+    let (trigger, shutdown) = crate::shutdown();
+    let config = Config { autopilots: vec![autopilot.clone(), autopilot], tlog: Some(log), ..usual };
+    let task = tokio::spawn(run(config, shutdown));
+    let session = Session::open(usal::Config::client("test", &listen).named("test")).await.unwrap();
+    let mut links = session.follow(gateway::LINKS).unwrap();
+    let both = async {
+        while !links.changed().await.unwrap().stamped.value.links.iter().all(|link| link.received > 100) {}
+    };
+    tokio::time::timeout(Duration::from_secs(60), both)
+        .await
+        .expect("the autopilot is heard over both links");
+    trigger.shut_down();
+    tokio::time::timeout(Duration::from_secs(10), task).await.unwrap().unwrap().unwrap();
+    sim.stop();
+    drop(session);
+    replay(directory.path()).await;
+}
+
+async fn replay(folder: &Path) {
+    let file = std::fs::read_dir(folder).unwrap().next().unwrap().unwrap().path();
+    let listen = free_endpoint();
+    let (trigger, shutdown) = crate::shutdown();
+    let address = format!("tlog:{}", file.display()).parse().unwrap();
+    let task = tokio::spawn(run(Config::new("test", &listen, address), shutdown));
+    let session = Session::open(usal::Config::client("test", &listen).named("test")).await.unwrap();
+    let mut state = session.follow(gateway::STATE).unwrap();
+    let heard = async {
+        loop {
+            let status = state.changed().await.unwrap().stamped.value.clone();
+            if status.state == GatewayState::Stop {
+                return status;
+            }
+        }
+    };
+    let status = tokio::time::timeout(Duration::from_secs(60), heard).await.expect("the log is played");
+    assert!(status.alarms.iter().any(|alarm| alarm.id == "replay"), "{status:?}");
+    let refused = session.call(gateway::REQUEST, &GatewayRequest::Safe, Duration::from_secs(20)).await;
+    assert!(format!("{refused:?}").contains("replay"), "{refused:?}");
     trigger.shut_down();
     tokio::time::timeout(Duration::from_secs(10), task).await.unwrap().unwrap().unwrap();
 }

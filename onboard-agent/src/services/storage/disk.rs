@@ -24,6 +24,8 @@ pub struct SyncCost {
 pub struct Disk {
     folder: PathBuf,
     limits: Limits,
+    /// A file of this name counts towards the quota.
+    counts: fn(&str) -> bool,
     current: Option<File>,
     /// Names of the files of this run, in their order.
     own: Vec<String>,
@@ -36,11 +38,17 @@ pub struct Disk {
 }
 
 impl Disk {
-    /// A folder. It is made when the first file is begun.
+    /// A folder of recordings. It is made when the first file is begun.
     pub fn new(folder: &Path, limits: Limits) -> Self {
+        Self::of(folder, limits, recording::is_recording)
+    }
+
+    /// A folder of files that are known by their names.
+    pub fn of(folder: &Path, limits: Limits, counts: fn(&str) -> bool) -> Self {
         Self {
             folder: folder.into(),
             limits,
+            counts,
             current: None,
             own: Vec::new(),
             is_empty: false,
@@ -124,11 +132,11 @@ impl Disk {
         }
         let wanted = bytes.max(LOOK_EVERY);
         let current = self.own.last().filter(|_| self.current.is_some()).map(String::as_str);
-        let mut stored = stored(&self.folder)?;
+        let mut stored = files(&self.folder, self.counts)?;
         stored.iter_mut().for_each(|file| self.date(file));
         let room = excess(stored, current, free_bytes(&self.folder), wanted, self.limits);
         for name in &room.remove {
-            tracing::info!("removing {name}: the recordings' quota or the disk is used up");
+            tracing::info!("removing {name}: the quota of {} or the disk is used up", self.folder.display());
             fs::remove_file(self.folder.join(name))?;
         }
         if room.full {
@@ -149,13 +157,17 @@ impl Disk {
 
 /// The recordings of a folder.
 pub fn stored(folder: &Path) -> io::Result<Vec<Stored>> {
+    files(folder, recording::is_recording)
+}
+
+fn files(folder: &Path, counts: fn(&str) -> bool) -> io::Result<Vec<Stored>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let Ok(name) = entry.file_name().into_string() else { continue };
         // what has gone meanwhile takes no room
         let Ok(metadata) = entry.metadata() else { continue };
-        if metadata.is_file() && recording::is_recording(&name) {
+        if metadata.is_file() && counts(&name) {
             let modified =
                 metadata.modified().ok().and_then(|at| at.duration_since(SystemTime::UNIX_EPOCH).ok());
             found.push(Stored { name, bytes: metadata.len(), modified: modified.unwrap_or_default() });

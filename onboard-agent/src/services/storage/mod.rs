@@ -4,7 +4,7 @@
 //! `disk`; this service follows the network and puts what it hears into the writer's queue. Nobody waits for it: what finds
 //! no room is counted, and the count stands in the recording.
 
-mod disk;
+pub(crate) mod disk;
 mod follow;
 mod mend;
 mod plan_drawing;

@@ -4,12 +4,14 @@
 mod connect;
 mod connection;
 mod listen;
+mod replay;
 mod udp;
 mod wire;
 
 use crate::{Address, Outbox};
 use connect::{Connect, Far};
 use listen::Listen;
+use replay::Replay;
 use std::io;
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
@@ -52,6 +54,7 @@ enum Kind {
     Udp(Udp),
     Connect(Connect),
     Listen(Listen),
+    Replay(Replay),
 }
 
 /// A link that carries bytes.
@@ -69,12 +72,13 @@ impl Link {
     /// To the one autopilot at an address. It need not be there yet.
     ///
     /// # Errors
-    /// If the local socket can't be had.
+    /// If the local socket can't be had, or the log can't be read.
     pub async fn open(address: &Address) -> io::Result<Self> {
         Ok(Self::new(match address {
             Address::UdpIn(at) => Kind::Udp(Udp::new(UdpSocket::bind(at).await?, Partners::AUTOPILOT)),
             Address::UdpOut(to) => Kind::Udp(Udp::to(to).await?),
             Address::Tcp(to) => Kind::Connect(Connect::to(Far::Tcp(to.clone()))),
+            Address::Tlog(path) => Kind::Replay(Replay::open(path)?),
             Address::Serial(line) => Kind::Connect(Connect::to(Far::Serial(line.clone()))),
         }))
     }
@@ -94,7 +98,7 @@ impl Link {
         match &self.kind {
             Kind::Udp(udp) => udp.local_address(),
             Kind::Listen(listen) => listen.local_address(),
-            Kind::Connect(_) => None,
+            Kind::Connect(_) | Kind::Replay(_) => None,
         }
     }
 
@@ -104,6 +108,8 @@ impl Link {
             Kind::Udp(udp) => udp.peers(),
             Kind::Connect(connect) => connect.peer().into_iter().collect(),
             Kind::Listen(listen) => listen.peer().into_iter().collect(),
+            // nobody hears what is said to a log
+            Kind::Replay(_) => vec![],
         }
     }
 
@@ -115,6 +121,7 @@ impl Link {
             Kind::Udp(udp) => udp.next(into, is_partner, &mut self.stats).await,
             Kind::Connect(connect) => connect.next(into).await,
             Kind::Listen(listen) => listen.next(into).await,
+            Kind::Replay(replay) => replay.next(into).await,
         };
         self.log_strangers();
         event
@@ -127,6 +134,7 @@ impl Link {
             Kind::Udp(udp) => udp.send(to, frame),
             Kind::Connect(connect) => connect.queue(to, frame),
             Kind::Listen(listen) => listen.queue(to, frame),
+            Kind::Replay(_) => false,
         };
         self.stats.unsent += u64::from(!sent);
     }
@@ -134,16 +142,16 @@ impl Link {
     /// Sends what waits.
     pub fn flush(&mut self) {
         match &mut self.kind {
-            Kind::Udp(_) => {}
+            Kind::Udp(_) | Kind::Replay(_) => {}
             Kind::Connect(connect) => connect.flush(),
             Kind::Listen(listen) => listen.flush(),
         }
     }
 
-    /// Sends frames to everyone at the other end.
-    pub fn send_all(&mut self, outbox: &Outbox) {
+    /// Sends the frames that are for the link of this number to everyone at its other end.
+    pub fn send_all(&mut self, number: usize, outbox: &Outbox) {
         for peer in self.peers() {
-            outbox.frames().for_each(|frame| self.send(peer, frame));
+            outbox.frames_over(number).for_each(|frame| self.send(peer, frame));
         }
         self.flush();
     }

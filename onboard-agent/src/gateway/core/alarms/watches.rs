@@ -36,6 +36,8 @@ pub enum Watch {
     OtherFpManager,
     /// Strangers can connect.
     Exposed,
+    /// A log is played.
+    Replay,
     /// The state directory can not be written.
     NotStored,
     /// Somebody opens connections without end.
@@ -55,7 +57,7 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 17] = [
+pub const WATCHES: [Watch; 18] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
@@ -71,6 +73,7 @@ pub const WATCHES: [Watch; 17] = [
     Watch::NoRunwayStored,
     Watch::OtherFpManager,
     Watch::Exposed,
+    Watch::Replay,
     Watch::NotStored,
     Watch::Flooded,
 ];
@@ -210,6 +213,15 @@ const WORDS: [Words; WATCHES.len()] = [
         severity: Severity::Caution,
         source: "gateway",
         advice: "The agent listens where strangers can connect, and nothing protects it: whoever does can read everything, commit plans and give every command.",
+        cause: None,
+        patience: Duration::from_secs(0),
+    },
+    Words {
+        watch: Watch::Replay,
+        id: "replay",
+        severity: Severity::Caution,
+        source: "gateway",
+        advice: "This is a replay: a telemetry log is played, and no aircraft is at the other end. Nothing can be commanded.",
         cause: None,
         patience: Duration::from_secs(0),
     },

@@ -1,17 +1,32 @@
 //! The links to the autopilot: what comes over them, how they do, and over which it is spoken.
+//!
+//! All are listened to; a message that comes over several is taken once. It is spoken over one, the first that is alive: an
+//! autopilot that gets parts of one transfer over two links mixes them up.
 
 use super::Peer;
 use super::statistics::Statistics;
 use crate::gateway::driver::FromLink;
 use crate::gateway::order::Time;
 use autopilot_link::Outbox;
-use autopilot_link::frame::{Decoder, encode_into};
+use autopilot_link::frame::{Decoder, Frame, encode_into};
+use autopilot_link::signing::Signing;
 use mavlink::dialects::ardupilotmega::{MavMessage, TIMESYNC_DATA};
+use std::collections::VecDeque;
 use std::time::Duration;
 use usal::contract::{AutopilotLink, AutopilotLinks};
 
-/// A link is alive when the autopilot was heard over it within this.
-const ALIVE: Duration = Duration::from_secs(2);
+/// A link over which the autopilot was not heard for so long is dead. Its heartbeat alone comes once a second.
+const DEAD: Duration = Duration::from_millis(1600);
+/// A preferred link has to be alive for so long before it is spoken over again.
+const STEADY: Duration = Duration::from_secs(3);
+/// The same message over another link comes within this.
+const COPY: Duration = Duration::from_millis(500);
+/// Messages that are remembered to know their copies.
+const REMEMBERED: usize = 512;
+/// Refused messages are logged at most this often.
+const LOG_EVERY: Duration = Duration::from_secs(10);
+/// A link whose autopilot's clock is so far behind brings what is no longer true, ms.
+const LATE_MS: u32 = 500;
 
 /// A link.
 #[derive(Debug, Default)]
@@ -22,6 +37,12 @@ struct Link {
     statistics: Statistics,
     /// When the autopilot was heard over it.
     heard: Option<Time>,
+    /// Since when it has been alive.
+    alive_since: Option<Time>,
+    /// The autopilot's clock as it came over it, ms since it started.
+    clock_ms: Option<u32>,
+    /// Messages that were not believed.
+    refused: u64,
     /// Number of the next frame over it.
     sequence: u8,
     /// The autopilot is to be asked for its time with this.
@@ -30,26 +51,61 @@ struct Link {
 
 impl Link {
     fn is_alive(&self, now: Time) -> bool {
-        self.heard.is_some_and(|heard| now.saturating_sub(heard) < ALIVE)
+        self.heard.is_some_and(|heard| now.saturating_sub(heard) < DEAD)
     }
 
-    fn send(&mut self, own: Peer, message: &MavMessage, outbox: &mut Outbox) {
-        outbox.push(|bytes| {
+    fn hear(&mut self, now: Time) {
+        if !self.is_alive(now) {
+            self.alive_since = Some(now);
+        }
+        self.heard = Some(now);
+    }
+
+    fn is_steady(&self, now: Time) -> bool {
+        self.is_alive(now) && self.alive_since.is_some_and(|since| now.saturating_sub(since) >= STEADY)
+    }
+
+    fn send(&mut self, to: &mut Sending<'_>, number: usize, message: &MavMessage) {
+        let Sending { now, own, signing, outbox } = to;
+        outbox.push_over(number, |bytes| {
             let before = bytes.len();
-            encode_into(own, self.sequence, message, bytes);
+            encode_into(*own, self.sequence, message, bytes);
+            if let Some(signing) = signing {
+                signing.sign(*now, u8::try_from(number).unwrap_or(u8::MAX), bytes, before);
+            }
             self.statistics.sent(bytes.len() - before);
         });
         self.sequence = self.sequence.wrapping_add(1);
     }
 }
 
+/// How and where to messages are sent.
+struct Sending<'a> {
+    now: Time,
+    /// Who we are.
+    own: Peer,
+    signing: &'a mut Option<Signing>,
+    outbox: &'a mut Outbox,
+}
+
 /// The links. See the module's text.
 #[derive(Debug)]
-pub struct Links(Vec<Link>);
+pub struct Links {
+    links: Vec<Link>,
+    /// The one that is spoken over.
+    used: usize,
+    /// Who is at their other end, once it was heard.
+    autopilot: Option<Peer>,
+    /// What came lately, of several links.
+    copies: Copies,
+    signing: Option<Signing>,
+    /// When refused messages were logged, and how many there were.
+    logged: (Time, u64),
+}
 
 impl Default for Links {
     fn default() -> Self {
-        Self::new(&[])
+        Self::new(&[], None)
     }
 }
 
@@ -66,18 +122,18 @@ pub struct Received {
 
 impl Links {
     /// Links at these addresses; one without, if there is none.
-    pub fn new(addresses: &[String]) -> Self {
+    pub fn new(addresses: &[String], signing: Option<Signing>) -> Self {
         let link = |address: &String| Link { address: address.clone(), ..Link::default() };
         let mut links: Vec<Link> = addresses.iter().map(link).collect();
         if links.is_empty() {
             links.push(Link::default());
         }
-        Self(links)
+        Self { links, used: 0, autopilot: None, copies: Copies::default(), signing, logged: (Time::ZERO, 0) }
     }
 
     /// Takes in what a link brought.
     pub fn receive(&mut self, link: usize, from: FromLink<'_>) {
-        let Some(Link { decoder, .. }) = self.0.get_mut(link) else { return };
+        let Some(Link { decoder, .. }) = self.links.get_mut(link) else { return };
         match from {
             FromLink::Connected => decoder.restart(),
             FromLink::Stream(bytes) => decoder.push(bytes),
@@ -85,70 +141,218 @@ impl Links {
         }
     }
 
-    /// The next message of what was received.
-    pub fn next(&mut self) -> Option<Received> {
-        for (number, link) in self.0.iter_mut().enumerate() {
-            if let Some(frame) = link.decoder.next_frame() {
+    /// The next message of what was received; `pass` is given its frame.
+    pub fn next(&mut self, now: Time, pass: impl FnOnce(&Frame<'_>)) -> Option<Received> {
+        let several = self.links.len() > 1;
+        for (number, link) in self.links.iter_mut().enumerate() {
+            while let Some(frame) = link.decoder.next_frame() {
+                if several && self.copies.contains(now, number, &frame) {
+                    link.statistics.received(&frame);
+                    if self.autopilot == Some(frame.sender) {
+                        link.hear(now);
+                        // as new as over the other link
+                        link.clock_ms = None;
+                    }
+                    continue;
+                }
+                // a copy has the stamp of the first; only what was believed has copies
+                if self.signing.as_mut().is_some_and(|signing| !signing.believes(now, &frame)) {
+                    link.refused += 1;
+                    continue;
+                }
                 link.statistics.received(&frame);
+                if several {
+                    self.copies.add(now, number, &frame);
+                }
+                pass(&frame);
                 return Some(Received { link: number, sender: frame.sender, message: frame.message() });
             }
         }
         None
     }
 
+    /// So many.
+    pub fn count(&self) -> usize {
+        self.links.len()
+    }
+
     /// The autopilot was heard.
-    pub fn heard(&mut self, now: Time, link: usize) {
-        if let Some(link) = self.0.get_mut(link) {
-            link.heard = Some(now);
-        }
+    pub fn heard(&mut self, now: Time, link: usize, autopilot: Peer, message: &MavMessage) {
+        self.autopilot = Some(autopilot);
+        let Some(link) = self.links.get_mut(link) else { return };
+        link.hear(now);
+        link.clock_ms = clock_ms(message).or(link.clock_ms);
+    }
+
+    /// What comes over this link was true some time ago: it is slower than the one that is spoken over.
+    pub fn is_late(&self, link: usize) -> bool {
+        let clock_ms = |link: usize| self.links.get(link).and_then(|link| link.clock_ms);
+        let (Some(used), Some(this)) = (clock_ms(self.used), clock_ms(link)) else { return false };
+        link != self.used && used.saturating_sub(this) > LATE_MS
+    }
+
+    /// It is spoken over this link.
+    pub fn is_used(&self, link: usize) -> bool {
+        link == self.used
+    }
+
+    /// Speaks over the first link that is alive. `busy`: something goes on that only a dead link may interrupt. True: another one
+    /// than before.
+    pub fn choose(&mut self, now: Time, busy: bool) -> bool {
+        let used_alive = self.links.get(self.used).is_some_and(|link| link.is_alive(now));
+        let best = if used_alive {
+            self.links.iter().take(self.used).position(|link| !busy && link.is_steady(now))
+        } else {
+            self.links.iter().position(|link| link.is_alive(now))
+        };
+        let Some(best) = best.filter(|best| *best != self.used) else { return false };
+        let address = |link: usize| self.links.get(link).map_or("", |link| link.address.as_str());
+        tracing::warn!(
+            from = address(self.used),
+            to = address(best),
+            "another link to the autopilot is used"
+        );
+        self.used = best;
+        true
     }
 
     /// The autopilot answered a question for its time.
     pub fn time_answered(&mut self, now: Time, link: usize, asked: i64) {
-        if let Some(link) = self.0.get_mut(link) {
+        if let Some(link) = self.links.get_mut(link) {
             link.statistics.time_answered(now, asked);
         }
     }
 
     /// Asks the autopilot for its time over each: the answers tell how long they take.
     pub fn ask_time(&mut self, now: Time) {
-        for (number, link) in self.0.iter_mut().enumerate() {
+        for (number, link) in self.links.iter_mut().enumerate() {
             link.question = Some(link.statistics.ask_time(now, number));
         }
     }
 
-    /// Hands over the frames of messages to be sent, and of questions. `own`: who we are.
-    pub fn send(&mut self, own: Peer, to: Option<Peer>, messages: &mut Vec<MavMessage>, outbox: &mut Outbox) {
+    /// Hands over the frames of messages to be sent, and of questions; that we are here is said over each link. `own`: who we are.
+    pub fn send(
+        &mut self,
+        now: Time,
+        own: Peer,
+        to: Option<Peer>,
+        messages: &mut Vec<MavMessage>,
+        outbox: &mut Outbox,
+    ) {
+        let mut sending = Sending { now, own, signing: &mut self.signing, outbox };
         for message in messages.drain(..) {
-            if let Some(link) = self.0.first_mut() {
-                link.send(own, &message, outbox);
+            let everywhere = matches!(message, MavMessage::HEARTBEAT(_));
+            for (number, link) in self.links.iter_mut().enumerate() {
+                if everywhere || number == self.used {
+                    link.send(&mut sending, number, &message);
+                }
             }
         }
-        for link in &mut self.0 {
+        for (number, link) in self.links.iter_mut().enumerate() {
             if let (Some(question), Some(to)) = (link.question.take(), to) {
-                link.send(own, &ask_time(question, to), outbox);
+                link.send(&mut sending, number, &ask_time(question, to));
             }
         }
     }
 
     /// How each does; once a second.
     pub fn figures(&mut self, now: Time) -> AutopilotLinks {
+        let used = self.used;
         let figures = |(number, link): (usize, &mut Link)| AutopilotLink {
             address: link.address.clone(),
             alive: link.is_alive(now),
-            in_use: number == 0,
+            in_use: number == used,
+            refused: link.refused,
             ..link.statistics.figures(now, link.decoder.bad_frames)
         };
-        AutopilotLinks { links: self.0.iter_mut().enumerate().map(figures).collect() }
+        AutopilotLinks { links: self.links.iter_mut().enumerate().map(figures).collect() }
+    }
+
+    /// Tells in the log of messages that were refused.
+    pub fn log_refused(&mut self, now: Time) {
+        let refused = self.links.iter().map(|link| link.refused).sum();
+        if refused > self.logged.1 && now >= self.logged.0 + LOG_EVERY {
+            tracing::warn!(
+                refused,
+                "messages were refused: they are not signed with the key of --signing-key, or were sent before"
+            );
+            self.logged = (now, refused);
+        }
     }
 
     /// Bytes that were no frames.
     pub fn ignored_bytes(&self) -> u64 {
-        self.0.iter().map(|link| link.decoder.ignored_bytes).sum()
+        self.links.iter().map(|link| link.decoder.ignored_bytes).sum()
+    }
+}
+
+/// The messages that came lately, to know those that come again over another link.
+#[derive(Debug, Default)]
+struct Copies(VecDeque<Seen>);
+
+#[derive(Debug)]
+struct Seen {
+    at: Time,
+    link: usize,
+    /// Sender, number, checksum.
+    frame: (Peer, u8, u16),
+}
+
+impl Copies {
+    /// It came over another link a moment ago.
+    fn contains(&mut self, now: Time, link: usize, frame: &Frame<'_>) -> bool {
+        let young = |seen: &Seen| now.saturating_sub(seen.at) < COPY;
+        while self.0.front().is_some_and(|seen| !young(seen)) || self.0.len() >= REMEMBERED {
+            self.0.pop_front();
+        }
+        let frame = (frame.sender, frame.sequence, frame.checksum);
+        self.0.iter().any(|seen| seen.link != link && seen.frame == frame)
+    }
+
+    fn add(&mut self, now: Time, link: usize, frame: &Frame<'_>) {
+        let frame = (frame.sender, frame.sequence, frame.checksum);
+        self.0.push_back(Seen { at: now, link, frame });
+    }
+}
+
+/// The autopilot's clock, ms since it started.
+fn clock_ms(message: &MavMessage) -> Option<u32> {
+    match message {
+        MavMessage::GLOBAL_POSITION_INT(m) => Some(m.time_boot_ms),
+        MavMessage::ATTITUDE(m) => Some(m.time_boot_ms),
+        MavMessage::SYSTEM_TIME(m) => Some(m.time_boot_ms),
+        _ => None,
     }
 }
 
 fn ask_time(question: i64, to: Peer) -> MavMessage {
     let (target_system, target_component) = (to.system, to.component);
     MavMessage::TIMESYNC(TIMESYNC_DATA { tc1: 0, ts1: question, target_system, target_component })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mavlink::dialects::ardupilotmega::HEARTBEAT_DATA;
+
+    const AUTOPILOT: Peer = Peer { system: 1, component: 1 };
+
+    #[test]
+    fn a_preferred_link_that_is_back_waits_until_it_is_steady_and_nothing_goes_on() {
+        let mut links = Links::new(&["a".into(), "b".into()], None);
+        let beat = MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT);
+        let mut used = vec![];
+        for second in 0..20 {
+            let now = Time::from_secs(second);
+            links.heard(now, 1, AUTOPILOT, &beat);
+            // the first one is silent from 3 to 6
+            if !(3..=6).contains(&second) {
+                links.heard(now, 0, AUTOPILOT, &beat);
+            }
+            links.choose(now, second < 15);
+            used.push(links.used);
+        }
+        let expected: Vec<usize> = (0..20).map(|second| usize::from((4..15).contains(&second))).collect();
+        assert_eq!(used, expected);
+    }
 }

@@ -1,5 +1,6 @@
 //! What is being done to the autopilot's list: one transfer or one partial write at a time.
 
+use super::aboard::Aboard;
 use super::partial_write::PartialWrite;
 use super::rto::Rto;
 use super::transfer::Transfer;
@@ -42,11 +43,12 @@ enum Job {
     Write(PartialWrite),
 }
 
-/// The list's one job, and what is known of the link.
+/// The list's one job, and what is known of the link and of the list.
 #[derive(Debug, Clone, Default)]
 pub struct Mission {
     job: Option<Job>,
     link: Rto,
+    aboard: Aboard,
 }
 
 impl Mission {
@@ -59,6 +61,7 @@ impl Mission {
         peer: Peer,
         out: &mut Vec<MavMessage>,
     ) {
+        self.aboard.replace(&entries);
         let link = std::mem::take(&mut self.link);
         self.job = Some(Job::Transfer(Transfer::upload(now, entries, rules, link, peer, out)));
     }
@@ -72,6 +75,7 @@ impl Mission {
         peer: Peer,
         out: &mut Vec<MavMessage>,
     ) {
+        self.aboard.overwrite(&entries);
         let link = std::mem::take(&mut self.link);
         self.job = Some(Job::Write(PartialWrite::begin(now, entries, same, link, peer, out)));
     }
@@ -88,6 +92,21 @@ impl Mission {
             Job::Transfer(transfer) if transfer.is_called(list) => self.finish(Some(Outcome::Verified)),
             _ => None,
         }
+    }
+
+    /// The list, as it was when it was last verified or read.
+    pub fn aboard(&self) -> &[Entry] {
+        self.aboard.entries()
+    }
+
+    /// Something is being done.
+    pub fn is_busy(&self) -> bool {
+        self.job.is_some()
+    }
+
+    /// What is being done is given up.
+    pub fn break_off(&mut self, why: &str) -> Option<Outcome> {
+        self.is_busy().then(|| Outcome::Failed(why.to_owned())).and_then(|failed| self.finish(Some(failed)))
     }
 
     /// When `tick` is due.
@@ -124,6 +143,7 @@ impl Mission {
 
     fn finish(&mut self, outcome: Option<Outcome>) -> Option<Outcome> {
         let outcome = outcome?;
+        self.aboard.ended(&outcome);
         self.link = match self.job.take()? {
             Job::Transfer(transfer) => transfer.into_rto(),
             Job::Write(write) => write.into_rto(),

@@ -2,6 +2,7 @@
 //! and the list that they go to (`list`, `item`), what is done to it (`mission`, by `transfer` and `partial_write`),
 //! commands, parameters, streams, telemetry, words and timeouts. It knows no autopilot's habits: those are a `dialect`.
 
+mod aboard;
 pub mod chain;
 pub mod commands;
 pub mod dialect;
@@ -10,6 +11,7 @@ pub mod examine;
 pub mod item;
 mod links;
 pub mod list;
+mod mirror;
 pub mod mission;
 pub mod parameters;
 mod partial_write;

@@ -7,6 +7,7 @@ use super::Peer;
 use super::commands::{Client, Command, Commands, Refusal, Shown};
 use super::dialect::Manner;
 use super::links::{Links, Received};
+use super::mirror::Mirror;
 use super::mission::{Mission, Outcome};
 use super::streams::Streams;
 use super::telemetry::Readings;
@@ -14,7 +15,8 @@ use super::words::Words;
 use crate::gateway::driver::{FromLink, Setup};
 use crate::gateway::order::{Report, Time};
 use autopilot_link::Outbox;
-use autopilot_link::frame::{Decoder, Sender};
+use autopilot_link::frame::{Decoder, Frame, Sender};
+use autopilot_link::signing::Key;
 use mavlink::dialects::ardupilotmega::*;
 use std::time::Duration;
 
@@ -55,6 +57,8 @@ pub struct Session {
     /// Messages of other systems, and such without sense.
     pub ignored: u64,
     mission: Mission,
+    /// Behind the links to the autopilot comes the one to another program, if there is a mirror.
+    mirror: Option<Mirror>,
     commands: Commands,
     streams: Streams,
     readings: Readings,
@@ -63,6 +67,8 @@ pub struct Session {
     /// What it said.
     pub words: Words,
     beat_at: Time,
+    /// Of the last message, or the time that has passed.
+    now: Time,
     stepped: Option<i64>,
     /// What is to be sent.
     pub out: Vec<MavMessage>,
@@ -71,7 +77,12 @@ pub struct Session {
 impl Session {
     /// A session that has received nothing. In lockstep, TIMESYNC requests are the simulator's steps.
     pub fn new(setup: &Setup) -> Self {
-        Self { lockstep: setup.lockstep, links: Links::new(&setup.links), ..Self::default() }
+        Self {
+            lockstep: setup.lockstep,
+            links: Links::new(&setup.links, setup.signing.clone()),
+            mirror: setup.mirror.then(Mirror::default),
+            ..Self::default()
+        }
     }
 
     /// The autopilot, once it was received.
@@ -86,12 +97,24 @@ impl Session {
 
     /// Takes in what a link brought.
     pub fn receive(&mut self, link: usize, from: FromLink<'_>) {
-        self.links.receive(link, from);
+        match &mut self.mirror {
+            Some(mirror) if link == self.links.count() => mirror.receive(from),
+            _ => self.links.receive(link, from),
+        }
     }
 
     /// Handles the next message of what was received. False: there is none left.
     pub fn process(&mut self, now: Time, events: &mut Vec<SessionEvent>) -> bool {
-        let Some(Received { link, sender, message }) = self.links.next() else { return false };
+        let (mirror, peer) = (self.mirror.as_mut(), self.peer);
+        let pass = |frame: &Frame<'_>| {
+            if let Some(mirror) = mirror.filter(|_| peer == Some(frame.sender)) {
+                mirror.pass(frame);
+            }
+        };
+        let Some(Received { link, sender, message }) = self.links.next(now, pass) else {
+            let mirror = self.mirror.as_mut();
+            return mirror.is_some_and(|mirror| mirror.process(now, self.mission.aboard()));
+        };
         match message {
             Some(message) => self.on_message(now, link, sender, &message, events),
             // an unknown value in an enumeration loses this message only
@@ -102,7 +125,10 @@ impl Session {
 
     /// Hands over the frames to be sent.
     pub fn send(&mut self, outbox: &mut Outbox) {
-        self.links.send(self.own(), self.peer, &mut self.out, outbox);
+        self.links.send(self.now, self.own(), self.peer, &mut self.out, outbox);
+        if let Some(mirror) = &mut self.mirror {
+            mirror.send(self.links.count(), outbox);
+        }
     }
 
     /// Gives a command, in its turn.
@@ -140,6 +166,13 @@ impl Session {
 
     /// Time passed.
     pub fn tick(&mut self, now: Time, events: &mut Vec<SessionEvent>) {
+        self.now = now;
+        if self.links.choose(now, self.mission.is_busy()) {
+            // what was asked for over the other link is asked for again, what was under way begins anew
+            self.streams = Streams::default();
+            let broken = self.mission.break_off("its link is dead, another one is used");
+            events.extend(broken.map(SessionEvent::Mission));
+        }
         if now >= self.beat_at {
             self.beat_at = now + HEARTBEAT;
             self.out.push(heartbeat(self.manner.we_are));
@@ -162,6 +195,7 @@ impl Session {
     }
 
     fn log_garbage(&mut self, now: Time) {
+        self.links.log_refused(now);
         let bytes = self.links.ignored_bytes();
         if bytes > self.logged.1 && now >= self.logged.0 + LOG_EVERY {
             tracing::warn!(bytes, "bytes that are no MAVLink were ignored on the autopilot's link");
@@ -192,7 +226,10 @@ impl Session {
             self.ignored += 1;
             return;
         };
-        self.links.heard(now, link);
+        self.links.heard(now, link, peer, message);
+        if self.links.is_late(link) && !is_answer(message) {
+            return;
+        }
         self.streams.seen(mavlink::Message::message_id(message));
         match message {
             MavMessage::HEARTBEAT(beat) => self.on_heartbeat(now, beat, events),
@@ -208,12 +245,26 @@ impl Session {
             }
             MavMessage::STATUSTEXT(text) => self.words.hear(now, text),
             MavMessage::PARAM_VALUE(value) => events.push(SessionEvent::Parameter(value.clone())),
-            _ => match self.mission.on_message(now, message, peer, &mut self.out) {
-                Some(outcome) => events.extend(outcome.map(SessionEvent::Mission)),
-                None => self.readings.take(now, message, events, &mut self.ignored),
-            },
+            _ => self.on_other(now, link, message, peer, events),
         }
         self.tick(now, events);
+    }
+
+    /// Of the list, or telemetry. One transfer stays on one link.
+    fn on_other(
+        &mut self,
+        now: Time,
+        link: usize,
+        message: &MavMessage,
+        peer: Peer,
+        events: &mut Vec<SessionEvent>,
+    ) {
+        let used = self.links.is_used(link);
+        let about_list = if used { self.mission.on_message(now, message, peer, &mut self.out) } else { None };
+        match about_list {
+            Some(outcome) => events.extend(outcome.map(SessionEvent::Mission)),
+            None => self.readings.take(now, message, events, &mut self.ignored),
+        }
     }
 
     /// The first autopilot that is received is ours; the rest are strangers.
@@ -262,16 +313,23 @@ impl Session {
     }
 }
 
-/// A datagram has an autopilot's heartbeat in it.
-pub fn recognises(datagram: &[u8]) -> bool {
+/// A datagram has an autopilot's heartbeat in it, signed if there is a key.
+pub fn recognises(datagram: &[u8], key: Option<&Key>) -> bool {
     let mut decoder = Decoder::default();
     decoder.push_datagram(datagram);
     while let Some(frame) = decoder.next_frame() {
-        if matches!(frame.message(), Some(MavMessage::HEARTBEAT(beat)) if is_autopilot(&beat)) {
+        let beats = matches!(frame.message(), Some(MavMessage::HEARTBEAT(beat)) if is_autopilot(&beat));
+        if beats && key.is_none_or(|key| key.has_signed(&frame)) {
             return true;
         }
     }
     false
+}
+
+/// It is as good when it comes late.
+fn is_answer(message: &MavMessage) -> bool {
+    use MavMessage::*;
+    matches!(message, COMMAND_ACK(_) | STATUSTEXT(_) | PARAM_VALUE(_) | TIMESYNC(_))
 }
 
 /// Its engine may run.

@@ -40,7 +40,13 @@ pub struct Flight {
 }
 
 pub fn settings() -> Settings {
-    Settings { vehicle: "test".into(), profile: aircraft::Profile::default(), terrain: None, exposed: false }
+    Settings {
+        vehicle: "test".into(),
+        profile: aircraft::Profile::default(),
+        terrain: None,
+        exposed: false,
+        replay: false,
+    }
 }
 
 /// A station that starts, in lockstep with the simulator.

@@ -197,7 +197,9 @@ fn the_autopilot_says_which_it_is_and_what_cannot_be_flown_is_refused_in_plain_w
         let mut rig = Rig::new();
         let beat = HEARTBEAT_DATA { autopilot, mavtype, ..HEARTBEAT_DATA::DEFAULT };
         let message = MavMessage::HEARTBEAT(beat);
-        assert!((DEFAULT.recognises)(&encode(SENDER, 0, &message)) && !(DEFAULT.recognises)(b"hello"));
+        assert!(
+            (DEFAULT.recognises)(&encode(SENDER, 0, &message), None) && !(DEFAULT.recognises)(b"hello", None)
+        );
         rig.hear(&message);
         (rig.px4.kind, rig.driver_only) = (mavtype, autopilot != MavAutopilot::MAV_AUTOPILOT_PX4);
         rig.until("a verdict", |rig| rig.capability().is_some());
