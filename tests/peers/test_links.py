@@ -189,7 +189,7 @@ def test_mavproxy_settles_on_the_mirror_and_is_refused(mirror, tmp_path):
     ]
     process = subprocess.Popen(
         [str(part) for part in mavproxy], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        cwd=tmp_path, env={**os.environ, "HOME": str(tmp_path)}, bufsize=0,
+        cwd=tmp_path, env={**os.environ, "HOME": str(tmp_path), "PYTHONUNBUFFERED": "1"}, bufsize=0,
     )
     said = []
 
@@ -210,6 +210,7 @@ def test_mavproxy_settles_on_the_mirror_and_is_refused(mirror, tmp_path):
             process.stdin.write((order + "\n").encode())
             says(answer, 20)
     finally:
-        process.terminate()
+        # it does not end when it is asked to
+        process.kill()
         process.wait(10)
         reader.join()
