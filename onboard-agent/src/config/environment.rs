@@ -8,7 +8,7 @@ use std::ffi::{OsStr, OsString};
 pub const PREFIX: &str = "LEGWORK_";
 
 /// What is said of them with the options.
-pub const HELP: &str = "Every option can also stand in the environment (LEGWORK_STATE_DIR for --state-dir; several tiles as in PATH, several links with commas between) or \
+pub const HELP: &str = "Every option can also stand in the environment (LEGWORK_STATE_DIR for --state-dir; several values with `;` between them) or \
 in the file that --config names. The command line counts first, then the environment, then the file. An annotated file: \
 assets/onboard-agent/agent.toml.";
 
@@ -46,12 +46,11 @@ fn set(option: &Arg, value: &OsStr) -> Result<Options, String> {
             Some("false" | "0" | "no" | "off") => vec![],
             _ => return Err("say true or false".into()),
         },
-        // an address has colons in it
-        ArgAction::Append if option.get_id() == "autopilot" => {
-            let addresses = value.to_str().ok_or("write it as UTF-8")?.split(',');
-            addresses.map(|address| typed(address.trim().as_ref())).collect()
-        }
-        ArgAction::Append => std::env::split_paths(value).map(|path| typed(path.as_os_str())).collect(),
+        // addresses have colons, and paths may
+        ArgAction::Append => match value.to_str() {
+            Some(values) => values.split(';').map(|value| typed(OsStr::new(value))).collect(),
+            None => vec![typed(value)],
+        },
         _ => vec![typed(value)],
     };
     let command = Options::augment_args(Command::new("environment")).no_binary_name(true);
@@ -78,7 +77,7 @@ mod tests {
             ("LEGWORK_RECORD_QUOTA_MIB", "9"),
             ("LEGWORK_SIMULATED", "true"),
             ("LEGWORK_INSECURE", "no"),
-            ("LEGWORK_TERRAIN", "a.hgt:b.hgt"),
+            ("LEGWORK_TERRAIN", "a.hgt;b.hgt"),
             ("LEGWORK_VEHICLE", ""),
             ("LEGWORK_INSIDE", "/tmp/not/for/people"),
             ("LEGWORK_SEED", "of the tests"),
