@@ -316,8 +316,8 @@ impl FlightPlan {
 
     /// The runway that `home` altitudes are above at a stage of the main plan: of the flight's own take-off; before any, of the first.
     pub fn home_at(&self, stage: usize) -> Option<&crate::Runway> {
-        let up_to = self.stages.iter().take(stage.saturating_add(1));
-        let last = up_to.filter(|s| s.kind == crate::StageKind::TakeOff).next_back();
+        let mut up_to = self.stages.iter().take(stage.saturating_add(1));
+        let last = up_to.rfind(|s| s.kind == crate::StageKind::TakeOff);
         last.and_then(|s| self.runway(s.runway.as_ref()?)).or_else(|| self.home())
     }
 
