@@ -49,8 +49,8 @@ impl Window {
     fn colour_in(&self, rect: Rect, words: &str) -> Option<Color32> {
         let shapes = self.harness.output().shapes.iter();
         let inside = shapes.filter(|clipped| rect.contains_rect(clipped.clip_rect));
-        let found = inside.flat_map(|clipped| texts(&clipped.shape));
-        let text = found.filter(|text| text.galley.text().contains(words)).last()?;
+        let mut found = inside.flat_map(|clipped| texts(&clipped.shape));
+        let text = found.rfind(|text| text.galley.text().contains(words))?;
         let own = text.galley.job.sections.first().map(|section| section.format.color);
         text.override_text_color
             .or(own.filter(|own| *own != Color32::PLACEHOLDER))
