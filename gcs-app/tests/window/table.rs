@@ -264,7 +264,10 @@ fn a_leg_that_would_be_left_out_stays_in_the_table_and_on_the_map() {
     assert!(top("side1") < top("side2") && top("side2") < top("side3"), "it stands where it would be flown");
     assert!(window.shows("⚠ Left out: "), "with the reason");
     assert!(window.paints("left out: side2"), "and as a broken line on the map");
+    // which brings its row into view
+    window.click("TF side2");
     let at = window.centre("Name of side2");
+    window.press(Key::Escape);
     window.click_at(at);
     assert_eq!(window.selected(), "side2");
     window.fill_in(Role::SpinButton, "Altitude", "130");
