@@ -186,13 +186,13 @@ impl Writer {
 mod tests {
     use super::*;
     use autopilot_link::Peer;
-    use autopilot_link::frame::{Sender, encode};
-    use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavMessage};
+    use autopilot_link::frame::{Sender, encode_payload};
 
     const LIMITS: Limits = Limits { quota_bytes: 100 << 20, reserve_bytes: 0 };
 
+    /// A heartbeat.
     fn frame(sequence: u8) -> Vec<u8> {
-        encode(Sender { system: 1, component: 1 }, sequence, &MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT))
+        encode_payload(Sender { system: 1, component: 1 }, sequence, 0, &[1; 9])
     }
 
     /// The logs in a folder, one after the other.
