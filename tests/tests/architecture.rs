@@ -260,9 +260,11 @@ fn only_the_demo_sees_agent_and_simulator() {
     }
 }
 
-/// Where an autopilot's protocol may be spoken. The bench plays an autopilot.
+/// Where an autopilot's protocol may be spoken. The bench plays an autopilot; the tests of several links look at what each of
+/// them carries.
 const SPEAK_MAVLINK: &[&str] = &[
     "onboard-agent/src/gateway/driver/",
+    "onboard-agent/src/gateway/tests/links.rs",
     "onboard-agent/benches/frame_to_subscriber.rs",
     "shared/autopilot-link/",
     "shared/sim/",
