@@ -111,10 +111,10 @@ impl Now {
         Self { window_s: ctx.input(|i| i.time), utc: jiff::Timestamp::now() }
     }
 
-    /// Until the clock in the bar shows another second, and what is known is a second older.
-    fn until_next_second(&self) -> Duration {
-        let past = self.utc.subsec_millisecond().rem_euclid(1000);
-        Duration::from_millis(u64::from((1000 - past).unsigned_abs()))
+    /// Until the clock in the bar shows another time, and what is known is older by as much: a clock of seconds, or of minutes.
+    fn until_next(&self, unit_s: i64) -> Duration {
+        let past_ms = self.utc.as_millisecond().rem_euclid(unit_s * 1000);
+        Duration::from_millis((unit_s * 1000 - past_ms).unsigned_abs())
     }
 }
 
@@ -312,8 +312,9 @@ impl eframe::App for App {
         if self.vehicles.any_link_wanted() {
             ctx.request_repaint_after(REFRESH);
         } else if !ctx.input(|i| i.viewport().minimized.unwrap_or(false)) {
-            // the clock goes on, and without a link values grow old just the same
-            ctx.request_repaint_after(Now::read(ctx).until_next_second());
+            // the clock goes on, and without a link values grow old just the same; where no vehicle was heard, there are none
+            let unit_s = if self.vehicles.any_heard() { 1 } else { 60 };
+            ctx.request_repaint_after(Now::read(ctx).until_next(unit_s));
         }
     }
 

@@ -28,8 +28,10 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Que
     });
 }
 
+/// Seconds matter in flight only; without them a window that nobody touches rests for a minute.
 fn utc(scene: &Scene<'_>) -> String {
-    scene.utc.strftime("%H:%M:%SZ").to_string()
+    let form = if scene.vehicles.any_heard() { "%H:%M:%SZ" } else { "%H:%MZ" };
+    scene.utc.strftime(form).to_string()
 }
 
 fn local(scene: &Scene<'_>) -> String {

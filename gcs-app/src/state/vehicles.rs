@@ -107,6 +107,11 @@ impl Vehicles {
         self.by_name.values().any(|v| v.link.is_wanted())
     }
 
+    /// Something was heard from some vehicle.
+    pub fn any_heard(&self) -> bool {
+        self.by_name.values().any(|v| v.received_s.is_some())
+    }
+
     /// Looks at every aircraft over the ground; gives those that have fallen silent (true) or are heard again (false).
     pub fn look(&mut self, terrain: &dyn Terrain, now_s: f64) -> Vec<(VehicleName, bool)> {
         self.by_name.values_mut().for_each(|vehicle| vehicle.look(terrain, now_s));
