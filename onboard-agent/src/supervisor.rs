@@ -18,7 +18,8 @@ const PAUSE_MAX: Duration = Duration::from_secs(5);
 const STABLE: Duration = Duration::from_secs(10);
 /// Who does not end in this time after being asked is killed.
 const GRACE: Duration = Duration::from_secs(3);
-/// Exit status of a service that was started wrongly: a restart would not help.
+/// Exit status of a service that was started wrongly. At its first start nothing helps but to correct that; later something that
+/// it needs was taken away, as a file on a stick, and may come back.
 pub const USAGE: i32 = 2;
 
 /// A service's process.
@@ -42,7 +43,7 @@ impl Process {
 /// Runs the processes until `shutdown`, restarting what dies. Those that may stay are asked to end first.
 ///
 /// # Errors
-/// A process can't be started, or says that it was started wrongly.
+/// A process can't be started for the first time, or says then that it was started wrongly.
 pub async fn run(program: &Path, processes: &[Process], mut shutdown: Shutdown) -> anyhow::Result<()> {
     let (trigger, others) = crate::shutdown();
     let (mut supervised, mut staying) = (JoinSet::new(), 0_usize);
@@ -82,33 +83,27 @@ pub async fn run(program: &Path, processes: &[Process], mut shutdown: Shutdown) 
 
 /// Keeps one process running.
 async fn keep(program: PathBuf, process: Process, mut shutdown: Shutdown) -> anyhow::Result<()> {
-    let (mut pause, mut returned) = (PAUSE_MIN, false);
+    let (mut pause, mut is_first) = (PAUSE_MIN, true);
     loop {
         let started = Instant::now();
-        let mut child = start(&program, &process)?;
-        let status = tokio::select! {
-            () = time_to_end(&mut shutdown, returned && process.may_stay) => {
-                match end(&process, &mut child, &mut shutdown).await? {
+        let died = match start(&program, &process) {
+            Ok(mut child) => {
+                let learns_until = (!is_first && process.may_stay).then(|| started + STABLE);
+                match watch(&process, &mut child, &mut shutdown, learns_until).await? {
                     None => return Ok(()),
-                    Some(died) => died,
+                    Some(status) if is_first && status.code() == Some(USAGE) => {
+                        anyhow::bail!("{} was started wrongly: see its message above", process.name)
+                    }
+                    Some(status) => format!("died ({})", describe(status)),
                 }
             }
-            status = child.wait() => status.with_context(|| format!("waiting for {}", process.name))?,
+            Err(error) if is_first => return Err(error),
+            Err(error) => format!("can't be started ({error:#})"),
         };
-        anyhow::ensure!(
-            status.code() != Some(USAGE),
-            "{} was started wrongly: see its message above",
-            process.name
-        );
         if started.elapsed() >= STABLE {
             pause = PAUSE_MIN;
         }
-        tracing::error!(
-            "{} died ({}); restarting it in {} ms",
-            process.name,
-            describe(status),
-            pause.as_millis()
-        );
+        tracing::error!("{} {died}; restarting it in {} ms", process.name, pause.as_millis());
         let mut asked = shutdown.clone();
         tokio::select! {
             () = asked.requested(), if !process.may_stay => return Ok(()),
@@ -116,16 +111,29 @@ async fn keep(program: PathBuf, process: Process, mut shutdown: Shutdown) -> any
             () = tokio::time::sleep(pause) => {}
         }
         pause = (pause * 2).min(PAUSE_MAX);
-        returned = true;
+        is_first = false;
+    }
+}
+
+/// Until the process has died, which gives how, or has ended because it was asked to.
+async fn watch(
+    process: &Process,
+    child: &mut Child,
+    shutdown: &mut Shutdown,
+    learns_until: Option<Instant>,
+) -> anyhow::Result<Option<ExitStatus>> {
+    tokio::select! {
+        () = time_to_end(shutdown, learns_until) => end(process, child, shutdown).await,
+        status = child.wait() => Ok(Some(status.with_context(|| format!("waiting for {}", process.name))?)),
     }
 }
 
 /// A process that has just come back learns what it is about before it is asked whether it may end.
-async fn time_to_end(shutdown: &mut Shutdown, returned: bool) {
+async fn time_to_end(shutdown: &mut Shutdown, learns_until: Option<Instant>) {
     shutdown.requested().await;
-    if returned {
+    if let Some(until) = learns_until {
         tokio::select! {
-            () = tokio::time::sleep(STABLE) => {}
+            () = tokio::time::sleep_until(until.into()) => {}
             () = shutdown.insisted() => {}
         }
     }
@@ -269,13 +277,47 @@ mod tests {
         Process { may_stay: true, ..Process::new(name, vec![]) }
     }
 
-    /// The gateway ignores the first request, as in flight, and ends by the file `landed`.
+    /// Its second start finds the plan gone, its third one finds it again.
+    #[tokio::test]
+    async fn what_is_taken_away_after_the_start_ends_nobody() {
+        let directory = tempfile::tempdir().unwrap();
+        let log = directory.path().join("log");
+        let text = format!(
+            "case $(wc -l < {}) in 1) exit 1;; 2) exit 2;; esac\ntrap 'exit 0' TERM\nwhile :; do sleep 0.02; done",
+            log.display()
+        );
+        let path = program(directory.path(), &text);
+        let (trigger, shutdown) = shutdown();
+        let supervisor =
+            tokio::spawn(async move { run(&path, &[Process::new("fp-manager", vec![])], shutdown).await });
+        started(directory.path(), 3).await;
+        trigger.shut_down();
+        tokio::time::timeout(Duration::from_secs(30), supervisor).await.unwrap().unwrap().unwrap();
+    }
+
+    #[tokio::test]
+    async fn a_program_that_vanishes_and_comes_back_is_started_again() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = program(directory.path(), "mv \"$0\" \"$0.gone\"; exit 1");
+        let (trigger, shutdown) = shutdown();
+        let (there, gone) = (path.clone(), path.with_extension("gone"));
+        let supervisor =
+            tokio::spawn(async move { run(&path, &[Process::new("storage", vec![])], shutdown).await });
+        appears(&gone, 1).await;
+        assert!(!supervisor.is_finished());
+        std::fs::rename(gone, there).unwrap();
+        started(directory.path(), 2).await;
+        trigger.shut_down();
+        tokio::time::timeout(Duration::from_secs(30), supervisor).await.unwrap().unwrap().unwrap();
+    }
+
+    /// The gateway ignores the first request, as in flight, and ends by the file `landed`; it notes who had ended before it.
     #[tokio::test]
     async fn the_others_stay_for_as_long_as_the_one_that_may() {
         let directory = tempfile::tempdir().unwrap();
         let there = |name: &str| directory.path().join(name);
         let text = format!(
-            "if [ \"$1\" = gateway ]; then trap 'touch {0}/asked' TERM; echo up >> {0}/up; until [ -e {0}/landed ]; do sleep 0.02; done; exit 0; fi\n\
+            "if [ \"$1\" = gateway ]; then trap 'touch {0}/asked' TERM; echo up >> {0}/up; until [ -e {0}/landed ]; do sleep 0.02; done; ls {0} > {0}/there; exit 0; fi\n\
              trap 'touch {0}/ended; exit 0' TERM; echo up >> {0}/up; while :; do sleep 0.02; done",
             directory.path().display()
         );
@@ -290,6 +332,10 @@ mod tests {
         std::fs::write(there("landed"), "").unwrap();
         tokio::time::timeout(Duration::from_secs(30), supervisor).await.unwrap().unwrap().unwrap();
         assert!(there("ended").exists());
+        assert!(
+            !std::fs::read_to_string(there("there")).unwrap().contains("ended"),
+            "the gateway was the first"
+        );
     }
 
     #[tokio::test]
