@@ -72,8 +72,7 @@ impl Subcommand for Task {
         let file = file.value_parser(value_parser!(PathBuf)).help("The configuration file (TOML, or JSON)");
         let check = Command::new("check-config").arg(file);
         let check = check.about("Say what is wrong with a configuration file, if anything; starts nothing");
-        let doctor =
-            "Look the autopilot over: whether it is ready to fly a plan, and what to change; changes nothing";
+        let doctor = "Look the autopilot over: whether it is ready to fly a plan, and what to change; changes no setting";
         let doctor = with_options("doctor", doctor.into());
         command.subcommand(run).subcommands(services).subcommands([describe, check, doctor])
     }

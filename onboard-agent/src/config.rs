@@ -12,6 +12,7 @@ use crate::services::storage;
 use crate::{exposure, fp_manager, gateway, supervisor};
 use aircraft::Profile;
 use anyhow::{Context, bail};
+use clap::builder::BoolishValueParser;
 use clap::{Arg, Args, Command, ValueEnum};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -36,8 +37,9 @@ pub struct Options {
     #[arg(long, value_name = "ENDPOINT")]
     pub listen: Option<String>,
     /// Listen where others than this machine can connect, although nothing protects it: whoever connects can command.
-    #[arg(long)]
-    pub insecure: bool,
+    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+    #[arg(value_parser = BoolishValueParser::new(), hide_possible_values = true)]
+    pub insecure: Option<bool>,
     /// Where the FP Manager and storage find the gateway [default: as --listen].
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Option<String>,
@@ -77,8 +79,9 @@ pub struct Options {
     #[arg(long, value_name = "ADDRESS")]
     pub mirror: Option<String>,
     /// Log what goes over the links to the autopilot as .tlog files, in `tlogs` of the state directory.
-    #[arg(long)]
-    pub tlog: bool,
+    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+    #[arg(value_parser = BoolishValueParser::new(), hide_possible_values = true)]
+    pub tlog: Option<bool>,
     /// All these logs together take at most so many MiB, the oldest go first [default: 1024].
     #[arg(long, value_name = "MIB")]
     pub tlog_quota_mib: Option<u64>,
@@ -90,8 +93,9 @@ pub struct Options {
     #[arg(long, value_name = "FORMAT")]
     pub log_format: Option<LogFormat>,
     /// Time is the simulator's, in lockstep.
-    #[arg(long)]
-    pub simulated: bool,
+    #[arg(long, num_args = 0..=1, require_equals = true, default_missing_value = "true", value_name = "BOOL")]
+    #[arg(value_parser = BoolishValueParser::new(), hide_possible_values = true)]
+    pub simulated: Option<bool>,
     /// The socket by which the vehicle's own services reach the gateway; `run` tells it to them.
     #[arg(long, value_name = "SOCKET", hide = true)]
     #[serde(skip)]
@@ -115,7 +119,7 @@ impl Options {
         Self {
             vehicle: self.vehicle.or(file.vehicle),
             listen: self.listen.or(file.listen),
-            insecure: self.insecure || file.insecure,
+            insecure: self.insecure.or(file.insecure),
             connect: self.connect.or(file.connect),
             autopilot: if self.autopilot.is_empty() { file.autopilot } else { self.autopilot },
             driver: self.driver.or(file.driver),
@@ -127,13 +131,21 @@ impl Options {
             record_reserve_mib: self.record_reserve_mib.or(file.record_reserve_mib),
             signing_key: self.signing_key.or(file.signing_key),
             mirror: self.mirror.or(file.mirror),
-            tlog: self.tlog || file.tlog,
+            tlog: self.tlog.or(file.tlog),
             tlog_quota_mib: self.tlog_quota_mib.or(file.tlog_quota_mib),
             log_format: self.log_format.or(file.log_format),
             config: self.config.or(file.config),
-            simulated: self.simulated || file.simulated,
+            simulated: self.simulated.or(file.simulated),
             inside: self.inside.or(file.inside),
         }
+    }
+
+    fn is_insecure(&self) -> bool {
+        self.insecure.unwrap_or_default()
+    }
+
+    fn is_simulated(&self) -> bool {
+        self.simulated.unwrap_or_default()
     }
 
     fn vehicle(&self) -> &str {
@@ -167,7 +179,7 @@ impl Options {
     /// # Errors
     /// An address, profile or tile can't be used.
     pub fn gateway(&self) -> anyhow::Result<gateway::Config> {
-        exposure::allow(self.listen(), self.insecure)?;
+        exposure::allow(self.listen(), self.is_insecure())?;
         Ok(gateway::Config {
             vehicle: self.vehicle().to_owned(),
             listen: self.listen().to_owned(),
@@ -183,7 +195,7 @@ impl Options {
                 None => None,
             },
             state_dir: self.state_dir.clone(),
-            simulated: self.simulated,
+            simulated: self.is_simulated(),
         })
     }
 
@@ -199,7 +211,7 @@ impl Options {
             terrain,
             plan,
             state_dir: self.state_dir.clone(),
-            simulated: self.simulated,
+            simulated: self.is_simulated(),
             ..fp_manager::Config::new(self.vehicle(), &self.hub())
         })
     }
@@ -217,7 +229,7 @@ impl Options {
                 quota_bytes: bytes(self.record_quota_mib, usual.limits.quota_bytes),
                 reserve_bytes: bytes(self.record_reserve_mib, usual.limits.reserve_bytes),
             },
-            simulated: self.simulated,
+            simulated: self.is_simulated(),
             profile: self.profile()?,
             terrain: Arc::new(self.tiles()?.unwrap_or_default()),
             ..usual
@@ -275,7 +287,8 @@ impl Options {
             arguments.extend(["--terrain".into(), tile.into()]);
         }
         let flags = [("--insecure", self.insecure), ("--simulated", self.simulated), ("--tlog", self.tlog)];
-        arguments.extend(flags.into_iter().filter(|(_, given)| *given).map(|(name, _)| name.into()));
+        let given = flags.into_iter().filter_map(|(name, given)| Some(format!("{name}={}", given?)));
+        arguments.extend(given.map(Into::into));
         arguments
     }
 
@@ -358,16 +371,18 @@ fn from_file(path: &Path) -> anyhow::Result<Options> {
     Ok(file::parse(&name, &text)?)
 }
 
-/// All that is wrong with a configuration file: how it is written, and what it says.
+/// All that is wrong with a configuration file: how it is written, and what it says, together with the environment's options,
+/// which count before it.
 ///
 /// # Errors
 /// Something is, or it can't be read.
-pub fn check_file(path: &Path) -> anyhow::Result<()> {
+pub fn check_file(path: &Path, environment: &Options) -> anyhow::Result<()> {
+    let check = |options: &Options| environment.clone().over(options.clone()).check();
     if is_json(path) {
-        return from_file(path)?.check();
+        return check(&from_file(path)?);
     }
     let (name, text) = (path.display().to_string(), read_text(path)?);
-    file::parse_and_check(&name, &text, Options::check)?;
+    file::parse_and_check(&name, &text, check)?;
     Ok(())
 }
 
@@ -392,132 +407,4 @@ fn read_text(path: &Path) -> anyhow::Result<String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cli::{Cli, Task};
-    use clap::Parser;
-
-    fn parse(line: &str) -> Options {
-        match Cli::try_parse_from(line.split(' ')).unwrap().task {
-            Task::Run(options) | Task::Service(_, options) | Task::Doctor(options) => options,
-            Task::Describe | Task::CheckConfig(_) => panic!("no options"),
-        }
-    }
-
-    #[test]
-    fn every_option_reaches_the_children() {
-        let line = "onboard-agent run --vehicle v --listen tcp/127.0.0.1:1 --connect tcp/127.0.0.1:2 --autopilot tcp:h:3 --autopilot serial:/dev/ttyUSB0:57600 --tlog --tlog-quota-mib 7 --signing-key k --mirror udpout:h:4 --driver d \
-                    --aircraft trainer --plan p.xml --state-dir s --record-quota-mib 9 --record-reserve-mib 8 --terrain a.hgt --terrain b.hgt --inside i.sock --log-format json --insecure --simulated";
-        let options = parse(line);
-        let mut again = Cli::try_parse_from(
-            ["onboard-agent".into(), "gateway".into()]
-                .into_iter()
-                .chain(options.arguments())
-                .collect::<Vec<std::ffi::OsString>>(),
-        )
-        .unwrap();
-        let Task::Service(_, again) = &mut again.task else { panic!("another task") };
-        assert_eq!(*again, options);
-    }
-
-    #[test]
-    fn the_command_line_wins_over_the_file() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("agent.toml");
-        std::fs::write(&path, "vehicle = 'file'\nstate_dir = 'kept'\nsimulated = true\n").unwrap();
-        let options = parse(&format!("onboard-agent run --vehicle line --config {}", path.display()))
-            .completed()
-            .unwrap();
-        assert_eq!(options.vehicle.as_deref(), Some("line"));
-        assert_eq!(options.state_dir.as_deref(), Some(Path::new("kept")));
-        assert!(options.simulated);
-    }
-
-    #[test]
-    fn unknown_setting_is_refused_with_the_file_it_stands_in() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("agent.json");
-        std::fs::write(&path, r#"{"vehikel": "x"}"#).unwrap();
-        let error = parse(&format!("onboard-agent run --config {}", path.display())).completed().unwrap_err();
-        assert!(
-            format!("{error:#}").contains("vehikel") && format!("{error:#}").contains("agent.json"),
-            "{error:#}"
-        );
-    }
-
-    /// What is commented out, with a space behind the sign and a name, is an option.
-    #[test]
-    fn the_example_can_be_used_and_shows_every_option() {
-        let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets/onboard-agent/agent.toml");
-        let text = std::fs::read_to_string(example).unwrap();
-        assert_eq!(file::parse("agent.toml", &text).unwrap(), Options::default());
-        check_file(Path::new(example)).unwrap();
-        let is_option = |line: &&str| {
-            line.split_once(" = ").is_some_and(|(name, _)| settings().any(|known| known == name))
-        };
-        let shown: Vec<&str> =
-            text.lines().filter_map(|line| line.strip_prefix("# ")).filter(is_option).collect();
-        file::parse("agent.toml", &shown.join("\n")).unwrap();
-        for name in settings() {
-            assert!(shown.iter().any(|line| line.starts_with(&format!("{name} = "))), "{name} is missing");
-        }
-        // the defaults are the true ones
-        let mut options = Options::default();
-        for line in shown.iter().filter(|line| {
-            !["terrain", "plan", "state_dir", "signing_key"].iter().any(|n| line.starts_with(n))
-        }) {
-            options = options.over(file::parse("agent.toml", line).unwrap());
-        }
-        let (shown, usual) = (options.gateway().unwrap(), Options::default().gateway().unwrap());
-        assert_eq!(
-            (shown.vehicle, shown.listen, shown.autopilots),
-            (usual.vehicle, usual.listen, usual.autopilots)
-        );
-        assert_eq!((shown.driver.name, shown.profile.name), (usual.driver.name, usual.profile.name));
-    }
-
-    #[test]
-    fn all_that_is_wrong_with_a_file_is_said_at_once() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("agent.toml");
-        let text = "aircraft = 'zeppelin'\nautopilot = 'pigeon'\nlisten = 'tcp/0.0.0.0:1'\nplan = 'nowhere.xml'\nvehicle = 'v'\n";
-        std::fs::write(&path, text).unwrap();
-        let told = format!("{:#}", check_file(&path).unwrap_err());
-        assert_eq!(told.lines().count(), 4, "{told}");
-        for (line, says) in
-            told.lines().zip(["1:12: --aircraft", "2:13: --autopilot", "3:10: --listen", "nowhere.xml"])
-        {
-            assert!(line.contains(says), "{told}");
-        }
-    }
-
-    #[test]
-    fn unusable_values_are_named() {
-        for (line, told) in [
-            ("onboard-agent run --aircraft zeppelin", "zeppelin"),
-            ("onboard-agent run --terrain nowhere/N36W085.hgt", "N36W085.hgt"),
-            ("onboard-agent run --plan nowhere.xml", "nowhere.xml"),
-        ] {
-            let error = parse(line).fp_manager().err().expect(line);
-            assert!(format!("{error:#}").contains(told), "{error:#}");
-        }
-        assert!(parse("onboard-agent run --autopilot carrier-pigeon").gateway().is_err());
-        assert!(parse("onboard-agent run --listen tcp/0.0.0.0:7447").gateway().is_err());
-    }
-
-    #[test]
-    fn every_driver_is_chosen_by_its_name_and_an_unknown_name_gives_the_list() {
-        use clap::CommandFactory;
-        let chosen = |line: &str| parse(line).gateway().map(|config| config.driver.name);
-        for known in driver::DRIVERS {
-            let line = format!("onboard-agent gateway --driver {}", known.name);
-            assert_eq!(chosen(&line).unwrap(), known.name);
-        }
-        assert_eq!(chosen("onboard-agent gateway").unwrap(), "mavlink");
-        let error = format!("{:#}", chosen("onboard-agent gateway --driver kite").unwrap_err());
-        assert!(error.contains("`kite`") && error.contains(&driver::names()), "{error}");
-        let mut command = Cli::command();
-        let help = command.find_subcommand_mut("run").unwrap().render_long_help().to_string();
-        assert!(help.contains(&driver_help()), "{help}");
-    }
-}
+mod tests;

@@ -1,9 +1,10 @@
 //! Shell: `onboard-agent doctor` looks the autopilot over and says whether it is ready to fly a plan, and what to change.
-//! It asks, and changes nothing.
+//! It asks, and changes no setting; the autopilot goes on sending the telemetry that it is asked for.
 
 use crate::Shutdown;
+use crate::gateway::driver::Registration;
 use crate::gateway::driver::examination::{Degree, Finding};
-use crate::gateway::{Config, from_link};
+use crate::gateway::{Address, Config, from_link};
 use anyhow::{Context, bail};
 use autopilot_link::{Link, Outbox};
 use std::time::{Duration, Instant};
@@ -48,21 +49,34 @@ fn line(Finding { degree, about, says }: &Finding) -> String {
     format!("{degree:<5}  {about}: {says}")
 }
 
-/// Looks the autopilot over.
+/// Looks the autopilot over by each of its links, one after the other; hands over what it finds, with the link's address.
 ///
 /// # Errors
-/// Its link can't be had, nobody answers, or it was asked to end.
-pub async fn examine(config: &Config, mut shutdown: Shutdown) -> anyhow::Result<Diagnosis> {
-    let driver = config.driver;
-    let make = driver
-        .examine
-        .with_context(|| format!("the driver `{}` can't look an autopilot over", driver.name))?;
+/// A link can't be had, nobody answers, or it was asked to end.
+pub async fn examine(
+    config: &Config,
+    shutdown: Shutdown,
+    mut found: impl FnMut(&Address, &Diagnosis),
+) -> anyhow::Result<()> {
     if config.key.is_some() {
         bail!(
             "it does not sign: look the autopilot over on a link that needs no key, as its USB port, without --signing-key"
         );
     }
-    let address = config.autopilots.first().context("no autopilot is named")?;
+    for address in &config.autopilots {
+        found(address, &examine_by(config.driver, address, shutdown.clone()).await?);
+    }
+    Ok(())
+}
+
+async fn examine_by(
+    driver: Registration,
+    address: &Address,
+    mut shutdown: Shutdown,
+) -> anyhow::Result<Diagnosis> {
+    let make = driver
+        .examine
+        .with_context(|| format!("the driver `{}` can't look an autopilot over", driver.name))?;
     let link = Link::open(address).await;
     let mut link = link.with_context(|| {
         format!("the autopilot's link {address}: does the agent run already? End it first")

@@ -1,11 +1,14 @@
-//! The file with the key of MAVLink 2 signing: nobody but its owner may read it, and what is in it is never shown.
+//! The file with the key of MAVLink 2 signing: nobody but its owner may read it, and what is in it is never shown. A credential
+//! that systemd hands over (`LoadCredential=`) has its own protection, which shows as a group that may read.
 
 use anyhow::{Context, bail};
 use autopilot_link::signing::Key;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+/// The variable by which systemd names the folder of a service's credentials.
+const CREDENTIALS: &str = "CREDENTIALS_DIRECTORY";
 /// A longer file holds no key, bytes.
 const LONGEST: u64 = 1024;
 
@@ -14,12 +17,13 @@ const LONGEST: u64 = 1024;
 /// # Errors
 /// There is no such file, others may read it, or there is no key in it. What is in it is not told.
 pub fn read(path: &Path) -> anyhow::Result<Key> {
-    read_from(path).with_context(|| format!("--signing-key {}", path.display()))
+    let credentials = std::env::var_os(CREDENTIALS).map(PathBuf::from);
+    read_from(path, credentials.as_deref()).with_context(|| format!("--signing-key {}", path.display()))
 }
 
-fn read_from(path: &Path) -> anyhow::Result<Key> {
+fn read_from(path: &Path, credentials: Option<&Path>) -> anyhow::Result<Key> {
     let file = File::open(path)?;
-    check_permissions(&file, path)?;
+    check_permissions(&file, path, credentials.is_some_and(|folder| path.starts_with(folder)))?;
     let mut bytes = Vec::new();
     file.take(LONGEST + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > LONGEST {
@@ -32,10 +36,10 @@ fn read_from(path: &Path) -> anyhow::Result<Key> {
 }
 
 #[cfg(unix)]
-fn check_permissions(file: &File, path: &Path) -> anyhow::Result<()> {
+fn check_permissions(file: &File, path: &Path, is_credential: bool) -> anyhow::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     let mode = file.metadata()?.permissions().mode() & 0o777;
-    if mode & 0o077 != 0 {
+    if mode & if is_credential { 0o037 } else { 0o077 } != 0 {
         bail!(
             "others than its owner may read or write it (mode {mode:03o}); do `chmod 600 {}`",
             path.display()
@@ -45,7 +49,7 @@ fn check_permissions(file: &File, path: &Path) -> anyhow::Result<()> {
 }
 
 #[cfg(not(unix))]
-fn check_permissions(_: &File, _: &Path) -> anyhow::Result<()> {
+fn check_permissions(_: &File, _: &Path, _: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
@@ -76,5 +80,22 @@ mod tests {
             assert!(read(&path).is_err(), "{bad:?}");
         }
         assert!(format!("{:#}", read(&folder.path().join("none")).unwrap_err()).contains("none"));
+    }
+    #[test]
+    fn a_credential_of_systemd_may_be_readable_by_its_group_and_no_other_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("signing-key");
+        std::fs::write(&path, "my secret\n").unwrap();
+        for (mode, credentials, readable) in [
+            (0o440, true, true),
+            (0o400, true, true),
+            (0o460, true, false),
+            (0o444, true, false),
+            (0o440, false, false),
+        ] {
+            std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode)).unwrap();
+            let credentials = credentials.then_some(folder.path());
+            assert_eq!(read_from(&path, credentials).is_ok(), readable, "{mode:o}");
+        }
     }
 }

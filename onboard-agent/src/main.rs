@@ -1,7 +1,7 @@
 //! Command line of `onboard-agent`.
 
 use onboard_agent::cli::{Cli, Task};
-use onboard_agent::config::{self, Options};
+use onboard_agent::config::{self, Options, environment};
 use onboard_agent::inside::Inside;
 use onboard_agent::registry::SERVICES;
 use onboard_agent::single_instance::AlreadyRunning;
@@ -58,7 +58,9 @@ fn with(options: Options, work: impl AsyncFnOnce(Options, Shutdown) -> ExitCode)
 }
 
 fn check_config(file: &Path) -> ExitCode {
-    match config::check_file(file) {
+    let checked = environment::options(|name| std::env::var_os(name))
+        .and_then(|environment| config::check_file(file, &environment));
+    match checked {
         Ok(()) => said(&[format!("{}: nothing is wrong with it", file.display())], ExitCode::SUCCESS),
         Err(error) => {
             eprintln!("{error:#}");
@@ -68,13 +70,20 @@ fn check_config(file: &Path) -> ExitCode {
 }
 
 async fn see_doctor(config: &gateway::Config, shutdown: Shutdown) -> ExitCode {
-    match doctor::examine(config, shutdown).await {
-        Ok(diagnosis) => {
-            let code = if diagnosis.is_ready() { ExitCode::SUCCESS } else { ExitCode::from(FAILED) };
-            said(&diagnosis.lines(), code)
+    let (mut lines, mut is_ready) = (vec![], true);
+    let outcome = doctor::examine(config, shutdown, |address, diagnosis| {
+        if config.autopilots.len() > 1 {
+            lines.push(format!("By {address}:"));
         }
+        lines.extend(diagnosis.lines());
+        is_ready &= diagnosis.is_ready();
+    });
+    let code = match outcome.await {
+        Ok(()) if is_ready => ExitCode::SUCCESS,
+        Ok(()) => ExitCode::from(FAILED),
         Err(error) => failed(FAILED, &error),
-    }
+    };
+    said(&lines, code)
 }
 
 /// Lines on standard output; a result that can't be written is a failure.

@@ -66,14 +66,20 @@ fn the_doctor_says_what_is_ready_and_what_to_change() {
         let logs = Logs::new().unwrap();
         let (_simulator, autopilot) = simulator(&logs, &[arguments, &["--speed", "8"]].concat());
         // its position is found first
-        let mut said = agent(&["doctor", "--autopilot", &autopilot]);
+        let links: &[&str] = if ready {
+            &["--autopilot", &autopilot]
+        } else {
+            &["--autopilot", &autopilot, "--autopilot", &autopilot]
+        };
+        let mut said = agent(&[&["doctor"], links].concat());
         if text(&said.stdout).contains("to do  gps") {
-            said = agent(&["doctor", "--autopilot", &autopilot]);
+            said = agent(&[&["doctor"], links].concat());
         }
         let lines = text(&said.stdout);
         assert!(lines.contains(told), "{arguments:?}: {lines}{}", text(&said.stderr));
         assert_eq!(said.status.code(), Some(if ready { 0 } else { 1 }), "{arguments:?}: {lines}");
         assert_eq!(lines.contains("is ready to fly a plan."), ready, "{lines}");
+        assert_eq!(lines.matches(&format!("By {autopilot}:")).count(), if ready { 0 } else { 2 }, "{lines}");
     }
 }
 

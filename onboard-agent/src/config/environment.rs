@@ -41,11 +41,6 @@ fn set(option: &Arg, value: &OsStr) -> Result<Options, String> {
         typed
     };
     let line: Vec<OsString> = match option.get_action() {
-        ArgAction::SetTrue => match value.to_str() {
-            Some("true" | "1" | "yes" | "on") => vec![name.into()],
-            Some("false" | "0" | "no" | "off") => vec![],
-            _ => return Err("say true or false".into()),
-        },
         // addresses have colons, and paths may
         ArgAction::Append => match value.to_str() {
             Some(values) => values.split(';').map(|value| typed(OsStr::new(value))).collect(),
@@ -86,7 +81,8 @@ mod tests {
         let expected = Options {
             state_dir: Some("/var/lib/legwork".into()),
             record_quota_mib: Some(9),
-            simulated: true,
+            simulated: Some(true),
+            insecure: Some(false),
             terrain: vec![Path::new("a.hgt").into(), Path::new("b.hgt").into()],
             ..Options::default()
         };
@@ -103,6 +99,9 @@ mod tests {
         assert!(
             lines.iter().any(|line| line.starts_with("LEGWORK_RECORD_QUOTA_MIB: ") && line.contains("much"))
         );
-        assert!(lines.contains(&"LEGWORK_SIMULATED: say true or false"), "{told}");
+        assert!(
+            lines.iter().any(|line| line.starts_with("LEGWORK_SIMULATED: ") && line.contains("boolean")),
+            "{told}"
+        );
     }
 }

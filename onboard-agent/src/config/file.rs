@@ -168,7 +168,7 @@ mod tests {
         let options = parse("agent.toml", text).unwrap();
         assert_eq!(options.vehicle.as_deref(), Some("v"));
         assert_eq!(options.terrain, [Path::new("a.hgt"), Path::new("b.hgt")]);
-        assert_eq!((options.record_quota_mib, options.simulated), (Some(9), true));
+        assert_eq!((options.record_quota_mib, options.simulated), (Some(9), Some(true)));
         assert_eq!(parse("agent.toml", "").unwrap(), Options::default());
     }
 

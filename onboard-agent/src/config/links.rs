@@ -34,7 +34,7 @@ impl Options {
 
     /// Where the links are logged.
     pub(super) fn tlogs(&self) -> anyhow::Result<Option<gateway::tlog::Config>> {
-        if !self.tlog {
+        if !self.tlog.unwrap_or_default() {
             return Ok(None);
         }
         let folder = self.state_dir.as_ref().context("--tlog: logs need a folder; give --state-dir")?;
@@ -55,7 +55,7 @@ impl Options {
     /// Where other programs may watch.
     pub(super) fn mirror(&self) -> anyhow::Result<Option<Mirror>> {
         let place = self.mirror.as_deref();
-        place.map(|place| Mirror::parse(place, self.insecure)).transpose().context("--mirror")
+        place.map(|place| Mirror::parse(place, self.is_insecure())).transpose().context("--mirror")
     }
 }
 
@@ -99,7 +99,7 @@ mod tests {
             let error = format!("{:#}", links(&bad).unwrap_err());
             assert!(error.contains(told), "{error}");
         }
-        let error = with(|o| o.tlog = true).tlogs().unwrap_err().to_string();
+        let error = with(|o| o.tlog = Some(true)).tlogs().unwrap_err().to_string();
         assert!(error.contains("--state-dir"), "{error}");
         let error = with(|o| o.mirror = Some("tcp:h:1".into())).mirror().unwrap_err();
         assert!(format!("{error:#}").contains("tcp-listen"), "{error:#}");

@@ -1,4 +1,4 @@
-//! Pure: looks a MAVLink autopilot over. It asks for messages and parameters as the driver does, and changes nothing.
+//! Pure: looks a MAVLink autopilot over. It asks for messages and parameters as the driver does, and sets no parameter.
 
 mod judge;
 #[cfg(test)]
