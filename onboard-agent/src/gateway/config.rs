@@ -40,6 +40,11 @@ pub struct Config {
 }
 
 impl Config {
+    /// What is flown is a log that is played.
+    pub fn is_replay(&self) -> bool {
+        self.autopilots.iter().any(autopilot_link::Address::is_replay)
+    }
+
     /// The trainer, without terrain or memory, in flight.
     pub fn new(vehicle: &str, listen: &str, autopilot: autopilot_link::Address) -> Self {
         Self {

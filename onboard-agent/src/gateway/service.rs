@@ -54,8 +54,8 @@ pub struct FcsGateway {
     /// The simulator's step under way, ns.
     step_ns: Option<i64>,
     complained: bool,
-    /// Nobody is hurt by what a simulator flies on.
-    simulated: bool,
+    /// Nobody is hurt by what a simulator in lockstep flies on, or by what was flown when a log was made.
+    flies_really: bool,
 }
 
 impl Service for FcsGateway {
@@ -108,14 +108,14 @@ impl Service for FcsGateway {
 
     /// An aircraft in flight needs somebody to bring it home.
     fn may_end(&self) -> bool {
-        self.simulated || !self.station.gateway().is_in_flight()
+        !self.flies_really || !self.station.gateway().is_in_flight()
     }
 }
 
 impl FcsGateway {
-    /// Around a station. `simulated`: time is the simulator's.
-    pub fn new(station: Station, simulated: bool) -> Self {
-        Self { station, step_ns: None, complained: false, simulated }
+    /// Around a station. `flies_really`: neither in lockstep with a simulator nor a log that is played.
+    pub fn new(station: Station, flies_really: bool) -> Self {
+        Self { station, step_ns: None, complained: false, flies_really }
     }
 
     /// Goes through what was received; a step of the simulator is done before the rest.

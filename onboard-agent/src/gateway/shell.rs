@@ -34,7 +34,8 @@ pub async fn run(config: Config, shutdown: Shutdown) -> anyhow::Result<()> {
     let runs = service::Config {
         vehicle: config.vehicle.clone(),
         role: Role::Hub { listen: inside.endpoint() },
-        state_dir: config.state_dir.clone(),
+        // what a log tells is not to be flown after a restart
+        state_dir: config.state_dir.clone().filter(|_| !config.is_replay()),
         timing: if config.simulated { Timing::Leads } else { Timing::Machine },
     };
     service::run(runs, shutdown, move |beginning| open(config, inside, beginning)).await
@@ -62,7 +63,7 @@ async fn open(
     if let Some(mirror) = &config.mirror {
         links.push(mirror.open().await.context("--mirror")?);
     }
-    let replay = config.autopilots.iter().any(autopilot_link::Address::is_replay);
+    let replay = config.is_replay();
     let Config { vehicle, profile, terrain, .. } = config;
     let settings = Settings { vehicle, profile, terrain, exposed, replay };
     let Registration { recognises, make, .. } = config.driver;
@@ -75,7 +76,7 @@ async fn open(
     let station = Station::new(settings, restored, make(&setup));
     let recognises = move |datagram: &[u8]| recognises(datagram, key.as_ref());
     let links = Links::new(links, Box::new(recognises), tlog);
-    Ok((FcsGateway::new(station, config.simulated), Outside { links, door }))
+    Ok((FcsGateway::new(station, !(config.simulated || replay)), Outside { links, door }))
 }
 
 async fn open_links(addresses: &[autopilot_link::Address]) -> anyhow::Result<Vec<Link>> {

@@ -7,13 +7,17 @@ use autopilot_link::frame::Decoder;
 use autopilot_link::{Event, tlog};
 use recording::Output;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
-use std::thread::JoinHandle;
 use std::time::{Duration, Instant, SystemTime};
 
 const EXTENSION: &str = ".tlog";
-/// Pieces of the links that may wait for the disk.
+/// Pieces of the links that may wait for the disk, and bytes of all of them.
 const QUEUE: usize = 4096;
+const WAITING_MAX: usize = 8 << 20;
+/// How long the end of the log waits for the disk: a card that hangs must not keep the gateway from ending.
+const END_WITHIN: Duration = Duration::from_secs(2);
 /// What has come is written, and synced, so often.
 const WRITE_EVERY: Duration = Duration::from_secs(1);
 /// Or when it is so much, bytes.
@@ -39,8 +43,11 @@ pub struct Tlog {
     /// What came over each link, cut into frames.
     decoders: Vec<Decoder>,
     queue: Option<SyncSender<Vec<u8>>>,
+    /// Bytes that wait for the disk.
+    waiting: Arc<AtomicUsize>,
     missed: u64,
-    thread: Option<JoinHandle<()>>,
+    /// Nothing comes over it; it is closed when all is written.
+    written: Receiver<()>,
 }
 
 impl Tlog {
@@ -50,10 +57,15 @@ impl Tlog {
     /// No thread can be had.
     pub fn begin(config: Config, links: usize) -> std::io::Result<Self> {
         let (queue, pieces) = sync_channel(QUEUE);
-        let writer = Writer::new(config);
-        let thread = std::thread::Builder::new().name("tlog".into()).spawn(move || writer.run(&pieces))?;
+        let (writes, written) = sync_channel(0);
+        let waiting = Arc::<AtomicUsize>::default();
+        let writer = Writer::new(config, Arc::clone(&waiting));
+        std::thread::Builder::new().name("tlog".into()).spawn(move || {
+            writer.run(&pieces);
+            drop(writes);
+        })?;
         let decoders = vec![Decoder::default(); links];
-        Ok(Self { decoders, queue: Some(queue), missed: 0, thread: Some(thread) })
+        Ok(Self { decoders, queue: Some(queue), waiting, missed: 0, written })
     }
 
     /// A link brought something.
@@ -83,7 +95,11 @@ impl Tlog {
 
     fn put(&mut self, records: Vec<u8>) {
         let Some(queue) = self.queue.as_ref().filter(|_| !records.is_empty()) else { return };
-        if queue.try_send(records).is_err() {
+        let length = records.len();
+        let fits = self.waiting.load(Ordering::Relaxed) + length <= WAITING_MAX;
+        if fits && queue.try_send(records).is_ok() {
+            self.waiting.fetch_add(length, Ordering::Relaxed);
+        } else {
             self.missed += 1;
             if self.missed.is_power_of_two() {
                 tracing::warn!(
@@ -98,9 +114,8 @@ impl Tlog {
 impl Drop for Tlog {
     fn drop(&mut self) {
         self.queue = None;
-        if let Some(thread) = self.thread.take() {
-            // a panic of the thread has been printed; there is nothing to add
-            let _ = thread.join();
+        if self.written.recv_timeout(END_WITHIN) == Err(RecvTimeoutError::Timeout) {
+            tracing::warn!("the disk does not take the end of the telemetry log: it is lost");
         }
     }
 }
@@ -122,6 +137,9 @@ fn is_tlog(name: &str) -> bool {
 struct Writer {
     vehicle: String,
     disk: Disk,
+    waiting: Arc<AtomicUsize>,
+    /// Bytes that could not be written since the last that could.
+    lost: usize,
     /// Files of this run so far.
     files: u32,
     /// Bytes of the current file; `None`: there is none.
@@ -130,9 +148,9 @@ struct Writer {
 }
 
 impl Writer {
-    fn new(Config { folder, limits, vehicle }: Config) -> Self {
+    fn new(Config { folder, limits, vehicle }: Config, waiting: Arc<AtomicUsize>) -> Self {
         let disk = Disk::of(&folder, limits, is_tlog);
-        Self { vehicle, disk, files: 0, written: None, again_at: Instant::now() }
+        Self { vehicle, disk, waiting, lost: 0, files: 0, written: None, again_at: Instant::now() }
     }
 
     fn run(mut self, pieces: &Receiver<Vec<u8>>) {
@@ -141,7 +159,10 @@ impl Writer {
             let due = Instant::now() + WRITE_EVERY;
             let open = loop {
                 match pieces.recv_timeout(due.saturating_duration_since(Instant::now())) {
-                    Ok(piece) => waiting.extend_from_slice(&piece),
+                    Ok(piece) => {
+                        self.waiting.fetch_sub(piece.len(), Ordering::Relaxed);
+                        waiting.extend_from_slice(&piece);
+                    }
                     Err(RecvTimeoutError::Timeout) => break true,
                     Err(RecvTimeoutError::Disconnected) => break false,
                 }
@@ -158,12 +179,29 @@ impl Writer {
     }
 
     fn write(&mut self, bytes: Vec<u8>) {
-        if bytes.is_empty() || Instant::now() < self.again_at {
+        if bytes.is_empty() {
             return;
         }
-        if let Err(error) = self.try_write(bytes) {
-            tracing::warn!("the telemetry log can't be written, it is tried again: {error}");
-            (self.written, self.again_at) = (None, Instant::now() + AGAIN);
+        let length = bytes.len();
+        if Instant::now() < self.again_at {
+            self.lost += length;
+            return;
+        }
+        match self.try_write(bytes) {
+            Ok(()) if self.lost > 0 => {
+                tracing::warn!(lost = self.lost, "the telemetry log is written again; bytes are missing");
+                self.lost = 0;
+            }
+            Ok(()) => {}
+            Err(error) => {
+                self.lost += length;
+                tracing::warn!(
+                    lost = self.lost,
+                    "the telemetry log can't be written, what comes is tried again in {} s: {error}",
+                    AGAIN.as_secs()
+                );
+                (self.written, self.again_at) = (None, Instant::now() + AGAIN);
+            }
         }
     }
 

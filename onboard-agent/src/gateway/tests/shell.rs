@@ -3,6 +3,7 @@
 use super::other_autopilot::{self, Glider};
 use crate::gateway::{Address, Config, run, tlog};
 use crate::services::storage::Limits;
+use autopilot_link::frame::{Sender, encode_payload};
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -139,6 +140,34 @@ async fn two_links_are_logged_and_a_log_that_is_played_can_not_be_commanded() {
     sim.stop();
     drop(session);
     replay(directory.path()).await;
+    replay_of_a_flight(directory.path()).await;
+}
+
+/// What was flown when the log was made needs nobody now, and is nothing to go on with.
+async fn replay_of_a_flight(folder: &Path) {
+    let autopilot = Sender { system: 1, component: 1 };
+    // HEARTBEAT of an armed ArduPlane in AUTO, EXTENDED_SYS_STATE in the air
+    let (beat, in_air) = ((0, &[10, 0, 0, 0, 1, 3, 0x81, 4, 3][..]), (245, &[0, 2][..]));
+    let mut log = vec![];
+    for (at, (id, payload)) in (0_u8..).zip([beat, in_air, beat, in_air]) {
+        let frame = encode_payload(autopilot, at, id, payload);
+        autopilot_link::tlog::received(1_000_000 + 10_000 * u64::from(at), 0, &frame, &mut log);
+    }
+    let (file, state_dir) = (folder.join("flight.tlog"), folder.join("state"));
+    std::fs::write(&file, log).unwrap();
+    let listen = free_endpoint();
+    let (trigger, shutdown) = crate::shutdown();
+    let config = Config::new("test", &listen, format!("tlog:{}", file.display()).parse().unwrap());
+    let task = tokio::spawn(run(Config { state_dir: Some(state_dir.clone()), ..config }, shutdown));
+    let session = Session::open(usal::Config::client("test", &listen).named("test")).await.unwrap();
+    let mut vehicle = session.follow(gateway::LINKS).unwrap();
+    let heard = async {
+        while !vehicle.changed().await.unwrap().stamped.value.links.iter().all(|link| link.received >= 4) {}
+    };
+    tokio::time::timeout(Duration::from_secs(60), heard).await.expect("the log is played");
+    trigger.shut_down();
+    tokio::time::timeout(Duration::from_secs(10), task).await.unwrap().unwrap().unwrap();
+    assert!(!state_dir.join("gateway.json").exists(), "nothing of a log is flown after a restart");
 }
 
 async fn replay(folder: &Path) {
