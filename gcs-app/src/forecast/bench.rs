@@ -47,6 +47,8 @@ pub(super) struct Bench {
     forecast_version: u64,
     /// Document and version, and their program if it can be flown.
     analysed: Option<(u64, u64)>,
+    /// How often it analysed.
+    analyses: u64,
     program: Option<Arc<Program>>,
     /// What was flown, with its values, and in which world.
     flown: Option<Arc<Program>>,
@@ -69,6 +71,7 @@ impl Bench {
             last: Shared::default(),
             forecast_version: 0,
             analysed: None,
+            analyses: 0,
             program: None,
             flown: None,
             what_if: WhatIf::default(),
@@ -160,6 +163,7 @@ impl Bench {
         let problems = problems.unwrap_or_else(warnings);
         self.program = program;
         (self.hashed, self.reviewed) = (false, false);
+        self.analyses += 1;
         let flown = self.fly(question);
         Analysis {
             document: question.document,
@@ -244,7 +248,7 @@ impl Bench {
                 ..Conditions::default()
             },
         });
-        Some(Path { version: question.version, program, trial })
+        Some(Path { version: question.version, analysis: self.analyses, program, trial })
     }
 
     /// One more point.

@@ -12,6 +12,8 @@ use terrain::Terrain;
 /// A path to be reviewed.
 pub(super) struct Path {
     pub version: u64,
+    /// Of which analysis: one that is made again, as for a document that comes back, knows nothing of a review.
+    pub analysis: u64,
     pub program: Arc<Program>,
     /// The same plan in another world.
     pub trial: Option<Trial>,
@@ -28,13 +30,15 @@ pub(super) struct Trial {
 pub(super) struct Reviewer {
     terrain: Arc<dyn Terrain>,
     known: Option<(u64, Vec<Problem>)>,
+    /// The analysis that was told of it.
+    told: u64,
     /// The version whose extremes were tried.
     tried: Option<u64>,
 }
 
 impl Reviewer {
     pub fn new(terrain: Arc<dyn Terrain>) -> Self {
-        Self { terrain, known: None, tried: None }
+        Self { terrain, known: None, told: 0, tried: None }
     }
 
     pub fn work(mut self, paths: &Receiver<Path>, outbox: &Outbox) {
@@ -51,8 +55,9 @@ impl Reviewer {
 
     /// In the standard world, once a version. False: nobody listens.
     fn standard(&mut self, path: &Path, outbox: &Outbox) -> bool {
-        if self.known.as_ref().is_some_and(|(version, _)| *version == path.version) {
-            return true;
+        let is_news = std::mem::replace(&mut self.told, path.analysis) != path.analysis;
+        if let Some((_, found)) = self.known.as_ref().filter(|(version, _)| *version == path.version) {
+            return !is_news || outbox.send(Found::Problems(path.version, found.clone()));
         }
         let profile = profile_of(&path.program.plan);
         let found = review(&path.program, &profile, &self.terrain, Conditions::default());
@@ -85,6 +90,9 @@ impl Reviewer {
             return Some(next);
         }
         self.tried = Some(path.version);
+        if let Some((_, found)) = &mut self.known {
+            found.extend_from_slice(&more);
+        }
         let told = more.is_empty() || outbox.send(Found::Problems(path.version, more));
         told.then_some(None)
     }

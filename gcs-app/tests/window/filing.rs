@@ -35,11 +35,12 @@ fn plan_is_saved_and_opened_without_a_desktops_dialog() {
     until_listed(&mut first);
     let proposed = first.app().view().browsing.as_ref().map(|browsing| browsing.name.clone());
     assert_eq!(proposed.as_deref(), Some("Square circuit.xml"), "the plan's name");
-    name(&mut first, &folder.path().join("mine"));
+    name(&mut first, &folder.path().join(""));
     first.click("Go there");
     until_listed(&mut first);
     assert!(first.shows("below"), "the folder's folders");
-    first.click("Save here");
+    name(&mut first, Path::new("mine"));
+    first.press(egui::Key::Enter);
     let path = std::fs::canonicalize(folder.path()).unwrap().join("mine.xml");
     first.until("saved", |app| app.document().path() == Some(path.as_path()));
     assert_eq!(flight_plan::read(std::fs::read(&path).unwrap()).plan, written);
@@ -81,8 +82,6 @@ fn file_that_the_list_does_not_show_is_not_overwritten() {
     window.press_ctrl(egui::Key::S);
     until_listed(&mut window);
     name(&mut window, &path);
-    window.click("Go there");
-    until_listed(&mut window);
     window.click("Save here");
     window.until("refusal", |app| app.view().notice.is_some());
     assert!(window.shows("is there already and was not overwritten"));
@@ -125,8 +124,6 @@ fn file_that_another_program_changed_is_not_overwritten_at_once() {
     window.press_ctrl(egui::Key::S);
     until_listed(&mut window);
     name(&mut window, &path);
-    window.click("Go there");
-    until_listed(&mut window);
     window.click("Save here");
     window.until("saved", |app| app.document().path().is_some());
     std::fs::write(&path, "theirs").unwrap();
@@ -187,6 +184,35 @@ fn saving_keeps_the_comments_of_the_file() {
     let written = std::fs::read_to_string(&path).unwrap();
     let kept: Vec<&str> = text.lines().filter(|line| !line.contains("\"side2\"")).collect();
     assert_eq!(written.lines().collect::<Vec<_>>(), kept);
+}
+
+#[test]
+fn what_was_asked_for_goes_on_once_the_plan_is_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let (first, second) = (folder.path().join("first.xml"), folder.path().join("second.xml"));
+    std::fs::write(&second, SQUARE.replace("side2", "other")).unwrap();
+    let mut window = window_on(&first, SQUARE);
+    window.click("TF side2");
+    window.press(egui::Key::Delete);
+    window.press_ctrl(egui::Key::O);
+    window.click("Save first");
+    window.until("the dialog", |app| app.view().browsing.is_some());
+    assert!(!std::fs::read_to_string(&first).unwrap().contains("\"side2\""), "it was saved");
+    until_listed(&mut window);
+    name(&mut window, &second);
+    window.click("Open");
+    window.until("opened", |app| app.document().path() == Some(second.as_path()));
+}
+
+#[test]
+fn a_plan_that_comes_back_unchanged_is_reviewed_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window_on(&folder.path().join("first.xml"), SQUARE);
+    window.until_analysed();
+    window.press_ctrl(egui::Key::N);
+    window.until_analysed();
+    window.press_ctrl(egui::Key::Z);
+    window.until_analysed();
 }
 
 #[test]
