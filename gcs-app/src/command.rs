@@ -60,8 +60,8 @@ pub enum DocumentCommand {
         /// It may be there already.
         over: bool,
     },
-    /// Save every document with unsaved changes, then close the window.
-    SaveAllAndQuit,
+    /// Save the document, and put something else in its place once that is done; every document, before the window closes.
+    SaveThen(Replacement),
     /// A new plan made from a template, in the place of an empty one.
     Create(Box<Outline>),
     /// A runway from its landing threshold to its other end, on the ground there.

@@ -108,7 +108,7 @@ impl App {
 
     fn not_saved(&mut self, document: u64, why: Option<String>) {
         self.saving.remove(&document);
-        self.quitting = false;
+        self.after_saving = None;
         self.view.notice = why.or_else(|| self.view.notice.take());
     }
 
@@ -264,11 +264,22 @@ impl App {
         }
     }
 
-    /// Saves what has unsaved changes, one document after the other, then closes the window. Stops when one can't be saved.
-    pub(super) fn go_on_quitting(&mut self) {
-        if !self.quitting || !self.saving.is_empty() || self.view.browsing.is_some() {
+    /// What was to happen once the plan is saved; nothing, when it could not be.
+    pub(super) fn go_on_after_saving(&mut self) {
+        if !self.saving.is_empty() || self.view.browsing.is_some() {
             return;
         }
+        match self.after_saving.take() {
+            None => {}
+            Some(Replacement::Quit) => self.go_on_quitting(),
+            Some(with) if self.document.is_dirty() => self.ask_or_replace(with),
+            Some(with) => self.replace(with),
+        }
+    }
+
+    /// Saves what has unsaved changes, one document after the other, then closes the window. Stops when one can't be saved.
+    fn go_on_quitting(&mut self) {
+        self.after_saving = Some(Replacement::Quit);
         let next = self.shelf.unsaved(&self.document).next().map(Document::id);
         match next {
             None => self.leaving = true,
@@ -339,7 +350,7 @@ impl App {
     /// Nothing is chosen.
     pub(super) fn stop_browsing(&mut self) {
         self.view.browsing = None;
-        self.quitting = false;
+        self.after_saving = None;
     }
 
     pub(super) fn browse(&mut self, folder: PathBuf, name: String) {

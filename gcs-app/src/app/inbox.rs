@@ -20,7 +20,7 @@ impl App {
             self.file_event(event, now_s);
         }
         self.watch_file();
-        self.go_on_quitting();
+        self.go_on_after_saving();
         if let Some((story, chapter)) = &mut self.story {
             *chapter = story.chapter();
             story.take_work().into_iter().for_each(|job| self.files.adopt(job));

@@ -80,8 +80,8 @@ pub struct App {
     looked_s: f64,
     /// The window closes, whatever was not saved.
     leaving: bool,
-    /// The window closes when everything is saved.
-    quitting: bool,
+    /// What happens when all that is to be saved is saved.
+    after_saving: Option<Replacement>,
     screenshot: Option<Screenshot>,
     /// The tour has been offered, in this window or an earlier one.
     tour_seen: bool,
@@ -164,7 +164,7 @@ impl App {
             mirrored: None,
             looked_s: f64::NEG_INFINITY,
             leaving: false,
-            quitting: false,
+            after_saving: None,
             screenshot: None,
             tour_seen: remembered.tour_seen,
             story: None,

@@ -59,7 +59,13 @@ impl App {
             DocumentCommand::Export(format) => self.export(format),
             DocumentCommand::AskExport => self.ask_export(),
             DocumentCommand::ExportTo { path, over } => self.export_to(path, over),
-            DocumentCommand::SaveAllAndQuit => (self.view.unsaved, self.quitting) = (None, true),
+            DocumentCommand::SaveThen(with) => {
+                self.view.unsaved = None;
+                if with != Replacement::Quit {
+                    self.save();
+                }
+                self.after_saving = Some(with);
+            }
             DocumentCommand::Replace(with) => self.ask_or_replace(with),
             DocumentCommand::Discard(with) => self.replace(with),
             DocumentCommand::Create(outline) => self.create(*outline),
@@ -95,6 +101,8 @@ impl App {
     pub(super) fn ask_or_replace(&mut self, with: Replacement) {
         let would_be_lost = match with {
             Replacement::Quit => self.may_not_close(),
+            // what is read may be added to the plan; and undo brings a plan back that it takes the place of
+            Replacement::AskImport => false,
             _ => self.document.is_dirty(),
         };
         if would_be_lost {
@@ -104,7 +112,7 @@ impl App {
         }
     }
 
-    fn replace(&mut self, with: Replacement) {
+    pub(super) fn replace(&mut self, with: Replacement) {
         self.view.unsaved = None;
         // a file that turns out to be none leaves the dialog as it was
         if !matches!(with, Replacement::Open(_)) {

@@ -22,16 +22,24 @@ pub(super) fn named(name: &str, world: &[Group<'_>]) -> Option<LatLon> {
     city.or_else(|| airports.iter().flat_map(Group::iter).find(is_meant)).map(Place::position)
 }
 
-/// The cities of that name and the airport of that code.
+/// The cities of that name and the airport of that code; if there are none, the airports of that name.
 pub fn exact<'a>(name: &str, world: &'a [Group<'a>]) -> Vec<Place<'a>> {
     let name = plain(name);
-    let is_it = |(group, place): &(usize, &Place<'_>)| {
-        let full = plain(place.name);
-        full == name || (*group > 0 && full.split_once(' ').is_some_and(|(code, _)| code == name))
+    let by_name_or_code = |group: usize, full: &str| {
+        full == name || (group > 0 && full.split_once(' ').is_some_and(|(code, _)| code == name))
     };
+    let by_name = |group: usize, full: &str| {
+        group > 0 && full.split_once(' ').is_some_and(|(_, of_airport)| of_airport == name)
+    };
+    let found = places_where(world, by_name_or_code);
+    if found.is_empty() { places_where(world, by_name) } else { found }
+}
+
+/// Those whose group and whole name, in small letters, are meant.
+fn places_where<'a>(world: &'a [Group<'a>], is_meant: impl Fn(usize, &str) -> bool) -> Vec<Place<'a>> {
     let of_groups =
         world.iter().enumerate().flat_map(|(group, places)| places.iter().map(move |p| (group, p)));
-    of_groups.filter(is_it).map(|(_, place)| *place).collect()
+    of_groups.filter(|(group, place)| is_meant(*group, &plain(place.name))).map(|(_, place)| *place).collect()
 }
 
 /// At most so many places in whose name a word begins like that, the most important ones first.

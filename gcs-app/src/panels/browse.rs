@@ -6,7 +6,7 @@ use crate::files::{Entry, Purpose};
 use crate::formats;
 use crate::theme;
 use egui::{Align, Id, Key, Layout, Modal, RichText, ScrollArea, Ui};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A folder in which a file is chosen.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,16 +53,14 @@ impl Browsing {
             return Wish::Nothing;
         }
         let path = self.target();
-        let elsewhere = path.parent() != Some(&self.folder);
         match (self.purpose, path.file_name()) {
             _ if names_folder(name) => Wish::Folder(path, String::new()),
             (_, None) => Wish::Folder(path, String::new()),
             (Purpose::Open, Some(_)) => Wish::Open(path),
-            // first look at what is there: nothing is to be overwritten unseen
-            (_, Some(file)) if elsewhere => {
-                Wish::Folder(path.parent().unwrap_or(Path::new("/")).into(), file.to_string_lossy().into())
+            (_, Some(file)) if path.parent() == Some(&self.folder) && self.has(&file.to_string_lossy()) => {
+                Wish::Overwrite(path)
             }
-            (_, Some(file)) if self.has(&file.to_string_lossy()) => Wish::Overwrite(path),
+            // in a folder that is not shown, too: what is there already is not overwritten, and that is said
             (_, Some(_)) => Wish::Save(path),
         }
     }
@@ -251,8 +249,8 @@ mod tests {
             (Save, "new", Wish::Save("/plans/new.xml".into())),
             (Save, "new.v2.xml", Wish::Save("/plans/new.v2.xml".into())),
             (Save, "old", Wish::Overwrite("/plans/old.xml".into())),
-            (Save, "below/new", folder("/plans/below", "new.xml")),
-            (Save, "/else/old.xml", folder("/else", "old.xml")),
+            (Save, "below/new", Wish::Save("/plans/below/new.xml".into())),
+            (Save, "/else/old.xml", Wish::Save("/else/old.xml".into())),
             (Save, "..", folder("/plans/..", "")),
         ] {
             assert_eq!(wish(purpose, name), expected, "{purpose:?} {name}");

@@ -39,12 +39,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             }
             let save = if quits { "Save and quit" } else { "Save first" };
             if ui.add(primary_button(save, theme::of(ui))).clicked() {
-                if quits {
-                    queue.document(DocumentCommand::SaveAllAndQuit);
-                } else {
-                    queue.view(ViewCommand::KeepUnsaved);
-                    queue.document(DocumentCommand::Save);
-                }
+                queue.document(DocumentCommand::SaveThen(with.clone()));
             }
             if ui.button("Discard the changes").clicked() {
                 queue.document(DocumentCommand::Discard(with.clone()));

@@ -122,8 +122,6 @@ fn plan_is_exported_after_its_losses_were_shown() {
     window.press(Key::Enter);
     until_listed(&mut window);
     name(&mut window, &folder.join("flown"));
-    window.click("Go there");
-    until_listed(&mut window);
     window.click("Save here");
     let written = folder.join("flown.gpx");
     window.until("the file", |_| written.exists());
