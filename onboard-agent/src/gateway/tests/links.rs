@@ -2,7 +2,7 @@
 
 use super::flights::zigzag;
 use crate::gateway::driver::{DEFAULT, Driver, FromLink, Setup};
-use crate::gateway::order::{Fed, Order, OrderId, Report, Serial, Time};
+use crate::gateway::order::{Aim, Fed, Order, OrderId, Report, Serial, Time};
 use autopilot_link::Outbox;
 use autopilot_link::frame::Decoder;
 use autopilot_link::signing::{Key, Signing};
@@ -21,6 +21,10 @@ struct Rig {
     reports: Vec<Report>,
     /// Links over which nothing comes and goes.
     cut: Vec<usize>,
+    /// What comes over each link comes so much later.
+    lag: Vec<Duration>,
+    /// What is on its way: when it comes, and over which link.
+    on_its_way: Vec<(Time, usize, Vec<u8>)>,
     /// Every frame comes over all links, as a router sends it.
     routed: bool,
     /// What was sent over each in the last step.
@@ -53,6 +57,8 @@ impl Rig {
             decoders,
             reports: vec![],
             cut: vec![],
+            lag: vec![Duration::ZERO; links as usize],
+            on_its_way: vec![],
             routed: false,
             sent: vec![],
             signing: autopilot.map(signing),
@@ -74,10 +80,13 @@ impl Rig {
                 true => vec![],
                 false => vec![own],
             };
-            for link in over.into_iter().filter(|link| !self.cut.contains(link)) {
-                self.driver.receive(link, FromLink::Datagram(&outgoing.bytes));
-            }
-            while self.driver.process(self.now) {}
+            let comes = |link: usize| (self.now + self.lag[link], link, outgoing.bytes.clone());
+            self.on_its_way.extend(over.into_iter().filter(|link| !self.cut.contains(link)).map(comes));
+        }
+        let now = self.now;
+        for (_, link, bytes) in self.on_its_way.extract_if(.., |(comes, ..)| *comes <= now) {
+            self.driver.receive(link, FromLink::Datagram(&bytes));
+            while self.driver.process(now) {}
         }
         self.driver.tick(self.now);
         self.pass_on();
@@ -145,6 +154,15 @@ impl Rig {
         let fed = |n| Fed { serial: Serial(n), waypoint: waypoint(n) };
         let waypoints = (1..=count).map(fed).collect();
         self.driver.order(self.now, OrderId(1), Order::Feed { after: Serial(0), waypoints });
+    }
+
+    /// Whether it was armed, from heartbeat to heartbeat.
+    fn armed(&self) -> Vec<bool> {
+        let armed = |report: &Report| match report {
+            Report::Heartbeat { armed, .. } => Some(*armed),
+            _ => None,
+        };
+        self.reports.iter().filter_map(armed).collect()
     }
 
     fn is_ready(&self) -> bool {
@@ -248,6 +266,45 @@ fn a_message_that_comes_over_every_link_is_taken_once() {
     assert!(links.iter().all(|link| link.alive && link.received > 200 && link.duplicates == 0), "{links:?}");
 }
 
+/// At the launch the second one still says that it is disarmed, and in another mode.
+#[test]
+fn what_a_slower_second_link_says_of_the_aircraft_is_no_news() {
+    let mut rig = Rig::new(2);
+    rig.lag[1] = Duration::from_millis(1200);
+    rig.run(5);
+    rig.feed(10);
+    rig.run_until(60, "the list is aboard", Rig::is_ready);
+    rig.reports.clear();
+    rig.driver.order(rig.now, OrderId(2), Order::Arm);
+    rig.run(2);
+    rig.driver.order(rig.now, OrderId(3), Order::Steer(Aim::Waypoints));
+    rig.run(6);
+    let armed = rig.armed();
+    assert!(armed.ends_with(&[true, true]) && armed.is_sorted(), "{armed:?}");
+    assert!(rig.links().iter().all(|link| link.alive), "it is listened to");
+}
+
+/// The slower one is used from then on: it says again what was known before, and does not start anew.
+#[test]
+fn a_slower_link_that_takes_over_brings_no_past() {
+    let mut rig = Rig::new(2);
+    rig.routed = true;
+    rig.lag[1] = Duration::from_secs(4);
+    rig.run(10);
+    rig.feed(10);
+    rig.run_until(60, "the list is aboard", Rig::is_ready);
+    rig.driver.order(rig.now, OrderId(2), Order::Arm);
+    rig.run(2);
+    rig.driver.order(rig.now, OrderId(3), Order::Steer(Aim::Waypoints));
+    rig.run(1);
+    rig.cut = vec![0];
+    rig.run(10);
+    assert_eq!(rig.used(), 1);
+    let armed = rig.armed();
+    assert!(armed.ends_with(&[true, true]) && armed.is_sorted(), "{armed:?}");
+    assert!(!rig.reports.contains(&Report::Rebooted));
+}
+
 #[test]
 fn one_transfer_stays_on_one_link_and_begins_anew_when_that_dies() {
     let mut rig = Rig::new(2);
@@ -305,4 +362,34 @@ fn what_was_recorded_and_is_sent_again_is_refused() {
     }
     rig.run(2);
     assert_eq!(rig.links()[0].refused, 2 * frames.len() as u64);
+}
+
+/// Nobody without the key keeps a link alive.
+#[test]
+fn a_copy_without_a_signature_is_no_life_of_a_link() {
+    let mut rig = Rig::signing(2, Some("ours"), Some("ours"));
+    rig.run(5);
+    rig.cut = vec![1];
+    for _ in 0..50 {
+        rig.sim.step();
+        rig.now += Duration::from_millis(100);
+        for mut outgoing in rig.sim.take_outgoing() {
+            let plain = outgoing.bytes.clone();
+            rig.signing.as_mut().unwrap().sign(rig.now, 0, &mut outgoing.bytes, 0);
+            // the same number and checksum, and a signature of nobody's
+            let mut forged = outgoing.bytes.clone();
+            forged.truncate(plain.len());
+            forged.extend([0; 13]);
+            rig.driver.receive(0, FromLink::Datagram(&outgoing.bytes));
+            while rig.driver.process(rig.now) {}
+            rig.driver.receive(1, FromLink::Datagram(&forged));
+            while rig.driver.process(rig.now) {}
+        }
+        rig.driver.tick(rig.now);
+        rig.pass_on();
+        rig.reports.extend(std::iter::from_fn(|| rig.driver.next_report()));
+    }
+    let links = rig.links();
+    assert_eq!((links[0].alive, links[1].alive), (true, false), "{links:?}");
+    assert!(links[1].refused > 20, "{links:?}");
 }

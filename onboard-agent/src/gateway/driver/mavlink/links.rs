@@ -1,9 +1,11 @@
 //! The links to the autopilot: what comes over them, how they do, and over which it is spoken.
 //!
-//! All are listened to; a message that comes over several is taken once. It is spoken over one, the first that is alive: an
-//! autopilot that gets parts of one transfer over two links mixes them up.
+//! It is spoken over one, the first that is alive: an autopilot that gets parts of one transfer over two links mixes them up.
+//! All are listened to, and a message that comes over several is taken once. But another link may be seconds slower, and what
+//! it brings true no more: over it only answers are taken, and what says that it is newer than what was known.
 
 use super::Peer;
+use super::clocks::{Clock, Newest, stamp};
 use super::statistics::Statistics;
 use crate::gateway::driver::FromLink;
 use crate::gateway::order::Time;
@@ -25,8 +27,8 @@ const COPY: Duration = Duration::from_millis(500);
 const REMEMBERED: usize = 512;
 /// Refused messages are logged at most this often.
 const LOG_EVERY: Duration = Duration::from_secs(10);
-/// A link whose autopilot's clock is so far behind brings what is no longer true, ms.
-const LATE_MS: u32 = 500;
+/// A link that is slower than the one before it is waited for at most so long, until it brings what is newer.
+const MOST_LAG: Duration = Duration::from_secs(5);
 
 /// A link.
 #[derive(Debug, Default)]
@@ -39,8 +41,8 @@ struct Link {
     heard: Option<Time>,
     /// Since when it has been alive.
     alive_since: Option<Time>,
-    /// The autopilot's clock as it came over it, ms since it started.
-    clock_ms: Option<u32>,
+    /// The autopilot's clock as it came over it.
+    clock: Clock,
     /// Messages that were not believed.
     refused: u64,
     /// Number of the next frame over it.
@@ -54,11 +56,14 @@ impl Link {
         self.heard.is_some_and(|heard| now.saturating_sub(heard) < DEAD)
     }
 
-    fn hear(&mut self, now: Time) {
+    fn hear(&mut self, now: Time, message: Option<&MavMessage>) {
         if !self.is_alive(now) {
             self.alive_since = Some(now);
         }
         self.heard = Some(now);
+        if let Some(stamp) = message.and_then(stamp) {
+            self.clock.read(stamp);
+        }
     }
 
     fn is_steady(&self, now: Time) -> bool {
@@ -94,6 +99,10 @@ pub struct Links {
     links: Vec<Link>,
     /// The one that is spoken over.
     used: usize,
+    /// From then on it brings what is newer than what came over the one before.
+    fresh_at: Time,
+    /// What was taken of all of them.
+    newest: Newest,
     /// Who is at their other end, once it was heard.
     autopilot: Option<Peer>,
     /// What came lately, of several links.
@@ -128,7 +137,16 @@ impl Links {
         if links.is_empty() {
             links.push(Link::default());
         }
-        Self { links, used: 0, autopilot: None, copies: Copies::default(), signing, logged: (Time::ZERO, 0) }
+        Self {
+            links,
+            used: 0,
+            fresh_at: Time::ZERO,
+            newest: Newest::default(),
+            autopilot: None,
+            copies: Copies::default(),
+            signing,
+            logged: (Time::ZERO, 0),
+        }
     }
 
     /// Takes in what a link brought.
@@ -146,26 +164,33 @@ impl Links {
         let several = self.links.len() > 1;
         for (number, link) in self.links.iter_mut().enumerate() {
             while let Some(frame) = link.decoder.next_frame() {
-                if several && self.copies.contains(now, number, &frame) {
+                let (sender, message) = (frame.sender, frame.message());
+                // a copy has the stamp of the first, and is signed as well
+                let signed = |signing: &Signing| signing.key().has_signed(&frame);
+                if several
+                    && self.copies.contains(now, number, &frame)
+                    && self.signing.as_ref().is_none_or(signed)
+                {
                     link.statistics.received(&frame);
-                    if self.autopilot == Some(frame.sender) {
-                        link.hear(now);
-                        // as new as over the other link
-                        link.clock_ms = None;
+                    if self.autopilot == Some(sender) {
+                        link.hear(now, message.as_ref());
                     }
                     continue;
                 }
-                // a copy has the stamp of the first; only what was believed has copies
                 if self.signing.as_mut().is_some_and(|signing| !signing.believes(now, &frame)) {
                     link.refused += 1;
                     continue;
                 }
                 link.statistics.received(&frame);
-                if several {
+                // what is not taken over this link must not stand in the way of its copy over the one in use
+                let counts = number == self.used || message.as_ref().is_some_and(counts_over_any);
+                if several && counts {
                     self.copies.add(now, number, &frame);
                 }
-                pass(&frame);
-                return Some(Received { link: number, sender: frame.sender, message: frame.message() });
+                if counts {
+                    pass(&frame);
+                }
+                return Some(Received { link: number, sender, message });
             }
         }
         None
@@ -176,24 +201,21 @@ impl Links {
         self.links.len()
     }
 
-    /// The autopilot was heard.
-    pub fn heard(&mut self, now: Time, link: usize, autopilot: Peer, message: &MavMessage) {
+    /// The autopilot was heard. True: what it said is to be taken in, as it is the newest that is known.
+    pub fn heard(&mut self, now: Time, link: usize, autopilot: Peer, message: &MavMessage) -> bool {
         self.autopilot = Some(autopilot);
-        let Some(link) = self.links.get_mut(link) else { return };
-        link.hear(now);
-        link.clock_ms = clock_ms(message).or(link.clock_ms);
+        let used = link == self.used;
+        let Some(link) = self.links.get_mut(link) else { return false };
+        link.hear(now, Some(message));
+        match stamp(message) {
+            Some(stamp) => self.newest.takes(stamp, &link.clock, used),
+            None => counts_over_any(message) || (used && now >= self.fresh_at),
+        }
     }
 
-    /// What comes over this link was true some time ago: it is slower than the one that is spoken over.
-    pub fn is_late(&self, link: usize) -> bool {
-        let clock_ms = |link: usize| self.links.get(link).and_then(|link| link.clock_ms);
-        let (Some(used), Some(this)) = (clock_ms(self.used), clock_ms(link)) else { return false };
-        link != self.used && used.saturating_sub(this) > LATE_MS
-    }
-
-    /// It is spoken over this link.
-    pub fn is_used(&self, link: usize) -> bool {
-        link == self.used
+    /// The autopilot started anew; said once.
+    pub fn take_reboot(&mut self) -> bool {
+        self.newest.take_reboot()
     }
 
     /// Speaks over the first link that is alive. `busy`: something goes on that only a dead link may interrupt. True: another one
@@ -212,8 +234,17 @@ impl Links {
             to = address(best),
             "another link to the autopilot is used"
         );
-        self.used = best;
+        self.use_link(now, best);
         true
+    }
+
+    fn use_link(&mut self, now: Time, number: usize) {
+        let before = self.links.get(self.used).map_or_else(Clock::default, |link| link.clock);
+        self.used = number;
+        if let Some(link) = self.links.get_mut(number) {
+            self.fresh_at = now + link.clock.behind(&before).min(MOST_LAG);
+            self.newest.follow(&mut link.clock);
+        }
     }
 
     /// The autopilot answered a question for its time.
@@ -315,14 +346,11 @@ impl Copies {
     }
 }
 
-/// The autopilot's clock, ms since it started.
-fn clock_ms(message: &MavMessage) -> Option<u32> {
-    match message {
-        MavMessage::GLOBAL_POSITION_INT(m) => Some(m.time_boot_ms),
-        MavMessage::ATTITUDE(m) => Some(m.time_boot_ms),
-        MavMessage::SYSTEM_TIME(m) => Some(m.time_boot_ms),
-        _ => None,
-    }
+/// Over whichever link it comes: an answer is as good when it comes late, and what has a stamp is known for what it is.
+fn counts_over_any(message: &MavMessage) -> bool {
+    use MavMessage::*;
+    matches!(message, COMMAND_ACK(_) | STATUSTEXT(_) | PARAM_VALUE(_) | TIMESYNC(_))
+        || stamp(message).is_some()
 }
 
 fn ask_time(question: i64, to: Peer) -> MavMessage {

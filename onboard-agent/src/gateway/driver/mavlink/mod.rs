@@ -4,6 +4,7 @@
 
 mod aboard;
 pub mod chain;
+mod clocks;
 pub mod commands;
 pub mod dialect;
 pub mod driver;

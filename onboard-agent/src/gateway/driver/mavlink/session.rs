@@ -226,9 +226,11 @@ impl Session {
             self.ignored += 1;
             return;
         };
-        self.links.heard(now, link, peer, message);
-        if self.links.is_late(link) && !is_answer(message) {
+        if !self.links.heard(now, link, peer, message) {
             return;
+        }
+        if self.links.take_reboot() {
+            events.push(SessionEvent::Telemetry(Report::Rebooted));
         }
         self.streams.seen(mavlink::Message::message_id(message));
         match message {
@@ -245,23 +247,14 @@ impl Session {
             }
             MavMessage::STATUSTEXT(text) => self.words.hear(now, text),
             MavMessage::PARAM_VALUE(value) => events.push(SessionEvent::Parameter(value.clone())),
-            _ => self.on_other(now, link, message, peer, events),
+            _ => self.on_other(now, message, peer, events),
         }
         self.tick(now, events);
     }
 
-    /// Of the list, or telemetry. One transfer stays on one link.
-    fn on_other(
-        &mut self,
-        now: Time,
-        link: usize,
-        message: &MavMessage,
-        peer: Peer,
-        events: &mut Vec<SessionEvent>,
-    ) {
-        let used = self.links.is_used(link);
-        let about_list = if used { self.mission.on_message(now, message, peer, &mut self.out) } else { None };
-        match about_list {
+    /// Of the list, or telemetry.
+    fn on_other(&mut self, now: Time, message: &MavMessage, peer: Peer, events: &mut Vec<SessionEvent>) {
+        match self.mission.on_message(now, message, peer, &mut self.out) {
             Some(outcome) => events.extend(outcome.map(SessionEvent::Mission)),
             None => self.readings.take(now, message, events, &mut self.ignored),
         }
@@ -324,12 +317,6 @@ pub fn recognises(datagram: &[u8], key: Option<&Key>) -> bool {
         }
     }
     false
-}
-
-/// It is as good when it comes late.
-fn is_answer(message: &MavMessage) -> bool {
-    use MavMessage::*;
-    matches!(message, COMMAND_ACK(_) | STATUSTEXT(_) | PARAM_VALUE(_) | TIMESYNC(_))
 }
 
 /// Its engine may run.

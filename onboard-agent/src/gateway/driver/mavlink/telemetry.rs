@@ -15,8 +15,6 @@ const JUMP_M: f64 = 500.0;
 const BELIEVED_AFTER: u32 = 10;
 /// A time of day before this (2020-01-01, in microseconds since 1970) is none: the autopilot has not received it from a satellite.
 const NO_TIME_BEFORE_US: u64 = 1_577_836_800_000_000;
-/// The autopilot's clock went back by more than this: it started anew, ms.
-const REBOOT_MS: u32 = 2000;
 
 /// What is put together from several messages.
 #[derive(Debug, Clone, Default)]
@@ -30,7 +28,6 @@ pub struct Readings {
     fuel: Option<f64>,
     last_fix: Option<(Time, LatLon)>,
     jumps: u32,
-    boot_ms: Option<u32>,
     /// The time of day when it was received last, seconds since 1970.
     day: Option<(Time, i64)>,
 }
@@ -40,7 +37,6 @@ impl Readings {
     pub fn take(&mut self, now: Time, message: &MavMessage, out: &mut Vec<SessionEvent>, ignored: &mut u64) {
         let sense = match message {
             MavMessage::GLOBAL_POSITION_INT(m) => {
-                self.boot(m.time_boot_ms, out);
                 self.fix(now, m).map(|f| out.push(SessionEvent::Telemetry(Report::Fix(f))))
             }
             MavMessage::ATTITUDE(m) => {
@@ -78,13 +74,6 @@ impl Readings {
             _ => Some(()),
         };
         *ignored += u64::from(sense.is_none());
-    }
-
-    fn boot(&mut self, ms: u32, out: &mut Vec<SessionEvent>) {
-        let before = self.boot_ms.replace(ms);
-        if before.is_some_and(|b| ms.saturating_add(REBOOT_MS) < b) {
-            out.push(SessionEvent::Telemetry(Report::Rebooted));
-        }
     }
 
     fn fix(&mut self, now: Time, m: &GLOBAL_POSITION_INT_DATA) -> Option<Fix> {

@@ -33,6 +33,8 @@ pub struct Flight {
     pub beats: u64,
     /// Entries of the autopilot's list that it steered to, with the place at that time.
     pub steered: Vec<LatLon>,
+    /// Another link, beside the one in use.
+    slower: Option<two_links::Slower>,
     outbox: Outbox,
     sim_decoder: sim::frame::Decoder,
     /// Number of the next waypoint.
@@ -78,6 +80,7 @@ impl Flight {
             plan: "plan",
             beats: 0,
             steered: vec![],
+            slower: None,
             outbox: Outbox::default(),
             sim_decoder: sim::frame::Decoder::default(),
             next: 1,
@@ -95,6 +98,11 @@ impl Flight {
             while let Some(asked) = self.station.process(self.now) {
                 step = Some(asked);
             }
+            self.slower.iter_mut().for_each(|slower| slower.hear(self.now, &outgoing.bytes));
+        }
+        while let Some(bytes) = self.slower.as_mut().and_then(|slower| slower.next(self.now)) {
+            self.station.receive(1, FromLink::Stream(&bytes));
+            while self.station.process(self.now).is_some() {}
         }
         if self.alive && self.now.as_millis().is_multiple_of(500) {
             self.beats += 1;
@@ -106,7 +114,7 @@ impl Flight {
         self.station.answer_step(step.expect("every step asks for the time"));
         self.outbox.clear();
         self.station.send(&mut self.outbox);
-        for bytes in self.outbox.frames() {
+        for bytes in self.outbox.frames_over(0) {
             self.sim_decoder.push(bytes);
             for frame in sim::frame::take_frames(&mut self.sim_decoder) {
                 self.sim.receive(PEER, frame);
@@ -315,3 +323,4 @@ mod runways;
 mod strangers;
 mod taken_over;
 mod tests;
+mod two_links;
