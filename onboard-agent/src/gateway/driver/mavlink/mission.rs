@@ -49,6 +49,10 @@ pub struct Mission {
     job: Option<Job>,
     link: Rto,
     aboard: Aboard,
+    /// What the autopilot called the list that was in use last.
+    named: Option<u32>,
+    /// And the one that this one replaced.
+    replaced: Option<u32>,
 }
 
 impl Mission {
@@ -89,9 +93,17 @@ impl Mission {
     /// The autopilot says what the list is called that is in use.
     pub fn in_use(&mut self, list: u32) -> Option<Outcome> {
         match self.job.as_ref()? {
-            Job::Transfer(transfer) if transfer.is_called(list) => self.finish(Some(Outcome::Verified)),
-            _ => None,
+            Job::Transfer(transfer) if transfer.is_called(list) => {}
+            _ => return None,
         }
+        let outcome = self.finish(Some(Outcome::Verified));
+        self.replaced = self.named.replace(list).filter(|before| *before != list);
+        outcome
+    }
+
+    /// It speaks of the list before the one that is in use: this was sent before that was replaced.
+    pub fn is_replaced(&self, list: u32) -> bool {
+        self.replaced == Some(list)
     }
 
     /// The list, as it was when it was last verified or read.
@@ -134,6 +146,13 @@ impl Mission {
         peer: Peer,
         out: &mut Vec<MavMessage>,
     ) -> Option<Option<Outcome>> {
+        if let MavMessage::MISSION_ACK(a) = message
+            && a.mission_type == mission_type()
+            && a.mavtype == MavMissionResult::MAV_MISSION_ACCEPTED
+            && let Some(verified) = self.in_use(a.opaque_id)
+        {
+            return Some(Some(verified));
+        }
         let outcome = match self.job.as_mut()? {
             Job::Transfer(transfer) => on_transfer_message(transfer, now, message, peer, out)?,
             Job::Write(write) => on_write_message(write, now, message)?,
@@ -144,6 +163,7 @@ impl Mission {
     fn finish(&mut self, outcome: Option<Outcome>) -> Option<Outcome> {
         let outcome = outcome?;
         self.aboard.ended(&outcome);
+        self.replaced = None;
         self.link = match self.job.take()? {
             Job::Transfer(transfer) => transfer.into_rto(),
             Job::Write(write) => write.into_rto(),
@@ -171,9 +191,7 @@ fn on_transfer_message(
             Some(None)
         }
         MavMessage::MISSION_ACK(a) if a.mission_type == plan => {
-            let proven =
-                a.mavtype == MavMissionResult::MAV_MISSION_ACCEPTED && transfer.is_called(a.opaque_id);
-            Some(if proven { Some(Outcome::Verified) } else { transfer.acked(now, a.mavtype, peer, out) })
+            Some(transfer.acked(now, a.mavtype, peer, out))
         }
         MavMessage::MISSION_COUNT(c) if c.mission_type == plan => {
             Some(transfer.counted(now, c.count, peer, out))
@@ -215,4 +233,35 @@ pub(super) fn thanks(peer: Peer) -> MavMessage {
         mission_type: mission_type(),
         opaque_id: 0,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PEER: Peer = Peer { system: 1, component: 1 };
+    const RULES: Rules = Rules { same: is_same, id: Some(length), reads_in_order: false };
+
+    fn is_same(one: &Entry, other: &Entry) -> bool {
+        one == other
+    }
+
+    fn length(list: &[Entry]) -> u32 {
+        list.len() as u32
+    }
+
+    #[test]
+    fn what_is_said_of_the_list_before_the_one_in_use_is_known_as_that() {
+        let mut mission = Mission::default();
+        for (length, replaced) in [(3, None), (5, Some(3)), (4, Some(5))] {
+            let entries = vec![Entry::DEFAULT; length];
+            mission.upload(Time::ZERO, entries, &RULES, PEER, &mut vec![]);
+            assert_eq!(mission.in_use(length as u32), Some(Outcome::Verified));
+            assert_eq!((0..9).find(|list| mission.is_replaced(*list)), replaced);
+        }
+        // read back, and not named by the autopilot: nothing is known of names
+        mission.upload(Time::ZERO, vec![Entry::DEFAULT; 5], &RULES, PEER, &mut vec![]);
+        mission.break_off("no answer");
+        assert!((0..9).all(|list| !mission.is_replaced(list)));
+    }
 }

@@ -243,7 +243,9 @@ impl Session {
             }
             MavMessage::MISSION_CURRENT(current) => {
                 events.extend(self.mission.in_use(current.mission_id).map(SessionEvent::Mission));
-                self.current(now, current.seq, events);
+                if !self.mission.is_replaced(current.mission_id) {
+                    self.current(now, current.seq, events);
+                }
             }
             MavMessage::STATUSTEXT(text) => self.words.hear(now, text),
             MavMessage::PARAM_VALUE(value) => events.push(SessionEvent::Parameter(value.clone())),
