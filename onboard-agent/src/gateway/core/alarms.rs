@@ -2,7 +2,7 @@
 
 mod watches;
 
-use super::telemetry::Telemetry;
+use super::telemetry::{FRESH, Telemetry};
 use crate::gateway::order::Time;
 use geometry::LatLon;
 use std::time::Duration;
@@ -129,7 +129,7 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
             let needed = raised || inputs.sinks_below_target;
             t.is_airborne() && t.engine.is_some_and(|(_, e)| has_stopped(e, needed))
         }
-        Watch::EngineSuspected => t.is_airborne() && t.engine.is_none() && strains(t, inputs, raised),
+        Watch::EngineSuspected => t.is_airborne() && t.engine.is_none() && strains(now, t, inputs, raised),
         Watch::Sinks => inputs.sinks,
         Watch::Slow => inputs.slow,
         Watch::StandsStill => inputs.stands_still,
@@ -153,11 +153,13 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
 
 /// It sinks or slows down at full throttle; once that was seen, until it climbs again: on the way down nothing else shows
 /// it. An autopilot that pulls up to keep the altitude gives away its speed first.
-fn strains(t: &Telemetry, inputs: AlarmInputs, raised: bool) -> bool {
+fn strains(now: Time, t: &Telemetry, inputs: AlarmInputs, raised: bool) -> bool {
     match raised {
         true => inputs.slow || t.fix.is_none_or(|(_, fix)| fix.down_mps > -CLIMBING_MPS),
         false => {
-            (inputs.sinks || inputs.slow) && t.throttle.is_some_and(|(_, throttle)| throttle > FULL_THROTTLE)
+            let full =
+                |(at, throttle): (Time, f64)| now.saturating_sub(at) < FRESH && throttle > FULL_THROTTLE;
+            (inputs.sinks || inputs.slow) && t.throttle.is_some_and(full)
         }
     }
 }

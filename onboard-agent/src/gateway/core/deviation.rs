@@ -2,7 +2,8 @@
 
 use super::Gateway;
 use super::io::Intent;
-use crate::gateway::order::Fix;
+use super::telemetry::FRESH;
+use crate::gateway::order::{Fix, Time};
 use usal::contract::{Action, GatewayState};
 
 /// Below the waypoint's altitude by this, and sinking faster than this, something is missing.
@@ -15,6 +16,8 @@ const TROUBLE_MPS: f64 = 1.0;
 const LEVEL_MPS: f64 = 2.0;
 /// Slower than this share of the airspeed that was commanded, something holds it back: a climb takes less.
 const SLOW: f64 = 0.7;
+/// Unless it still gains more than this, m/s²: it was told to fly faster a moment ago.
+const GAINING_MPS2: f64 = 0.2;
 /// Slower than this nothing with wings flies, neither over the ground nor through the air, m/s.
 const STANDING_MPS: f64 = 1.5;
 
@@ -37,10 +40,19 @@ impl Gateway {
     }
 
     /// It flies far slower through the air than it was told to.
-    pub(super) fn is_slow(&self) -> bool {
-        let (wanted, air) = (self.control.confirmed_speed_mps(), self.telemetry.air);
-        let slow = |wanted_mps: f64| air.is_some_and(|(_, air)| air.airspeed_mps < SLOW * wanted_mps);
-        self.is_on_its_way() && self.telemetry.is_airborne() && wanted.is_some_and(slow)
+    pub(super) fn is_slow(&self, now: Time) -> bool {
+        let t = &self.telemetry;
+        let fresh = t.air.filter(|(at, _)| now.saturating_sub(*at) < FRESH);
+        let (Some((_, air)), Some(wanted_mps)) = (fresh, self.control.confirmed_speed_mps()) else {
+            return false;
+        };
+        // some autopilots circle at a speed of their own, whatever they were told: not below the least
+        let most_mps = match self.state {
+            GatewayState::Hold | GatewayState::SafeHold => self.settings.profile.min_airspeed_mps,
+            _ => f64::INFINITY,
+        };
+        let is_slow = air.airspeed_mps < (SLOW * wanted_mps).min(most_mps);
+        self.is_on_its_way() && t.is_airborne() && is_slow && t.airspeed.gains_mps2() < GAINING_MPS2
     }
 
     /// It flies by what was commanded, and neither takes off nor lands.

@@ -4,6 +4,7 @@
 //! with the same round: alarms, what the autopilot is seen to do, what the FP Manager is known to
 //! do, then the orders that follow. The state says what was confirmed, the intent what is wanted.
 
+mod airspeed;
 mod alarms;
 mod batch;
 mod buffer;
@@ -16,6 +17,8 @@ mod safe;
 mod states;
 mod supervise;
 mod telemetry;
+#[cfg(test)]
+mod tests;
 mod views;
 
 #[cfg(test)]
@@ -211,7 +214,7 @@ impl Gateway {
             disobeys_since: self.control.disobeys_since,
             sinks_below_target: self.sinks_below_target(),
             sinks: self.sinks(),
-            slow: self.is_slow(),
+            slow: self.is_slow(now),
             stands_still: self.stands_still(),
             not_in_command: self.state == GatewayState::Manual,
             no_safe_runway: self.control.intent == Intent::Return,

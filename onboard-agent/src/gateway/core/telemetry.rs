@@ -1,5 +1,6 @@
 //! The latest that the autopilot said about everything, with its time.
 
+use super::airspeed::Trend;
 use crate::gateway::order::{Fix, Mode, Report, Time};
 use geometry::LatLon;
 use std::borrow::Cow;
@@ -11,6 +12,9 @@ pub type Timed<T> = Option<(Time, T)>;
 
 /// Velocities below this have no direction, m/s.
 const STANDING_MPS: f64 = 0.5;
+
+/// A value that is older says nothing of what happens now.
+pub const FRESH: Duration = Duration::from_secs(2);
 
 /// An armed autopilot that has not said for so long whether it stands on the ground will not say it.
 const SAYS_WHERE: Duration = Duration::from_secs(5);
@@ -36,6 +40,8 @@ pub struct Telemetry {
     pub attitude: Timed<Attitude>,
     /// Air data.
     pub air: Timed<Air>,
+    /// How the airspeed changes.
+    pub airspeed: Trend,
     /// GPS quality.
     pub gps: Timed<Gps>,
     /// Engine.
@@ -80,6 +86,7 @@ impl Default for Telemetry {
             moved: None,
             attitude: None,
             air: None,
+            airspeed: Trend::default(),
             gps: None,
             engine: None,
             throttle: None,
@@ -111,7 +118,10 @@ impl Telemetry {
                 self.fix = Some((now, *fix));
             }
             Report::Attitude(v) => self.attitude = Some((now, *v)),
-            Report::Air(v) => self.air = Some((now, *v)),
+            Report::Air(v) => {
+                self.air = Some((now, *v));
+                self.airspeed.take(now, v.airspeed_mps);
+            }
             Report::Gps(v) => self.gps = Some((now, *v)),
             Report::Engine(v) => self.engine = Some((now, *v)),
             Report::Throttle(v) => self.throttle = Some((now, *v)),

@@ -1,6 +1,6 @@
 //! The gateway as a whole.
 
-mod flights;
+pub mod flights;
 mod links;
 mod other_autopilot;
 mod shell;

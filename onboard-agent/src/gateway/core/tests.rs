@@ -1,0 +1,151 @@
+//! The core alone: what it says and orders upon what is reported to it.
+
+use super::*;
+use crate::gateway::order::{Fix, Target};
+use usal::contract::{Air, Feed, GatewayRequest, Gps, Join};
+
+/// A core, and what came out of it.
+struct Core {
+    gateway: Gateway,
+    now: Time,
+    out: Vec<Output>,
+    beats: u64,
+}
+
+impl Core {
+    fn new() -> Self {
+        let gateway = Gateway::new(crate::gateway::tests::flights::settings(), None);
+        Self { gateway, now: Time::ZERO, out: vec![], beats: 0 }
+    }
+
+    fn step(&mut self, input: Input) {
+        self.gateway.step(self.now, input, &mut self.out);
+    }
+
+    /// So many seconds, in each tenth of which this is reported; the FP Manager lives.
+    fn run(&mut self, seconds: u64, reports: &[Report]) {
+        for _ in 0..10 * seconds {
+            self.now += Duration::from_millis(100);
+            self.beats += 1;
+            self.step(Input::Heartbeat { count: self.beats, plan: Some("plan".into()), from: None });
+            reports.iter().for_each(|report| self.step(Input::Report(report.clone())));
+            self.step(Input::Tick);
+        }
+    }
+
+    /// Everything that was ordered is done.
+    fn done(&mut self) {
+        let ordered = self.orders().into_iter().map(|(id, _)| id).collect::<Vec<_>>();
+        self.out.clear();
+        ordered.into_iter().for_each(|id| self.step(Input::Report(Report::Done(id))));
+    }
+
+    fn orders(&self) -> Vec<(OrderId, Order)> {
+        let order = |output: &Output| match output {
+            Output::Order(id, order) => Some((*id, order.clone())),
+            _ => None,
+        };
+        self.out.iter().filter_map(order).collect()
+    }
+
+    fn was_ordered(&self, wanted: &Order) -> bool {
+        self.orders().iter().any(|(_, order)| order == wanted)
+    }
+
+    fn raised(&self, id: &str) -> bool {
+        self.gateway.alarms.raised().iter().any(|alarm| alarm.id == id)
+    }
+
+    /// It flies the first of some waypoints.
+    fn in_nav() -> Self {
+        let mut core = Self::new();
+        let gps = Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: None };
+        let ground = [beat(Mode::Hold, false), Report::OnGround(true), fix(0.0), Report::Gps(gps)];
+        core.step(Input::Report(Report::Capability(Ok("a plane"))));
+        core.run(1, &ground);
+        let join = Join { plan: Some("plan".into()), earlier: vec![], last_token: Token(0) };
+        core.step(Input::Join(1, join, None));
+        let number = |(i, w): (usize, Waypoint)| Waypoint { token: Token(i as u64 + 1), ..w };
+        let waypoints =
+            crate::gateway::tests::flights::zigzag(0, 10, 300.0).into_iter().enumerate().map(number);
+        core.step(Input::Feed(2, Feed { cancel_after: None, waypoints: waypoints.collect() }));
+        core.step(Input::Request(3, GatewayRequest::Launch));
+        core.step(Input::Report(Report::Course(course(true))));
+        core.run(1, &flying(25.0, 25.0));
+        core.done();
+        assert_eq!(core.gateway.state(), GatewayState::Nav);
+        core
+    }
+}
+
+fn course(ready: bool) -> Course {
+    Course { aboard: true, ready, target: Target::Waypoint(crate::gateway::order::Serial(1)) }
+}
+
+fn beat(mode: Mode, armed: bool) -> Report {
+    Report::Heartbeat { mode, name: "a mode".into(), armed }
+}
+
+fn fix(north_mps: f64) -> Report {
+    let (position, altitude_amsl_m) = (LatLon::new(36.32, -84.17), 470.0);
+    let (altitude_home_m, east_mps, down_mps) = (120.0, 0.0, 0.0);
+    Report::Fix(Fix { position, altitude_amsl_m, altitude_home_m, north_mps, east_mps, down_mps })
+}
+
+fn air(airspeed_mps: f64) -> Report {
+    let (wind_east_mps, wind_north_mps) = (0.0, 0.0);
+    Report::Air(Air { airspeed_mps, wind_east_mps, wind_north_mps, pressure_hpa: 960.0, temperature_c: 15.0 })
+}
+
+/// In the air by its waypoints, at a speed over the ground and an airspeed, m/s.
+fn flying(ground_mps: f64, airspeed_mps: f64) -> [Report; 4] {
+    [beat(Mode::Waypoints, true), Report::OnGround(false), fix(ground_mps), air(airspeed_mps)]
+}
+
+/// Each second faster by so much, up to the end, m/s.
+fn accelerate(core: &mut Core, from: f64, by: f64, to: f64, throttle: f64) -> bool {
+    let (mut mps, mut raised) = (from, false);
+    while mps < to {
+        let mut reports = flying(mps, mps).to_vec();
+        reports.push(Report::Throttle(throttle));
+        core.run(1, &reports);
+        raised |= core.raised("slow") || core.raised("engine-suspected");
+        mps += by;
+    }
+    raised
+}
+
+#[test]
+fn an_aircraft_that_still_gains_speed_is_not_slow() {
+    let mut core = Core::in_nav();
+    core.gateway.order_speed(54.0, &mut core.out);
+    core.done();
+    assert!(!accelerate(&mut core, 25.0, 1.0, 54.0, 1.0), "it does what it can");
+    let mut core = Core::in_nav();
+    core.run(15, &[&flying(15.0, 15.0)[..], &[Report::Throttle(1.0)]].concat());
+    assert!(core.raised("slow") && core.raised("engine-suspected"));
+}
+
+#[test]
+fn an_airspeed_that_is_no_longer_told_makes_nobody_slow() {
+    let mut core = Core::in_nav();
+    core.run(2, &flying(15.0, 15.0));
+    core.run(20, &flying(15.0, 15.0)[..3]);
+    assert!(!core.raised("slow"));
+}
+
+/// It circles at a speed of its own, if it forgets the one that it was told.
+#[test]
+fn in_a_hold_slow_is_slower_than_it_may_fly() {
+    for (airspeed_mps, slow) in [(18.0, false), (12.0, true)] {
+        let mut core = Core::in_nav();
+        core.gateway.order_speed(30.0, &mut core.out);
+        core.done();
+        core.step(Input::Request(4, GatewayRequest::Hold));
+        let mut reports = flying(airspeed_mps, airspeed_mps);
+        reports[0] = beat(Mode::Hold, true);
+        core.run(15, &reports);
+        assert_eq!(core.gateway.state(), GatewayState::Hold);
+        assert_eq!(core.raised("slow"), slow, "{airspeed_mps}");
+    }
+}
