@@ -207,6 +207,7 @@ impl Gateway {
         }
         self.steer_mode(now, out);
         self.steer_speed(out);
+        self.keep_hands_off(out);
         self.leave_loiter(out);
     }
 
@@ -278,6 +279,17 @@ impl Gateway {
             if flies && self.state == GatewayState::Stop && self.control.arm.is_none() {
                 self.control.arm = Some(self.order(Order::Arm, out));
                 self.control.retry_at = Some(now + RETRY);
+    /// What is aboard is not touched while the pilot flies, unless it is to be flown again.
+    fn keep_hands_off(&mut self, out: &mut Vec<Output>) {
+        let off = match self.state {
+            GatewayState::Manual => self.control.intent == Intent::Nothing,
+            state => state == GatewayState::Terminate,
+        };
+        if std::mem::replace(&mut self.hands_off, off) != off {
+            self.order(Order::HandsOff(off), out);
+        }
+    }
+
             }
             return;
         }

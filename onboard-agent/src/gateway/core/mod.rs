@@ -66,6 +66,8 @@ pub struct Gateway {
     terminated: bool,
     /// A flight was met in the air: what was known of it.
     adopting: Option<Snapshot>,
+    /// The driver was told to change nothing aboard.
+    hands_off: bool,
 }
 
 impl Gateway {
@@ -92,6 +94,7 @@ impl Gateway {
             flooded: false,
             terminated: restored.as_ref().is_some_and(|k| k.terminated),
             adopting: restored,
+            hands_off: false,
         }
     }
 
@@ -327,9 +330,6 @@ impl Gateway {
         if to != GatewayState::Hold {
             self.fp_manager.awaited_since = None;
         }
-        if hands_off(from) != hands_off(to) {
-            self.order(Order::HandsOff(hands_off(to)), out);
-        }
         out.push(Output::Event(GatewayEvent::StateChanged { from, to, cause: cause.to_owned() }));
     }
 
@@ -383,11 +383,6 @@ impl Gateway {
         out.push(Output::Order(id, order));
         id
     }
-}
-
-/// Nothing aboard is to be changed by us.
-fn hands_off(state: GatewayState) -> bool {
-    matches!(state, GatewayState::Manual | GatewayState::Terminate)
 }
 
 /// Seconds as a duration; nonsense gives zero.

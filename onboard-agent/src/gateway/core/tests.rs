@@ -149,3 +149,24 @@ fn in_a_hold_slow_is_slower_than_it_may_fly() {
         assert_eq!(core.raised("slow"), slow, "{airspeed_mps}");
     }
 }
+
+/// A write to the list that was under way failed, and is done again only by hands that may.
+#[test]
+fn an_aircraft_that_is_to_be_taken_back_is_written_to_again() {
+    let mut core = Core::in_nav();
+    let mut by_pilot = flying(25.0, 25.0);
+    by_pilot[0] = beat(Mode::Other(5), true);
+    core.run(1, &by_pilot);
+    assert_eq!(core.gateway.state(), GatewayState::Manual);
+    assert!(core.was_ordered(&Order::HandsOff(true)));
+    core.step(Input::Report(Report::Course(course(false))));
+    core.run(5, &by_pilot);
+    assert!(!core.was_ordered(&Order::HandsOff(false)));
+    core.step(Input::Request(4, GatewayRequest::Resume));
+    assert!(core.was_ordered(&Order::HandsOff(false)), "the list is written anew");
+    core.step(Input::Report(Report::Course(course(true))));
+    core.run(1, &by_pilot);
+    assert!(core.was_ordered(&Order::Steer(crate::gateway::order::Aim::Waypoints)));
+    core.run(1, &flying(25.0, 25.0));
+    assert_eq!(core.gateway.state(), GatewayState::Nav);
+}
