@@ -68,6 +68,8 @@ pub struct Gateway {
     adopting: Option<Snapshot>,
     /// The driver was told to change nothing aboard.
     hands_off: bool,
+    /// Of the last step.
+    now: Time,
 }
 
 impl Gateway {
@@ -95,11 +97,13 @@ impl Gateway {
             terminated: restored.as_ref().is_some_and(|k| k.terminated),
             adopting: restored,
             hands_off: false,
+            now: Time::ZERO,
         }
     }
 
     /// Takes in what happened; what is to be done goes to `out`.
     pub fn step(&mut self, now: Time, input: Input, out: &mut Vec<Output>) {
+        self.now = now;
         match input {
             Input::Tick => {}
             Input::Report(report) => self.report(now, report, out),
@@ -236,7 +240,7 @@ impl Gateway {
     /// It is in the air, or about to be, as far as is known; not once it is silent for so long that it counts as off.
     pub fn is_in_flight(&self) -> bool {
         let flies = self.telemetry.is_airborne() || (is_flying(self.state) && self.telemetry.armed);
-        self.state != GatewayState::Off && flies
+        flies && self.telemetry.last_received.is_some_and(|at| self.now.saturating_sub(at) <= OFF_AFTER)
     }
 
     fn flies_waypoints(&self) -> bool {

@@ -170,3 +170,15 @@ fn an_aircraft_that_is_to_be_taken_back_is_written_to_again() {
     core.run(1, &flying(25.0, 25.0));
     assert_eq!(core.gateway.state(), GatewayState::Nav);
 }
+
+#[test]
+fn what_is_no_longer_heard_is_not_in_flight_and_what_was_just_met_is() {
+    let mut core = Core::in_nav();
+    assert!(core.gateway.is_in_flight());
+    core.run(11, &[]);
+    assert!(!core.gateway.is_in_flight(), "its battery was pulled, perhaps");
+    let mut core = Core::new();
+    core.run(1, &flying(25.0, 25.0));
+    assert_eq!(core.gateway.state(), GatewayState::Off, "what it has aboard is not known yet");
+    assert!(core.gateway.is_in_flight());
+}
