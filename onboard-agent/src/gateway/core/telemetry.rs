@@ -140,10 +140,23 @@ impl Telemetry {
         self.armed && self.on_ground != Some(true)
     }
 
-    /// On the ground, as it says; unarmed, or silent about it, it is believed to be there.
+    /// On the ground, as it says; unarmed, or silent about it and at rest, it is believed to be there.
     pub fn stands(&self, now: Time) -> bool {
-        let Some(first_beat) = self.first_beat else { return false };
-        !self.armed || self.on_ground.unwrap_or(now >= first_beat + SAYS_WHERE)
+        self.first_beat.is_some()
+            && (!self.armed || self.on_ground.unwrap_or(self.seems_to_rest(now) == Some(true)))
+    }
+
+    /// In the air for certain: it says so, or is silent about it and moves.
+    pub fn flies(&self, now: Time) -> bool {
+        self.armed && !self.on_ground.unwrap_or(self.seems_to_rest(now) != Some(false))
+    }
+
+    /// Of one that does not say whether it stands: whether its position does. `None`: that is not known either, or it may still
+    /// say it.
+    fn seems_to_rest(&self, now: Time) -> Option<bool> {
+        let waited = self.first_beat.is_some_and(|at| now >= at + SAYS_WHERE);
+        let (_, fix) = self.fix.filter(|(at, _)| waited && now.saturating_sub(*at) < FRESH)?;
+        Some(fix.north_mps.hypot(fix.east_mps) < STANDING_MPS && fix.down_mps.abs() < STANDING_MPS)
     }
 
     /// Surely on the ground with the engine off.

@@ -182,3 +182,16 @@ fn what_is_no_longer_heard_is_not_in_flight_and_what_was_just_met_is() {
     assert_eq!(core.gateway.state(), GatewayState::Off, "what it has aboard is not known yet");
     assert!(core.gateway.is_in_flight());
 }
+
+/// The autopilot's word for it may be lost on a bad link.
+#[test]
+fn what_moves_does_not_stand_though_it_does_not_say_that_it_flies() {
+    let mut core = Core::new();
+    let [beat, _, fix, air] = flying(20.0, 25.0);
+    core.run(8, &[beat, fix, air]);
+    assert_eq!(core.gateway.state(), GatewayState::Off);
+    assert!(core.orders().iter().any(|(_, order)| matches!(order, Order::Adopt(_))), "it was met in flight");
+    let mut core = Core::new();
+    core.run(8, &[self::beat(Mode::Hold, true), self::fix(0.0)]);
+    assert_eq!(core.gateway.state(), GatewayState::Stop);
+}
