@@ -12,6 +12,8 @@ use usal::contract::{Action, GatewayState};
 const RETRY: Duration = Duration::from_millis(1000);
 /// An aircraft that does not arm yet, while its autopilot still starts up, is ordered to again for so long.
 const ARMS_WITHIN: Duration = Duration::from_secs(20);
+/// What an aircraft has aboard that was met in flight is read within this, or it is in somebody else's hands.
+const READ_WITHIN: Duration = Duration::from_secs(15);
 /// An order of ours that was overtaken by another may still come into effect for so long.
 const OVERTAKEN: Duration = Duration::from_secs(3);
 /// Airspeeds closer than this are the same, m/s.
@@ -57,6 +59,8 @@ pub struct Control {
     put_off_since: Option<Time>,
     speed: Option<(OrderId, f64)>,
     adopt: Option<OrderId>,
+    /// When a flight was met of which nothing is known.
+    met_at: Option<Time>,
 }
 
 impl Default for Control {
@@ -82,6 +86,7 @@ impl Default for Control {
             put_off_since: None,
             speed: None,
             adopt: None,
+            met_at: None,
         }
     }
 }
@@ -200,26 +205,31 @@ impl Control {
 impl Gateway {
     /// The orders that follow from intent, state and what is on board.
     pub(super) fn steer(&mut self, now: Time, out: &mut Vec<Output>) {
-        self.meet_in_flight(out);
+        self.meet_in_flight(now, out);
         self.yield_to_pilot(now, out);
+        self.keep_hands_off(out);
         if !self.control.may_retry(now) {
             return;
         }
         self.steer_mode(now, out);
         self.steer_speed(out);
-        self.keep_hands_off(out);
         self.leave_loiter(out);
     }
 
     /// A gateway that starts while the aircraft flies: it finds out what is flown before it acts.
-    fn meet_in_flight(&mut self, out: &mut Vec<Output>) {
+    fn meet_in_flight(&mut self, now: Time, out: &mut Vec<Output>) {
         use GatewayState::{Manual, Off, Stop};
         let unknown = !self.buffer.course().aboard && self.control.intent == Intent::Nothing;
-        let aloft = self.telemetry.is_airborne() && self.telemetry.on_ground == Some(false);
-        if !unknown || !aloft || self.control.adopt.is_some() {
+        if !unknown || !self.telemetry.flies(now) {
+            self.control.met_at = None;
             return;
         }
+        let is_unread = now.saturating_sub(*self.control.met_at.get_or_insert(now)) >= READ_WITHIN;
         match (self.state, self.telemetry.mode) {
+            (Off | Stop, Some(_)) if is_unread => {
+                self.change(Trigger::PilotTook, "met in flight, and what it has aboard can't be read", out);
+            }
+            _ if self.control.adopt.is_some() => {}
             (Off | Stop, Some(Mode::Waypoints | Mode::Hold | Mode::Direct)) => self.ask_what_flies(out),
             (Off | Stop, Some(_)) => {
                 self.change(Trigger::PilotTook, "met in flight under a pilot's control", out);
@@ -269,16 +279,6 @@ impl Gateway {
         }
     }
 
-    fn steer_mode(&mut self, now: Time, out: &mut Vec<Output>) {
-        let Some(wanted) = self.control.wanted_mode() else { return };
-        let flies = wanted == Mode::Waypoints;
-        if flies && !self.buffer.course().ready && !self.flies_waypoints() {
-            return;
-        }
-        if !self.telemetry.armed {
-            if flies && self.state == GatewayState::Stop && self.control.arm.is_none() {
-                self.control.arm = Some(self.order(Order::Arm, out));
-                self.control.retry_at = Some(now + RETRY);
     /// What is aboard is not touched while the pilot flies, unless it is to be flown again.
     fn keep_hands_off(&mut self, out: &mut Vec<Output>) {
         let off = match self.state {
@@ -290,6 +290,16 @@ impl Gateway {
         }
     }
 
+    fn steer_mode(&mut self, now: Time, out: &mut Vec<Output>) {
+        let Some(wanted) = self.control.wanted_mode() else { return };
+        let flies = wanted == Mode::Waypoints;
+        if flies && !self.buffer.course().ready && !self.flies_waypoints() {
+            return;
+        }
+        if !self.telemetry.armed {
+            if flies && self.state == GatewayState::Stop && self.control.arm.is_none() {
+                self.control.arm = Some(self.order(Order::Arm, out));
+                self.control.retry_at = Some(now + RETRY);
             }
             return;
         }
