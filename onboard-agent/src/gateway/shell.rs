@@ -4,7 +4,7 @@ use super::config::Config;
 use super::core::Settings;
 use super::door::Door;
 use super::driver::{Registration, Setup};
-use super::links::Links;
+use super::links::{Links, Recognises};
 use super::service::{FILE, FcsGateway, Input, Output};
 use super::station::Station;
 use super::tlog::Tlog;
@@ -14,7 +14,7 @@ use anyhow::Context;
 use autopilot_link::Link;
 use autopilot_link::signing::Signing;
 use service::{Adapter, Beginning, Shutdown, Tasks, Time, Timing};
-use std::time::SystemTime;
+use std::time::{Instant, SystemTime};
 use usal::Role;
 
 /// What the gateway has to do with: the links to the autopilot, and who comes to its port.
@@ -68,14 +68,19 @@ async fn open(
     let settings = Settings { vehicle, profile, terrain, exposed, replay };
     let Registration { recognises, make, .. } = config.driver;
     let addresses = config.autopilots.iter().map(ToString::to_string).collect();
-    let key = config.key.clone();
     let unix = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
     let signing = config.key.map(|key| Signing::new(key, unix));
     let setup =
         Setup { lockstep: config.simulated, links: addresses, mirror: config.mirror.is_some(), signing };
     let station = Station::new(settings, restored, make(&setup));
-    let recognises = move |datagram: &[u8]| recognises(datagram, key.as_ref());
-    let links = Links::new(links, Box::new(recognises), tlog);
+    let recogniser = || -> Recognises {
+        // what was recorded and is sent again is not recognised: each link knows by itself what came over it
+        let (mut signing, start) = (setup.signing.clone(), Instant::now());
+        Box::new(move |datagram: &[u8]| {
+            recognises(datagram, signing.as_mut().map(|signing| (signing, start.elapsed())))
+        })
+    };
+    let links = Links::new(links, recogniser, tlog);
     Ok((FcsGateway::new(station, !(config.simulated || replay)), Outside { links, door }))
 }
 

@@ -11,7 +11,7 @@ mod px4;
 
 use super::order::{Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
-use autopilot_link::signing::{Key, Signing};
+use autopilot_link::signing::Signing;
 use examination::Examination;
 use mavlink::dialect::Dialect;
 
@@ -80,9 +80,9 @@ pub struct Setup {
 pub struct Registration {
     /// Its name in the configuration.
     pub name: &'static str,
-    /// A datagram from an unknown sender is from such an autopilot: its sender becomes the link's partner. With a key, only what is
-    /// signed with it.
-    pub recognises: fn(&[u8], Option<&Key>) -> bool,
+    /// A datagram is from such an autopilot: its sender becomes the link's partner, or stays it. With a key, only what is signed
+    /// with it and newer than what was recognised before; with the time since the start.
+    pub recognises: fn(&[u8], Option<(&mut Signing, Time)>) -> bool,
     /// Makes a driver that has received nothing. It reports in [`Report::Capability`] whether it can fly the
     /// autopilot at the other end.
     pub make: fn(&Setup) -> Box<dyn Driver>,

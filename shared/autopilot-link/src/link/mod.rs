@@ -114,7 +114,7 @@ impl Link {
     }
 
     /// Waits for what happens next; bytes that came replace those in `into`. `is_partner` says whether a
-    /// datagram from somebody unknown makes him a partner. May be dropped and called again at any time.
+    /// datagram makes its sender a partner, or keeps him one. May be dropped and called again at any time.
     pub async fn next(&mut self, into: &mut Vec<u8>, is_partner: impl FnMut(&[u8]) -> bool) -> Event {
         into.clear();
         let event = match &mut self.kind {

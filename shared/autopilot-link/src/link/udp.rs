@@ -14,11 +14,11 @@ const LARGEST: usize = 65_536;
 pub enum Partners {
     /// This one, from the start, and nobody else ever.
     Only(SocketAddr),
-    /// Whoever is recognised by what he says, until he is silent for too long.
+    /// Whoever is recognised by what he says, until he has not been for too long.
     Recognised {
         /// So many at once.
         most: usize,
-        /// After so much silence another may take the place.
+        /// Not recognised for so long, another may take the place: whoever goes on talking does not keep it by that.
         silent: Duration,
     },
 }
@@ -31,6 +31,7 @@ impl Partners {
 struct Partner {
     peer: Peer,
     address: SocketAddr,
+    /// When he was recognised last.
     heard: Instant,
 }
 
@@ -48,7 +49,7 @@ impl Udp {
     pub fn new(socket: UdpSocket, rule: Partners) -> Self {
         let mut udp = Self { socket, rule, partners: vec![], given: 0 };
         if let Partners::Only(address) = rule {
-            udp.admit(address);
+            udp.admit(Instant::now(), address);
         }
         udp
     }
@@ -89,7 +90,7 @@ impl Udp {
                 tokio::task::yield_now().await;
                 continue;
             };
-            if let Some(peer) = self.peer_at(from, || is_partner(into)) {
+            if let Some(peer) = self.peer_at(Instant::now(), from, || is_partner(into)) {
                 return Event::Datagram(peer);
             }
             stats.strangers += 1;
@@ -98,26 +99,28 @@ impl Udp {
     }
 
     /// The partner at an address; a new one if he is recognised and there is room.
-    fn peer_at(&mut self, from: SocketAddr, is_partner: impl FnOnce() -> bool) -> Option<Peer> {
-        let now = Instant::now();
-        if let Some(partner) = self.partners.iter_mut().find(|p| p.address == from) {
-            partner.heard = now;
+    fn peer_at(&mut self, now: Instant, from: SocketAddr, is_partner: impl FnOnce() -> bool) -> Option<Peer> {
+        let known = self.partners.iter_mut().find(|p| p.address == from);
+        let Partners::Recognised { most, silent } = self.rule else { return known.map(|p| p.peer) };
+        if let Some(partner) = known {
+            if is_partner() {
+                partner.heard = now;
+            }
             return Some(partner.peer);
         }
-        let Partners::Recognised { most, silent } = self.rule else { return None };
         let recent = |p: &Partner| now.duration_since(p.heard) < silent;
         if self.partners.iter().filter(|p| recent(p)).count() >= most || !is_partner() {
             return None;
         }
         self.partners.retain(recent);
         tracing::info!(%from, "a partner on the autopilot's link");
-        Some(self.admit(from))
+        Some(self.admit(now, from))
     }
 
-    fn admit(&mut self, address: SocketAddr) -> Peer {
+    fn admit(&mut self, now: Instant, address: SocketAddr) -> Peer {
         self.given = self.given.wrapping_add(1);
         let peer = Peer(self.given);
-        self.partners.push(Partner { peer, address, heard: Instant::now() });
+        self.partners.push(Partner { peer, address, heard: now });
         peer
     }
 
@@ -126,5 +129,24 @@ impl Udp {
         let partner = self.partners.iter().find(|p| p.peer == to);
         // a full buffer or an absent partner loses the datagram, as radio does
         partner.is_some_and(|p| self.socket.try_send_to(bytes, p.address).is_ok())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn who_is_no_longer_recognised_loses_his_place_though_he_goes_on_talking() {
+        let socket = UdpSocket::bind("127.0.0.1:0").await.unwrap();
+        let mut udp = Udp::new(socket, Partners::AUTOPILOT);
+        let [one, other] = [1000, 2000].map(|port| SocketAddr::from(([127, 0, 0, 1], port)));
+        let start = Instant::now();
+        let at = |seconds| start + Duration::from_secs(seconds);
+        let first = udp.peer_at(at(0), one, || true);
+        assert_eq!(udp.peer_at(at(4), one, || true), first);
+        assert_eq!(udp.peer_at(at(8), other, || true), None);
+        assert_eq!(udp.peer_at(at(8), one, || false), first);
+        assert!(udp.peer_at(at(10), other, || true).is_some_and(|second| Some(second) != first));
     }
 }

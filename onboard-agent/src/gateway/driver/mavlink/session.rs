@@ -16,7 +16,7 @@ use crate::gateway::driver::{FromLink, Setup};
 use crate::gateway::order::{Report, Time};
 use autopilot_link::Outbox;
 use autopilot_link::frame::{Decoder, Frame, Sender};
-use autopilot_link::signing::Key;
+use autopilot_link::signing::Signing;
 use mavlink::dialects::ardupilotmega::*;
 use std::time::Duration;
 
@@ -308,13 +308,14 @@ impl Session {
     }
 }
 
-/// A datagram has an autopilot's heartbeat in it, signed if there is a key.
-pub fn recognises(datagram: &[u8], key: Option<&Key>) -> bool {
+/// A datagram has an autopilot's heartbeat in it, which is believed if there is a key.
+pub fn recognises(datagram: &[u8], mut signing: Option<(&mut Signing, Time)>) -> bool {
     let mut decoder = Decoder::default();
     decoder.push_datagram(datagram);
     while let Some(frame) = decoder.next_frame() {
         let beats = matches!(frame.message(), Some(MavMessage::HEARTBEAT(beat)) if is_autopilot(&beat));
-        if beats && key.is_none_or(|key| key.has_signed(&frame)) {
+        let believed = |(signing, now): &mut (&mut Signing, Time)| signing.believes(*now, &frame);
+        if beats && signing.as_mut().is_none_or(believed) {
             return true;
         }
     }
