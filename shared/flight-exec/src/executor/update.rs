@@ -33,6 +33,7 @@ impl Executor {
         }
         let (carried, before, put_out) =
             (self.carried_over(&proposed, entry)?, PlanBefore::of(self), out.len());
+        carried.check_home(&proposed)?;
         match carried {
             Carried::Enter(cursor) => {
                 self.activate(proposed, out);
@@ -225,4 +226,21 @@ enum Carried {
         /// So many of the waypoints stay.
         keep: usize,
     },
+}
+
+impl Carried {
+    /// In an emergency plan, altitudes go on to count from the field that the flight took off from: the new plan has to know it.
+    fn check_home(&self, new: &Program) -> Result<(), Refusal> {
+        let cursors = match self {
+            Carried::Enter(cursor) => std::slice::from_ref(&**cursor),
+            Carried::On { bookmarks, .. } => bookmarks.as_slice(),
+        };
+        let gone = cursors.iter().filter_map(|c| c.home.as_ref()).find(|id| new.plan.runway(id).is_none());
+        gone.map_or(Ok(()), |id| {
+            let reason = format!(
+                "the flight took off from runway `{id}`, which the new plan has not, and its altitudes above home count from there: keep that runway in the plan"
+            );
+            Err(refusal("home-gone", reason))
+        })
+    }
 }

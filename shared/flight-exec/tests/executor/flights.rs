@@ -241,6 +241,22 @@ fn home_stays_that_field_in_a_new_plan_and_after_a_restart() {
     assert_eq!(altitude_m(&rig, "b-df"), 600.0);
 }
 
+/// Another field in its place would be hundreds of metres off.
+#[test]
+fn a_plan_without_the_field_that_the_flight_took_off_from_is_refused_in_an_emergency() {
+    let mut rig = Rig::flying(&from_a_higher_field());
+    while rig.fly_one() {}
+    stands(&mut rig);
+    rig.command(Command::Start).unwrap();
+    rig.fly_to("b");
+    rig.command(Command::Emergency { cause: Cause::Operator, plan: None }).unwrap();
+    let renamed =
+        from_a_higher_field().replace(r#"id="S""#, r#"id="T""#).replace(r#"runway="S""#, r#"runway="T""#);
+    let refusal = rig.update(&program(&renamed)).unwrap_err();
+    assert!(refusal.code == "home-gone" && refusal.reason.contains("`S`"), "{refusal}");
+    assert_eq!(altitude_m(&rig, "b-df"), 600.0, "the plan before is flown on");
+}
+
 /// A plan of other identifiers may be entered anywhere; where it knows the present flight, only in that.
 #[test]
 fn in_the_air_a_new_plan_is_not_entered_in_another_flight() {
