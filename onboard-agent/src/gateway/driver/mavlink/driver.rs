@@ -217,9 +217,7 @@ impl MavlinkDriver {
                 self.list.set_home(*position, *altitude_amsl_m);
                 self.stirred = true;
             }
-            Report::Fix(fix) => {
-                self.list.set_ground(fix.position, fix.altitude_amsl_m - fix.altitude_home_m);
-            }
+            Report::Fix(fix) => self.list.moved(fix),
             Report::Rebooted => {
                 self.list.rebooted();
                 self.stirred = true;

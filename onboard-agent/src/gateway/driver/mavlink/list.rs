@@ -2,7 +2,7 @@
 
 use super::chain::Chain;
 use super::item::{Item, ItemKind};
-use crate::gateway::order::{Course, Fed, OrderId, Report, Serial, Target, Time};
+use crate::gateway::order::{Course, Fed, Fix, OrderId, Report, Serial, Target, Time};
 use geometry::LatLon;
 use std::time::Duration;
 
@@ -52,6 +52,8 @@ pub trait Feeding: std::fmt::Debug + Send + Sync {
     fn is_astray(&self, seq: u16) -> bool;
     /// Make the autopilot steer to the chain again.
     fn bring_back(&mut self);
+    /// The aircraft is here now. For a strategy to which it matters when a list changes.
+    fn moved(&mut self, _fix: &Fix) {}
     /// The next change, if one is due and none is in flight. `may_install`: the aircraft is not
     /// flying the list, so that it may be replaced whole. `home`: the take-off place.
     fn next_change(&mut self, may_install: bool, home: Option<Item>) -> Option<Change>;
@@ -158,9 +160,13 @@ impl List {
         self.home = Some(Item { position, altitude_amsl_m, kind: ItemKind::Home });
     }
 
-    /// The ground under the aircraft, as far as its height above home says, metres AMSL.
-    pub fn set_ground(&mut self, position: LatLon, altitude_amsl_m: f64) {
-        self.ground = Some(Item { position, altitude_amsl_m, kind: ItemKind::Home });
+    /// The aircraft is here now. The ground under it is where its height above home says.
+    pub fn moved(&mut self, fix: &Fix) {
+        let altitude_amsl_m = fix.altitude_amsl_m - fix.altitude_home_m;
+        self.ground = Some(Item { position: fix.position, altitude_amsl_m, kind: ItemKind::Home });
+        if let Some(window) = &mut self.window {
+            window.moved(fix);
+        }
     }
 
     /// The autopilot says it steers to this entry.

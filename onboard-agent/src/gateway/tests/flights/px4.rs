@@ -72,6 +72,34 @@ fn cancelled_waypoints_are_not_flown_and_a_hold_and_a_heading_are_what_they_are(
     flight.run_until(300.0, "the last one", |f| f.has_reached(first + 5));
 }
 
+/// Corners of a square right of the runway, 1.2 km a side.
+fn corner(n: usize) -> Waypoint {
+    let (ahead_m, right_m) = [(1800.0, 0.0), (1800.0, 1200.0), (600.0, 1200.0), (600.0, 0.0)][n % 4];
+    let position = HOME.destination(HEADING_DEG, ahead_m).destination(HEADING_DEG + 90.0, right_m);
+    waypoint(position, GROUND_M + 120.0, Action::Fly)
+}
+
+/// How far it is from the line between two positions, metres.
+fn aside_m(flight: &Flight, from: LatLon, to: LatLon) -> f64 {
+    let frame = geometry::LocalFrame::new(from);
+    let line = frame.to_local(to);
+    (line.cross(frame.to_local(flight.sim.autopilot.aircraft.state().position)) / line.length()).abs()
+}
+
+#[test]
+fn legs_are_flown_along_their_lines_however_often_the_list_is_replaced() {
+    let mut flight = flight(Personality::Px4, 1, &[]);
+    flight.launch(std::iter::once(take_off()).chain((0..4).map(corner)).collect());
+    for n in 1..12 {
+        flight.run_until(120.0, "the next side", |f| f.has_reached(n as u64 + 2));
+        // as a plan whose corners come one by one, each in the turn at another
+        flight.feed(None, vec![corner(n + 3)]);
+        let (from, to) = (corner(n - 1).position, corner(n).position);
+        flight.run(25.0);
+        assert!(aside_m(&flight, from, to) < 15.0, "side {n}: {:.0} m", aside_m(&flight, from, to));
+    }
+}
+
 #[test]
 fn fp_manager_killed_the_gateway_returns_and_lands_by_itself() {
     let mut flight = flight(Personality::Px4, 2, &[]);

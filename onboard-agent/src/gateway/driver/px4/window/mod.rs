@@ -11,6 +11,7 @@
 //! landing is behind the jump, positions are counted anew, and the list says where to go on. What a lost answer leaves open is which of a few lists is in use ([`Window::lists`]):
 //! what is the same in all of them is certain, the rest is not claimed.
 
+mod line;
 mod ring;
 #[cfg(test)]
 mod tests;
@@ -18,7 +19,7 @@ mod tests;
 use crate::gateway::driver::mavlink::chain::Chain;
 use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
 use crate::gateway::driver::mavlink::list::{Change, Feeding};
-use crate::gateway::order::{Fed, Serial, Target};
+use crate::gateway::order::{Fed, Fix, Serial, Target};
 use ring::{RING, entry};
 use usal::contract::Action;
 
@@ -69,6 +70,8 @@ pub struct Window {
     disobeys: bool,
     /// Lists that are the same otherwise differ by this.
     edition: u16,
+    /// Where the aircraft is.
+    fix: Option<Fix>,
 }
 
 impl Feeding for Window {
@@ -163,10 +166,15 @@ impl Feeding for Window {
         }
         let jump = self.chain.jump().or(self.overrun);
         match self.deviation() {
+            Some(new_from) if !may_install && jump.is_none() && self.may_wait(new_from) => None,
             Some(new_from) => self.upload(jump, new_from),
             // the same list again is no news for PX4, whatever it says of the entry to go on at
             None => jump.map(|position| self.set_current(position)),
         }
+    }
+
+    fn moved(&mut self, fix: &Fix) {
+        self.fix = Some(*fix);
     }
 
     fn done(&mut self) {

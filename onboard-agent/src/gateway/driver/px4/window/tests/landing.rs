@@ -13,11 +13,7 @@ fn whole_flight(before: u64) -> Vec<Fed> {
 }
 
 fn launched(plan: Vec<Fed>) -> Rig {
-    let mut rig = Rig { window: Window::default(), autopilot: Autopilot::default(), flying: false };
-    rig.window.feed(ALL, plan);
-    rig.settle();
-    rig.flying = true;
-    rig
+    Rig::flying(plan, place)
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The window against a small model of PX4's list.
 
 mod landing;
+mod line;
 
 use super::*;
 use crate::gateway::core::CAPACITY;
@@ -10,10 +11,14 @@ use proptest::prelude::*;
 use usal::contract::{Action, Id, Token, Waypoint};
 
 /// Waypoint `n` has a place of its own.
+fn place(n: u64) -> LatLon {
+    LatLon::new(36.0 + n as f64 * 1e-4, -84.0)
+}
+
 fn waypoint(n: u64, action: Action) -> Waypoint {
     Waypoint {
         token: Token(n),
-        position: LatLon::new(36.0 + n as f64 * 1e-4, -84.0),
+        position: place(n),
         altitude_amsl_m: 500.0,
         airspeed_mps: 25.0,
         action,
@@ -97,12 +102,19 @@ struct Rig {
     window: Window,
     autopilot: Autopilot,
     flying: bool,
+    /// Where a waypoint is.
+    place: fn(u64) -> LatLon,
 }
 
 impl Rig {
     fn new(count: u64) -> Self {
-        let mut rig = Self { window: Window::default(), autopilot: Autopilot::default(), flying: false };
-        rig.window.feed(ALL, waypoints(1, count));
+        Self::flying(waypoints(1, count), place)
+    }
+
+    fn flying(plan: Vec<Fed>, place: fn(u64) -> LatLon) -> Self {
+        let (window, autopilot) = (Window::default(), Autopilot::default());
+        let mut rig = Self { window, autopilot, flying: false, place };
+        rig.window.feed(ALL, plan);
         rig.settle();
         rig.flying = true;
         assert!(rig.window.ready());
@@ -132,7 +144,7 @@ impl Rig {
     /// What is claimed to be steered to is what is steered to.
     fn check_claim(&self) {
         if let (Target::Waypoint(claimed), Some(target)) = (self.window.target(), self.autopilot.target) {
-            let place = waypoint(claimed.0, Action::Fly).position;
+            let place = (self.place)(claimed.0);
             assert!(place.distance_m(target.position) < 1.0, "claims {claimed:?}, is {target:?}");
         }
     }
