@@ -10,6 +10,8 @@ use mavlink::{MAV_STX, MAV_STX_V2, MAVLinkV2MessageRaw, MavHeader, MavlinkVersio
 
 /// The longest frame, bytes: header 10, payload 255, checksum 2, signature 13.
 pub const LONGEST: usize = 280;
+/// No dialect has a message beyond this.
+const HIGHEST_ID: u32 = 0xFFFF;
 pub(crate) const SIGNED: u8 = 0x01;
 pub(crate) const SIGNATURE_BYTES: usize = 13;
 pub(crate) const CHECKSUM_BYTES: usize = 2;
@@ -23,7 +25,7 @@ pub struct Sender {
     pub component: u8,
 }
 
-/// A frame whose checksum is right, as it is on the wire.
+/// A frame whose checksum is right, as it is on the wire; or one of a message that the dialect does not know.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame<'a> {
     version: MavlinkVersion,
@@ -48,7 +50,7 @@ impl Frame<'_> {
         if signed { self.bytes.last_chunk() } else { None }
     }
 
-    /// The message; `None` if it has a value that the dialect does not know.
+    /// The message; `None` if the dialect does not know it, or a value of it.
     pub fn message(&self) -> Option<MavMessage> {
         MavMessage::parse(self.version, self.id, self.payload).ok()
     }
@@ -65,7 +67,7 @@ pub struct Decoder {
     datagram: bool,
     /// Bytes that belonged to no good frame.
     pub ignored_bytes: u64,
-    /// What looked like a frame and had another checksum: damaged, or of a kind that the dialect does not know.
+    /// What looked like a frame and had another checksum: it is damaged.
     pub bad_frames: u64,
 }
 
@@ -113,7 +115,7 @@ impl Decoder {
     pub fn next_frame(&mut self) -> Option<Frame<'_>> {
         let shape = loop {
             let rest = self.pending.get(self.done..).unwrap_or_default();
-            match cut(rest) {
+            match cut(rest, self.datagram) {
                 Cut::Frame(shape) => break shape,
                 Cut::Skip(bytes) => self.skip(bytes),
                 Cut::Bad => {
@@ -151,15 +153,15 @@ pub enum Beginning {
 
 /// Whether these bytes begin with a frame.
 pub fn begins(bytes: &[u8]) -> Beginning {
-    match cut(bytes) {
+    match cut(bytes, false) {
         Cut::Frame(shape) => Beginning::Frame(shape.total),
         Cut::NeedMore => Beginning::NeedMore,
         Cut::Skip(_) | Cut::Bad => Beginning::Nothing,
     }
 }
 
-/// Looks at the beginning of the bytes.
-fn cut(bytes: &[u8]) -> Cut {
+/// Looks at the beginning of the bytes. `ends`: nothing that belongs to them follows.
+fn cut(bytes: &[u8], ends: bool) -> Cut {
     let Some(start) = bytes.iter().position(|b| matches!(*b, MAV_STX | MAV_STX_V2)) else {
         return if bytes.is_empty() { Cut::NeedMore } else { Cut::Skip(bytes.len()) };
     };
@@ -182,8 +184,21 @@ fn cut(bytes: &[u8]) -> Cut {
     match bytes.get(..shape.total) {
         None => Cut::NeedMore,
         Some(frame) if is_intact(shape, frame) => Cut::Frame(shape),
+        Some(frame) if is_unknown(shape, frame) => match bytes.get(shape.total) {
+            Some(&(MAV_STX | MAV_STX_V2)) => Cut::Frame(shape),
+            None if ends => Cut::Frame(shape),
+            None => Cut::NeedMore,
+            Some(_) => Cut::Bad,
+        },
         Some(_) => Cut::Bad,
     }
+}
+
+/// It is of a message that the dialect does not know: nothing tells whether its checksum is right, but what follows it.
+fn is_unknown(shape: Shape, frame: &[u8]) -> bool {
+    let id = message_id(shape.version, frame).filter(|id| *id <= HIGHEST_ID);
+    shape.version == MavlinkVersion::V2
+        && id.is_some_and(|id| MavMessage::default_message_from_id(id).is_none())
 }
 
 fn is_intact(shape: Shape, frame: &[u8]) -> bool {
@@ -252,143 +267,4 @@ pub fn encode_payload(sender: Sender, sequence: u8, id: u32, payload: &[u8]) -> 
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, TIMESYNC_DATA};
-    use proptest::prelude::*;
-
-    const AUTOPILOT: Sender = Sender { system: 1, component: 1 };
-
-    fn timesync(ts1: i64) -> MavMessage {
-        MavMessage::TIMESYNC(TIMESYNC_DATA { tc1: 0, ts1, ..TIMESYNC_DATA::DEFAULT })
-    }
-
-    fn bytes_of(ts1: i64) -> Vec<u8> {
-        encode(AUTOPILOT, 0, &timesync(ts1))
-    }
-
-    /// Takes every whole frame: who sent it, and its message.
-    fn take(decoder: &mut Decoder) -> Vec<(Sender, Option<MavMessage>)> {
-        let mut found = vec![];
-        while let Some(frame) = decoder.next_frame() {
-            found.push((frame.sender, frame.message()));
-        }
-        found
-    }
-
-    fn decode(bytes: &[u8]) -> (Vec<(Sender, Option<MavMessage>)>, u64) {
-        let mut decoder = Decoder::default();
-        decoder.push(bytes);
-        (take(&mut decoder), decoder.ignored_bytes)
-    }
-
-    #[test]
-    fn what_is_encoded_is_decoded() {
-        for message in [timesync(5), MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT)] {
-            let bytes = encode(AUTOPILOT, 7, &message);
-            assert_eq!(decode(&bytes), (vec![(AUTOPILOT, Some(message))], 0));
-        }
-    }
-
-    #[test]
-    fn garbage_is_counted_and_the_next_frame_is_found_whatever_the_pieces() {
-        let mut bytes = vec![0x00, 0x11, 0xFD, 0x03];
-        for i in 1..=5 {
-            bytes.extend(bytes_of(i));
-            bytes.extend([0xFE, 9, 0xFD]);
-        }
-        bytes.extend(bytes_of(6));
-        bytes.extend([0; 300]);
-        let expected: Vec<_> = (1..=6).map(|i| (AUTOPILOT, Some(timesync(i)))).collect();
-        for piece in [1, 7, 64, 4096] {
-            let (mut decoder, mut found) = (Decoder::default(), vec![]);
-            for part in bytes.chunks(piece) {
-                decoder.push(part);
-                found.extend(take(&mut decoder));
-            }
-            assert_eq!(found, expected, "pieces of {piece}");
-            assert_eq!(decoder.ignored_bytes, 4 + 5 * 3 + 300, "pieces of {piece}");
-        }
-    }
-
-    #[test]
-    fn a_damaged_checksum_loses_only_that_frame_and_is_counted() {
-        let mut bytes = bytes_of(1);
-        *bytes.last_mut().unwrap() ^= 0x55;
-        bytes.extend(bytes_of(2));
-        let mut decoder = Decoder::default();
-        decoder.push(&bytes);
-        assert_eq!(take(&mut decoder), [(AUTOPILOT, Some(timesync(2)))]);
-        assert_eq!(decoder.bad_frames, 1);
-    }
-
-    #[test]
-    fn a_frame_knows_its_number_its_checksum_and_its_bytes() {
-        let bytes = encode(AUTOPILOT, 200, &timesync(1));
-        let mut decoder = Decoder::default();
-        decoder.push(&[&[0, 1], &bytes[..], &[9]].concat());
-        let frame = decoder.next_frame().unwrap();
-        let checksum = u16::from_le_bytes([bytes[bytes.len() - 2], bytes[bytes.len() - 1]]);
-        assert_eq!((frame.sequence, frame.checksum, frame.bytes), (200, checksum, &bytes[..]));
-    }
-
-    #[test]
-    fn an_unknown_value_of_an_enumeration_loses_the_message_and_not_the_frame() {
-        let mut payload = [0_u8; 33];
-        payload[28..30].copy_from_slice(&60_001_u16.to_le_bytes());
-        payload[32] = 1;
-        let mut bytes = encode_payload(AUTOPILOT, 0, 76, &payload);
-        bytes.extend(bytes_of(2));
-        let mut decoder = Decoder::default();
-        decoder.push(&bytes);
-        let frame = decoder.next_frame().unwrap();
-        assert_eq!((frame.id, frame.payload, frame.message()), (76, &payload[..], None));
-        assert_eq!(take(&mut decoder), [(AUTOPILOT, Some(timesync(2)))]);
-    }
-
-    #[test]
-    fn version_one_frames_are_understood() {
-        let header = MavHeader { system_id: 200, component_id: 3, sequence: 1 };
-        let message = MavMessage::HEARTBEAT(HEARTBEAT_DATA::DEFAULT);
-        let mut raw = mavlink::MAVLinkV1MessageRaw::new();
-        raw.serialize_message(header, &message);
-        let expected = (Sender { system: 200, component: 3 }, Some(message));
-        assert_eq!(decode(raw.raw_bytes()), (vec![expected], 0));
-    }
-
-    #[test]
-    fn a_cut_datagram_does_not_swallow_the_next_one_and_a_new_stream_not_its_first_frame() {
-        let (mut decoder, whole) = (Decoder::default(), bytes_of(1));
-        decoder.push_datagram(&whole[..9]);
-        assert_eq!(take(&mut decoder), []);
-        decoder.push_datagram(&whole);
-        assert_eq!((take(&mut decoder).len(), decoder.ignored_bytes), (1, 9));
-        decoder.push(&whole[..9]);
-        assert_eq!(take(&mut decoder), []);
-        decoder.restart();
-        decoder.push(&whole);
-        assert_eq!((take(&mut decoder).len(), decoder.ignored_bytes), (1, 9));
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(100))]
-        #[test]
-        fn any_bytes_in_any_pieces_give_the_frames_among_them_in_bounded_memory(
-            noise in prop::collection::vec(any::<u8>(), 0..600),
-            piece in 1..50_usize,
-        ) {
-            let mut bytes = noise;
-            // longer than any frame that a false start could claim
-            bytes.extend([0; 300]);
-            bytes.extend(bytes_of(77));
-            let (mut decoder, mut last) = (Decoder::default(), None);
-            for part in bytes.chunks(piece) {
-                decoder.push(part);
-                last = take(&mut decoder).pop().or(last);
-                prop_assert!(decoder.pending.len() - decoder.done < LONGEST);
-            }
-            prop_assert_eq!(last, Some((AUTOPILOT, Some(timesync(77)))));
-            prop_assert_eq!(decoder.pending.len(), decoder.done);
-        }
-    }
-}
+mod tests;
