@@ -127,6 +127,8 @@ pub enum Report {
         name: Cow<'static, str>,
         /// Engine may run.
         armed: bool,
+        /// A failsafe of its own is active.
+        failsafe: bool,
     },
     /// Another sign of life, without news.
     Alive,

@@ -213,7 +213,7 @@ mod tests {
     fn good(tenth: i64) -> Vec<Report> {
         let lat = 36.0 + tenth as f64 * 2e-5;
         vec![
-            Report::Heartbeat { mode: Mode::Waypoints, name: "AUTO".into(), armed: true },
+            Report::Heartbeat { mode: Mode::Waypoints, name: "AUTO".into(), armed: true, failsafe: false },
             Report::OnGround(false),
             Report::Fix(Fix {
                 position: LatLon::new(lat, -84.0),

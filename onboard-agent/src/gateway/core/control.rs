@@ -269,8 +269,8 @@ impl Gateway {
             // an order of ours that has been overtaken: what is wanted is ordered again
             self.control.overtaken(mode);
         } else if self.control.confirmed || Some(mode) != self.control.mode_before {
-            let cause =
-                format!("the autopilot was switched to {}, and not by the gateway", self.telemetry.mode_name);
+            let by = if self.telemetry.failsafe { "by its own failsafe" } else { "and not by the gateway" };
+            let cause = format!("the autopilot was switched to {}, {by}", self.telemetry.mode_name);
             self.control.set_intent(Intent::Nothing, Some(mode));
             self.change(Trigger::PilotTook, &cause, out);
             out.push(Output::Save);

@@ -32,6 +32,8 @@ pub struct Telemetry {
     pub mode_name: Cow<'static, str>,
     /// Armed.
     pub armed: bool,
+    /// A failsafe of the autopilot is active.
+    pub failsafe: bool,
     /// Position and velocity.
     pub fix: Timed<Fix>,
     /// When the position last differed from the one before.
@@ -82,6 +84,7 @@ impl Default for Telemetry {
             mode: None,
             mode_name: Cow::Borrowed("unknown"),
             armed: false,
+            failsafe: false,
             fix: None,
             moved: None,
             attitude: None,
@@ -105,11 +108,12 @@ impl Telemetry {
             self.last_received = Some(now);
         }
         match report {
-            Report::Heartbeat { mode, name, armed } => {
+            Report::Heartbeat { mode, name, armed, failsafe } => {
                 self.first_beat.get_or_insert(now);
                 self.mode = Some(*mode);
                 self.mode_name.clone_from(name);
                 self.armed = *armed;
+                self.failsafe = *failsafe;
             }
             Report::Fix(fix) => {
                 if self.fix.is_none_or(|(_, old)| old.position != fix.position) {

@@ -107,7 +107,12 @@ impl GliderDriver {
                     "circle" => Mode::Hold,
                     _ => Mode::Other(0),
                 };
-                Report::Heartbeat { mode, name: name.to_owned().into(), armed: number(&mut words) }
+                Report::Heartbeat {
+                    mode,
+                    name: name.to_owned().into(),
+                    armed: number(&mut words),
+                    failsafe: false,
+                }
             }
             Some("DONE") => Report::Done(OrderId(number(&mut words))),
             Some("HAVE") => return self.has = Serial(number(&mut words)),

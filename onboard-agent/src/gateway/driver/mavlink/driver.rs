@@ -42,6 +42,7 @@ struct Known {
 struct Seen {
     mode: u32,
     armed: bool,
+    failsafe: bool,
 }
 
 /// An order that takes more than one command: those that are still to be given.
@@ -180,9 +181,11 @@ impl MavlinkDriver {
         let Some(dialect) = self.dialect() else {
             // without a dialect nothing is known of its modes
             let (mode, name) = (Mode::Other(beat.custom_mode), "unknown".into());
-            return self.reports.push_back(Report::Heartbeat { mode, name, armed: session::is_armed(beat) });
+            let armed = session::is_armed(beat);
+            return self.reports.push_back(Report::Heartbeat { mode, name, armed, failsafe: false });
         };
-        let before = self.seen.replace(Seen { mode: beat.custom_mode, armed: session::is_armed(beat) });
+        let (armed, failsafe) = (session::is_armed(beat), session::is_failsafe(beat));
+        let before = self.seen.replace(Seen { mode: beat.custom_mode, armed, failsafe });
         let going = matches!(self.steering, Some((_, Aim::Direct { .. })));
         if !going && (dialect.meaning)(beat.custom_mode, true) != Mode::Direct {
             self.sent = false;
@@ -195,15 +198,16 @@ impl MavlinkDriver {
     }
 
     fn report_mode(&mut self, dialect: &Dialect) {
-        let Some(Seen { mode: number, armed }) = self.seen else { return };
+        let Some(Seen { mode: number, armed, failsafe }) = self.seen else { return };
         let mode = (dialect.meaning)(number, self.sent);
         self.list.flown = armed && mode == Mode::Waypoints;
-        self.reports.push_back(Report::Heartbeat { mode, name: (dialect.mode_name)(number), armed });
+        let name = (dialect.mode_name)(number);
+        self.reports.push_back(Report::Heartbeat { mode, name, armed, failsafe });
     }
 
     /// An airspeed that was commanded is commanded again, in the modes that we ask for.
     fn say_speed_again(&mut self, now: Time, dialect: &Dialect, events: &mut Vec<SessionEvent>) {
-        let Some(Seen { mode, armed: true }) = self.seen else { return };
+        let Some(Seen { mode, armed: true, .. }) = self.seen else { return };
         let ours = matches!((dialect.meaning)(mode, self.sent), Mode::Waypoints | Mode::Direct);
         if let Some(mps) = self.speed_mps.filter(|_| ours) {
             self.session.command(now, Client::Nobody, Command::Speed(mps), events);

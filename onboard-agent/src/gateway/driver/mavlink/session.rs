@@ -327,6 +327,11 @@ pub fn is_armed(beat: &HEARTBEAT_DATA) -> bool {
     beat.base_mode.contains(MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED)
 }
 
+/// A failsafe of its own is active.
+pub fn is_failsafe(beat: &HEARTBEAT_DATA) -> bool {
+    matches!(beat.system_status, MavState::MAV_STATE_CRITICAL | MavState::MAV_STATE_EMERGENCY)
+}
+
 fn is_autopilot(beat: &HEARTBEAT_DATA) -> bool {
     beat.autopilot != MavAutopilot::MAV_AUTOPILOT_INVALID
 }

@@ -101,6 +101,26 @@ fn legs_are_flown_along_their_lines_however_often_the_list_is_replaced() {
 }
 
 #[test]
+fn a_failsafe_of_px4_is_left_alone_and_called_what_it_is() {
+    let mut flight = flight(Personality::Px4, 1, &[]);
+    assert!(flight.sim.autopilot.params.set("COM_LOW_BAT_ACT", 3.0));
+    assert!(flight.sim.autopilot.params.set("BAT_CRIT_THR", 0.2));
+    flight.launch(std::iter::once(take_off()).chain(zigzag(0, 20, 300.0)).collect());
+    assert!(flight.sim.inject("low-battery".parse().unwrap()));
+    flight.run_until(300.0, "Manual", |f| f.state() == GatewayState::Manual);
+    let cause = flight.station.gateway().status(flight.now).cause;
+    assert_eq!(cause, "the autopilot was switched to Hold, by its own failsafe");
+    let returns = |f: &Flight| f.sim.autopilot.mode() == sim::Mode::ReturnToLaunch;
+    flight.run_until(10.0, "its return", returns);
+    flight.run(20.0);
+    assert!(returns(&flight) && flight.state() == GatewayState::Manual);
+    flight.ask(GatewayRequest::Resume).unwrap();
+    flight.run_until(5.0, "Nav", |f| f.state() == GatewayState::Nav);
+    flight.run(20.0);
+    assert_eq!(flight.state(), GatewayState::Nav, "overruled once, it does not begin again");
+}
+
+#[test]
 fn fp_manager_killed_the_gateway_returns_and_lands_by_itself() {
     let mut flight = flight(Personality::Px4, 2, &[]);
     flight.launch(std::iter::once(take_off()).chain(zigzag(0, 30, 300.0)).collect());

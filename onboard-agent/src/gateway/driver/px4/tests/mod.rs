@@ -390,7 +390,7 @@ fn a_pilots_mode_has_its_name() {
     rig.px4.mode(3, 0);
     rig.run(2);
     let named = rig.reports.iter().any(|r| {
-        matches!(r, Report::Heartbeat { mode: Mode::Other(0x3_0000), name, armed: true } if name == "Position")
+        matches!(r, Report::Heartbeat { mode: Mode::Other(0x3_0000), name, armed: true, .. } if name == "Position")
     });
     assert!(named, "{:?}", rig.reports);
 }

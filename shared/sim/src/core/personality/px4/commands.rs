@@ -1,6 +1,6 @@
 //! PX4's answers to commands.
 
-use super::data_link::DataLink;
+use super::failsafe::Failsafe;
 use super::{Px4, STARTS_UP_NS, items, mode_of, needs_sticks};
 use crate::core::autopilot::{Autopilot, Severity};
 use crate::core::commands::Command;
@@ -51,7 +51,7 @@ impl Px4 {
             a.say(Severity::Critical, "That mode is not possible now");
             return REJECTED;
         }
-        self.link.overruled();
+        self.failsafe.overruled();
         if a.mode() != mode {
             a.set_mode(mode);
             // a speed lasts until the next change, but the mission's own comes back with it
@@ -69,7 +69,7 @@ impl Px4 {
             Mode::ReturnToLaunch | Mode::Land => Some("not in this mode"),
             mode if needs_sticks(mode) => Some("nobody is at the sticks"),
             _ if no_mission => Some(self.problem.unwrap_or("no mission is ready")),
-            _ if DataLink::is_needed(a) && self.link.is_lost(a, now_ns) => Some("no ground station"),
+            _ if Failsafe::is_needed(a) && self.failsafe.is_lost(a, now_ns) => Some("no ground station"),
             _ => None,
         }
     }

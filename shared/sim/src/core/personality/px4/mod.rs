@@ -2,7 +2,7 @@
 
 mod check;
 mod commands;
-mod data_link;
+mod failsafe;
 mod items;
 mod mission;
 mod params;
@@ -113,7 +113,7 @@ fn needs_sticks(mode: Mode) -> bool {
 #[derive(Debug, Default)]
 pub(super) struct Px4 {
     transfer: transfer::Transfer,
-    link: data_link::DataLink,
+    failsafe: failsafe::Failsafe,
     /// When the mission was taken; what is wrong with it is known a moment later.
     taken_ns: u64,
     problem: Option<&'static str>,
@@ -180,7 +180,7 @@ impl Px4 {
                 | MavModeFlag::MAV_MODE_FLAG_STABILIZE_ENABLED
                 | MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED
         };
-        let failing = self.link.is_failsafe() || !a.gps_ok;
+        let failing = self.failsafe.is_active() || !a.gps_ok;
         let system_status = match (a.is_armed(), failing) {
             (true, true) => MavState::MAV_STATE_CRITICAL,
             (true, false) => MavState::MAV_STATE_ACTIVE,
@@ -276,7 +276,7 @@ impl Behaviour for Px4 {
 
     fn heard(&mut self, heartbeat: &HEARTBEAT_DATA, now_ns: u64) {
         if heartbeat.mavtype == MavType::MAV_TYPE_GCS {
-            self.link.heard(now_ns);
+            self.failsafe.heard(now_ns);
         }
     }
 
@@ -284,7 +284,7 @@ impl Behaviour for Px4 {
         if let Some((party, reply)) = self.transfer.tick(now_ns) {
             self.send(a, party, reply, now_ns, out);
         }
-        self.link.watch(a, now_ns);
+        self.failsafe.watch(a, now_ns);
         self.tell_mission(a, now_ns, out);
     }
 }

@@ -9,6 +9,8 @@ pub const LINK_LOSS_ACTION: &str = "NAV_DLL_ACT";
 pub const LINK_LOSS_AFTER_S: &str = "COM_DL_LOSS_T";
 /// It holds for so long before that action, seconds.
 pub const ACTION_AFTER_S: &str = "COM_FAIL_ACT_T";
+/// What it does when its battery is critical: 0 and 1 nothing, 2 land, 3 return.
+pub const LOW_BATTERY_ACTION: &str = "COM_LOW_BAT_ACT";
 /// What a mission has to have: 0 nothing, 1 a take-off, 2 a landing, 3 both, 4 both or neither.
 pub const REQUIRED_ITEMS: &str = "MIS_TKO_LAND_REQ";
 /// Steepest approach of a mission, degrees.
@@ -45,6 +47,7 @@ fn params(profile: &Profile, mav_type: f32) -> Params {
         whole(LINK_LOSS_AFTER_S, 10.0, (5.0, 300.0)),
         free(ACTION_AFTER_S, 5.0, (0.0, 25.0)),
         whole("COM_RC_IN_MODE", 1.0, (0.0, 4.0)),
+        whole(LOW_BATTERY_ACTION, 0.0, (0.0, 3.0)),
         free("COM_DISARM_LAND", 2.0, (-1.0, 20.0)).is(S::DisarmDelay),
         free("MIS_TAKEOFF_ALT", 25.0, (0.0, 200.0)).is(S::TakeOffHeight),
         whole(REQUIRED_ITEMS, 2.0, (0.0, 5.0)),
