@@ -48,20 +48,13 @@ fn a_flight_as_planned_succeeds_and_leaves_its_report() {
     }
 }
 
-/// PX4 gives up its line with each new list, which the verdict of a small square tells: it is not asked here.
 #[test]
-fn px4_flies_the_same_plan_to_its_end() {
+fn px4_flies_the_same_plan_as_planned() {
     let folder = tempfile::tempdir().unwrap();
     let run = demo_on("px4", "square.xml", folder.path());
     let (out, err) = (text(&run.stdout), text(&run.stderr));
-    for holds in [
-        "ok   stands on R05",
-        "ok   the plan was flown to its end",
-        "ok   all 6 passages of legs as previewed",
-        "ok   the gateway never had to enter Safe mode",
-    ] {
-        assert!(out.contains(holds), "{holds}: {out}\n{err}");
-    }
+    assert_eq!(run.status.code(), Some(0), "{out}\n{err}");
+    assert!(out.contains("The mission was flown as planned."), "{out}");
 }
 
 /// One file, whole for `legwork log --check`, with what the report was made from.
