@@ -18,6 +18,7 @@ fn fly(window: &mut Window, state: GatewayState, altitude_m: f64, target_m: f64,
             airspeed_mps: 25.0,
             action: Action::Fly,
             fly_over: false,
+            on_arc: false,
             leg: "side2".into(),
             end_of_plan: false,
         };

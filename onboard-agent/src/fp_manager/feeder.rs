@@ -187,6 +187,7 @@ mod tests {
             airspeed_mps: 22.0,
             action: Action::Fly,
             fly_over: false,
+            on_arc: false,
             leg: "a".into(),
             end_of_plan: false,
         }

@@ -51,6 +51,10 @@ pub struct Waypoint {
     pub action: Action,
     /// Cross it before turning.
     pub fly_over: bool,
+    /// A corner of the polygon around an arc: the arc is to be flown, not a turn at the corner. An autopilot that knows
+    /// how begins to turn so early that it stays on the arc.
+    #[serde(default)]
+    pub on_arc: bool,
     /// The leg it belongs to.
     pub leg: Id,
     /// Flying it ends the plan: no waypoint will follow. What is fed behind it after all (by an update, for instance)

@@ -30,6 +30,7 @@ same_fields!(
         airspeed_mps,
         action,
         fly_over,
+        on_arc,
         leg,
         end_of_plan,
     }

@@ -126,6 +126,7 @@ fn waypoint(s: &mut Source) -> Waypoint {
         airspeed_mps: s.number(),
         action: s.one(actions),
         fly_over: s.bool(),
+        on_arc: s.bool(),
         leg: s.id(),
         end_of_plan: s.bool(),
     }

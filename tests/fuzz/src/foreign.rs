@@ -99,6 +99,7 @@ fn steps(plan: &FlightPlan) -> Vec<Step> {
             airspeed_mps: 22.0,
             action: Action::Fly,
             fly_over: false,
+            on_arc: false,
             leg: leg.id.clone(),
             end_of_plan: false,
         },

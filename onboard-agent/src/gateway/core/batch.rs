@@ -65,6 +65,7 @@ mod tests {
             airspeed_mps: 25.0,
             action: Action::Fly,
             fly_over: false,
+            on_arc: false,
             leg: Id::from("leg"),
             end_of_plan: false,
         }

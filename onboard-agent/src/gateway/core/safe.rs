@@ -136,6 +136,7 @@ fn waypoint(position: LatLon, altitude_amsl_m: f64, airspeed_mps: f64, action: A
         airspeed_mps,
         action,
         fly_over: false,
+        on_arc: false,
         leg: Id::from("safe-return"),
         end_of_plan,
     }

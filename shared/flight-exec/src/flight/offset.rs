@@ -98,12 +98,15 @@ impl Offset {
     }
 
     pub fn waypoint(&self, one: &Waypoint, other: &Waypoint) -> bool {
-        let Waypoint { token, position, altitude_amsl_m, airspeed_mps, action, fly_over, leg, end_of_plan } =
-            one;
+        #[rustfmt::skip]
+        let Waypoint {
+            token, position, altitude_amsl_m, airspeed_mps, action, fly_over, on_arc, leg, end_of_plan,
+        } = one;
         self.token(*token, other.token)
             && (position, altitude_amsl_m) == (&other.position, &other.altitude_amsl_m)
             && (airspeed_mps, action) == (&other.airspeed_mps, &other.action)
-            && (fly_over, leg, end_of_plan) == (&other.fly_over, &other.leg, &other.end_of_plan)
+            && (fly_over, on_arc) == (&other.fly_over, &other.on_arc)
+            && (leg, end_of_plan) == (&other.leg, &other.end_of_plan)
     }
 
     pub fn issued(&self, one: &IssuedWaypoint, other: &IssuedWaypoint) -> bool {

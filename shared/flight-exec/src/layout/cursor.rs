@@ -138,6 +138,8 @@ pub struct Emission {
     pub action: Action,
     /// Cross it before turning.
     pub fly_over: bool,
+    /// A corner of the polygon around an arc.
+    pub on_arc: bool,
     /// Circled for so many seconds, then left by itself (a loiter without it waits for a decision).
     pub wait_s: Option<f64>,
     /// What happened since the waypoint before it.

@@ -141,6 +141,7 @@ impl Stretch {
             airspeed_mps: path.last.airspeed_mps,
             action: Action::Fly,
             fly_over: true,
+            on_arc: false,
             wait_s: None,
             // what led to the end is reported there
             notes: CursorLog::default(),
@@ -179,6 +180,7 @@ fn issued(
         airspeed_mps: emission.airspeed_mps,
         action: emission.action,
         fly_over: emission.fly_over,
+        on_arc: emission.on_arc,
         leg: place.leg.clone(),
         end_of_plan: false,
     };
@@ -205,7 +207,7 @@ impl IssuedWaypoint {
         let (a, b) = (&self.waypoint, &other.waypoint);
         a.leg == b.leg
             && a.action == b.action
-            && (a.fly_over, a.end_of_plan) == (b.fly_over, b.end_of_plan)
+            && (a.fly_over, a.on_arc, a.end_of_plan) == (b.fly_over, b.on_arc, b.end_of_plan)
             && (a.altitude_amsl_m - b.altitude_amsl_m).abs() < SAME_M
             && (a.airspeed_mps - b.airspeed_mps).abs() < 0.05
             && self.passage == other.passage
@@ -285,6 +287,7 @@ mod tests {
             airspeed_mps: 25.0,
             action: Action::Fly,
             fly_over: false,
+            on_arc: false,
             leg: "a".into(),
             end_of_plan: false,
         };

@@ -212,6 +212,7 @@ impl Layout {
             airspeed_mps: emission.airspeed_mps,
             action: emission.action,
             fly_over: emission.fly_over,
+            on_arc: emission.on_arc,
             leg,
             end_of_plan: false,
         };

@@ -78,6 +78,7 @@ pub fn step(
         airspeed_mps,
         action,
         fly_over: false,
+        on_arc: false,
         leg: leg.into(),
         end_of_plan: false,
     };

@@ -1,7 +1,7 @@
 //! Transfers against the simulator's mission protocol, with what happens on bad links.
 
 use super::super::mavlink::commands::{Client, Command, ModeNumber};
-use super::super::mavlink::item::{Item, ItemKind, matches};
+use super::super::mavlink::item::{Item, ItemKind, Pass, matches};
 use super::super::mavlink::mission::Outcome;
 use super::super::mavlink::session::{Session, SessionEvent};
 use super::*;
@@ -147,7 +147,7 @@ impl Rig {
 }
 
 fn items(count: usize) -> Vec<Item> {
-    let kind = |i| if i == 0 { ItemKind::Home } else { ItemKind::Fly { over: false } };
+    let kind = |i| if i == 0 { ItemKind::Home } else { ItemKind::Fly(Pass::By) };
     let place = |i| LatLon::new(36.49 + i as f64 * 1e-3, -84.27);
     (0..count).map(|i| Item { position: place(i), altitude_amsl_m: 500.0, kind: kind(i) }).collect()
 }

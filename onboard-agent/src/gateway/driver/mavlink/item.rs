@@ -24,10 +24,7 @@ pub enum ItemKind {
     /// Take off and climb to the altitude.
     TakeOff,
     /// Fly to it.
-    Fly {
-        /// Cross it before turning.
-        over: bool,
-    },
+    Fly(Pass),
     /// Circle it for ever; positive radius clockwise, metres; 0: the autopilot's own radius.
     Loiter {
         /// Signed radius, metres.
@@ -44,12 +41,26 @@ pub enum ItemKind {
     Foreign,
 }
 
+/// How an entry is passed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pass {
+    /// Turning before it, as the autopilot likes.
+    By,
+    /// Crossing it before turning.
+    Over,
+    /// On the arc whose polygon it is a corner of, at this airspeed, m/s.
+    OnArc {
+        /// The airspeed.
+        airspeed_mps: f64,
+    },
+}
+
 impl Item {
     /// The entry of a waypoint.
     pub fn of(waypoint: &Waypoint) -> Self {
         let kind = match waypoint.action {
             Action::TakeOff { .. } => ItemKind::TakeOff,
-            Action::Fly => ItemKind::Fly { over: waypoint.fly_over },
+            Action::Fly => ItemKind::Fly(Pass::of(waypoint)),
             Action::Loiter { radius_m } => ItemKind::Loiter { radius_m },
             Action::Land { .. } => ItemKind::Land,
         };
@@ -62,10 +73,21 @@ impl Item {
     }
 }
 
+impl Pass {
+    fn of(waypoint: &Waypoint) -> Self {
+        match (waypoint.fly_over, waypoint.on_arc) {
+            (true, _) => Pass::Over,
+            (false, true) => Pass::OnArc { airspeed_mps: waypoint.airspeed_mps },
+            (false, false) => Pass::By,
+        }
+    }
+}
+
 const DEGREES: f64 = 1e7;
 /// Read-back may differ by this much: the list holds degrees × 10⁷, centimetres and whole metres.
 const POSITION_TOLERANCE_DEG: f64 = 3e-7;
 const ALTITUDE_TOLERANCE_M: f64 = 0.5;
+const AIRSPEED_TOLERANCE_MPS: f64 = 0.5;
 
 /// The same within what an autopilot keeps of it.
 pub fn matches(a: &Item, b: &Item) -> bool {
@@ -78,6 +100,9 @@ pub fn matches(a: &Item, b: &Item) -> bool {
         // where a take-off goes follows from the runway: autopilots keep its altitude only
         (ItemKind::TakeOff, ItemKind::TakeOff) => {
             (a.altitude_amsl_m - b.altitude_amsl_m).abs() <= ALTITUDE_TOLERANCE_M
+        }
+        (ItemKind::Fly(Pass::OnArc { airspeed_mps: x }), ItemKind::Fly(Pass::OnArc { airspeed_mps: y })) => {
+            here && (x - y).abs() <= AIRSPEED_TOLERANCE_MPS
         }
         (x, y) => here && x == y,
     }
@@ -119,7 +144,7 @@ pub fn decode(data: &MISSION_ITEM_INT_DATA) -> Item {
     let kind = match data.command {
         MavCmd::MAV_CMD_DO_JUMP => ItemKind::Jump { to: data.param1.clamp(0.0, 65_535.0) as u16 },
         _ if !absolute => ItemKind::Foreign,
-        MavCmd::MAV_CMD_NAV_WAYPOINT => ItemKind::Fly { over: data.param2 > 0.0 },
+        MavCmd::MAV_CMD_NAV_WAYPOINT => ItemKind::Fly(Pass::By),
         MavCmd::MAV_CMD_NAV_TAKEOFF | MavCmd::MAV_CMD_NAV_VTOL_TAKEOFF => ItemKind::TakeOff,
         MavCmd::MAV_CMD_NAV_LOITER_UNLIM => ItemKind::Loiter { radius_m: f64::from(data.param3) },
         MavCmd::MAV_CMD_NAV_LAND => ItemKind::Land,

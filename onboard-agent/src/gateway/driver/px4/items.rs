@@ -25,7 +25,7 @@ pub fn encode(seq: u16, item: &Item, peer: Peer, take_off: TakeOff) -> Entry {
     let mut data = Entry { param4: NO_HEADING, ..item::plain(seq, item, peer) };
     match item.kind {
         // a wing turns by its own radius of acceptance, whatever an entry says
-        ItemKind::Fly { .. } | ItemKind::Home | ItemKind::Foreign => {}
+        ItemKind::Fly(_) | ItemKind::Home | ItemKind::Foreign => {}
         ItemKind::TakeOff => {
             data.command = match take_off {
                 TakeOff::Rolling => MavCmd::MAV_CMD_NAV_TAKEOFF,
@@ -80,6 +80,7 @@ fn crc32(start: u32, bytes: &[u8]) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::mavlink::item::Pass;
     use super::*;
     use geometry::LatLon;
 
@@ -93,7 +94,7 @@ mod tests {
     fn every_kind_comes_back_as_it_went() {
         let kinds = [
             ItemKind::TakeOff,
-            ItemKind::Fly { over: false },
+            ItemKind::Fly(Pass::By),
             ItemKind::Loiter { radius_m: 0.0 },
             ItemKind::Loiter { radius_m: -80.0 },
             ItemKind::Land,

@@ -284,6 +284,7 @@ pub fn waypoint(position: LatLon, altitude_m: f64, action: Action) -> Waypoint {
         airspeed_mps: 25.0,
         action,
         fly_over: false,
+        on_arc: false,
         leg: Id::from("leg"),
         end_of_plan: matches!(action, Action::Land { .. }),
     }

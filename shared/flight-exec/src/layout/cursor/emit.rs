@@ -99,6 +99,7 @@ impl Cursor {
             airspeed_mps,
             action: point.action,
             fly_over: point.fly_over,
+            on_arc: point.on_arc,
             wait_s: None,
             notes: CursorLog::default(),
             sealed: None,

@@ -41,8 +41,18 @@ pub fn radius_to_fix(
 
 /// The points of a path after its start, the last at its end.
 pub fn vertices(path: &[PathElement], tolerance_m: f64) -> Vec<Point> {
-    let of = |element| flatten(element, Flattening::Circumscribed, tolerance_m);
-    path.iter().flat_map(of).map(Point::fly).collect()
+    let curved = |element: &PathElement| matches!(element, PathElement::Arc { .. });
+    let mut points = Vec::new();
+    for (i, element) in path.iter().enumerate() {
+        let corners = flatten(element, Flattening::Circumscribed, tolerance_m);
+        let corner = |position| Point { on_arc: curved(element), ..Point::fly(position) };
+        points.extend(corners.into_iter().map(corner));
+        // at an element's end the path curves if the next one does
+        if let Some(end) = points.last_mut() {
+            end.on_arc = path.get(i + 1).is_some_and(curved);
+        }
+    }
+    points
 }
 
 #[cfg(test)]
@@ -62,6 +72,22 @@ mod tests {
         assert_eq!(left.last(), Some(&to));
         let vertices = right.iter().chain(&left).map(|p| CENTRE.distance_m(p.position) - 400.0);
         assert!(vertices.into_iter().all(|out| (-0.01..=3.01).contains(&out)));
+    }
+
+    #[test]
+    fn corners_of_arcs_are_marked_where_an_arc_begins_too_but_not_the_end_of_the_path() {
+        let arc = |start_bearing_deg| PathElement::Arc {
+            centre: CENTRE,
+            radius_m: 200.0,
+            start_bearing_deg,
+            sweep_deg: 90.0,
+        };
+        let line = PathElement::Line { from: arc(0.0).end(), to: arc(180.0).start() };
+        let marks: Vec<bool> =
+            vertices(&[arc(0.0), line, arc(180.0)], 3.0).iter().map(|p| p.on_arc).collect();
+        let corners = vertices(&[arc(0.0)], 3.0).len() - 1;
+        let expected = [vec![true; corners], vec![false, true], vec![true; corners], vec![false]].concat();
+        assert_eq!(marks, expected);
     }
 
     #[test]

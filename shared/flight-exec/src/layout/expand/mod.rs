@@ -31,6 +31,9 @@ pub struct Point {
     pub position: LatLon,
     /// Cross it before turning.
     pub fly_over: bool,
+    /// A corner of the polygon around an arc.
+    #[serde(default)]
+    pub on_arc: bool,
     /// What to do there.
     pub action: Action,
     /// Its own altitude, when it is not the leg's.
@@ -42,7 +45,14 @@ pub struct Point {
 impl Point {
     /// A fly-by point at the leg's altitude and speed.
     pub fn fly(position: LatLon) -> Self {
-        Self { position, fly_over: false, action: Action::Fly, level: None, airspeed_mps: None }
+        Self {
+            position,
+            fly_over: false,
+            on_arc: false,
+            action: Action::Fly,
+            level: None,
+            airspeed_mps: None,
+        }
     }
 }
 

@@ -68,7 +68,7 @@ impl Circle {
             }
             _ => return None,
         };
-        Some(Point::fly(position))
+        Some(Point { on_arc: (1..=self.steps).contains(&index), ..Point::fly(position) })
     }
 
     /// How many points it has.

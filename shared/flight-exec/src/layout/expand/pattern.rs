@@ -72,7 +72,8 @@ impl Flight {
     /// The point number `index`.
     pub fn point(&self, index: u64) -> Option<Point> {
         let (laid_out, index) = (self.laid_out()?, self.first.checked_add(index)?);
-        Some(Point { level: laid_out.level(index), ..Point::fly(laid_out.at(index)?) })
+        let on_arc = self.recipe.is_curve();
+        Some(Point { level: laid_out.level(index), on_arc, ..Point::fly(laid_out.at(index)?) })
     }
 
     /// The point a regenerated one goes on at, when `given` points of the one before are given out: what goes round and

@@ -29,7 +29,7 @@ pub fn take_off(stage: &Stage, world: &World) -> Result<Vec<Point>, ExpandError>
     let way_m = runway.length_m + climb_m / world.profile.max_climb_mps.max(0.1) * speed_mps;
     let position = runway.threshold.destination(runway.heading_deg, way_m);
     let action = Action::TakeOff { heading_deg: runway.heading_deg };
-    Ok(vec![Point { position, fly_over: false, action, level: Some(level), airspeed_mps: None }])
+    Ok(vec![Point { action, level: Some(level), ..Point::fly(position) }])
 }
 
 /// The final approach and the touch-down point. It begins at the runway's approach entry, if it has one and the path has not passed
@@ -61,11 +61,10 @@ pub fn land(stage: &Stage, path: &PathState, world: &World) -> Result<Vec<Point>
     }
     points.push(gate);
     points.push(Point {
-        position: runway.threshold,
         fly_over: true,
         action: Action::Land { heading_deg: runway.heading_deg },
         level: Some(Level { metres: runway.elevation_amsl_m, reference: AltitudeReference::Amsl }),
-        airspeed_mps: None,
+        ..Point::fly(runway.threshold)
     });
     Ok(points)
 }

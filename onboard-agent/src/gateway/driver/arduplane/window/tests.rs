@@ -19,6 +19,7 @@ fn waypoint(n: u64) -> Waypoint {
         airspeed_mps: 25.0,
         action: Action::Fly,
         fly_over: false,
+        on_arc: false,
         leg: Id::from("leg"),
         end_of_plan: false,
     }
@@ -149,7 +150,7 @@ impl Rig {
 
     fn tokens_steered(&self) -> Vec<u64> {
         let token = |i: &Item| ((i.position.lat_deg - 36.0) * 1e4).round() as u64;
-        let real = |i: &&Item| matches!(i.kind, ItemKind::Fly { .. });
+        let real = |i: &&Item| matches!(i.kind, ItemKind::Fly(_));
         self.autopilot.steered.iter().filter(real).map(token).collect()
     }
 }
@@ -261,7 +262,7 @@ proptest! {
             if cut && steered < rig.autopilot.steered.len() {
                 let last = rig.tokens_steered();
                 let loaded = &rig.autopilot.steered[steered..];
-                let real = loaded.iter().any(|i| matches!(i.kind, ItemKind::Fly { .. }));
+                let real = loaded.iter().any(|i| matches!(i.kind, ItemKind::Fly(_)));
                 prop_assert!(!real || !cancelled.contains(last.last().unwrap()), "{last:?}");
             }
         }

@@ -46,6 +46,7 @@ fn waypoints(from: u64, count: u64) -> Vec<Fed> {
         airspeed_mps: 25.0,
         action: if n == 1 { Action::TakeOff { heading_deg: 0.0 } } else { Action::Fly },
         fly_over: false,
+        on_arc: false,
         leg: Id::from("leg"),
         end_of_plan: false,
     };

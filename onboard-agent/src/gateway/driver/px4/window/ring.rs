@@ -1,6 +1,6 @@
 //! The ring of entries: how positions, entries and the list go together.
 
-use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
+use crate::gateway::driver::mavlink::item::{Item, ItemKind, Pass, matches};
 use crate::gateway::order::Fed;
 
 /// Entries of the ring.
@@ -65,7 +65,7 @@ pub fn lies_flat(first: u64, landing: u64) -> bool {
 
 /// It only leads past its place.
 pub fn passing(item: Item) -> Item {
-    Item { kind: ItemKind::Fly { over: false }, ..item }
+    Item { kind: ItemKind::Fly(Pass::By), ..item }
 }
 
 /// Entry 0 is never flown again, but PX4 wants to see what a landing in entry 1 comes from, and that no list begins with one.

@@ -65,6 +65,11 @@ impl Recipe {
         matches!(self.shape, Shape::FigureEight { .. })
     }
 
+    /// All its points are corners around arcs.
+    pub fn is_curve(&self) -> bool {
+        matches!(self.shape, Shape::FigureEight { .. } | Shape::Spiral { .. })
+    }
+
     /// The pattern, begun near a position where it can.
     ///
     /// # Errors

@@ -23,6 +23,7 @@ fn waypoint(n: u64, action: Action) -> Waypoint {
         airspeed_mps: 25.0,
         action,
         fly_over: false,
+        on_arc: false,
         leg: Id::from("leg"),
         end_of_plan: false,
     }
@@ -164,7 +165,7 @@ impl Rig {
 
     /// Numbers of the waypoints that were steered to.
     fn steered(&self) -> Vec<u64> {
-        let real = self.autopilot.steered.iter().filter(|i| matches!(i.kind, ItemKind::Fly { .. }));
+        let real = self.autopilot.steered.iter().filter(|i| matches!(i.kind, ItemKind::Fly(_)));
         real.map(|i| ((i.position.lat_deg - 36.0) / 1e-4).round() as u64).collect()
     }
 }
