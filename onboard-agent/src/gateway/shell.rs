@@ -55,6 +55,7 @@ async fn open(
             config.listen
         );
     }
+    let replay = config.is_replay();
     let mut links = open_links(&config.autopilots).await?;
     let tlog = match config.tlog {
         Some(tlog) => Some(Tlog::begin(tlog, links.len()).context("--tlog")?),
@@ -63,7 +64,6 @@ async fn open(
     if let Some(mirror) = &config.mirror {
         links.push(mirror.open().await.context("--mirror")?);
     }
-    let replay = config.is_replay();
     let Config { vehicle, profile, terrain, .. } = config;
     let settings = Settings { vehicle, profile, terrain, exposed, replay };
     let Registration { recognises, make, .. } = config.driver;
