@@ -143,6 +143,8 @@ pub enum ViewCommand {
     JumpTo(Selection),
     /// Show the whole plan.
     Fit,
+    /// Lock the plan against being dragged by accident, or unlock it.
+    Lock(bool),
     /// Keep the aircraft in the map's middle, or stop that.
     Follow(bool),
     /// An answer to the guide to a new plan.

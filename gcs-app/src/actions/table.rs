@@ -119,6 +119,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Edit, "later", "Move what is selected down", &[ctrl(Key::ArrowDown), alt(Key::ArrowDown)], |scene| shift(scene, 1)),
     entry(Group::Edit, "new-way", "Draw a new way from the selected leg", &[plain(Key::W)], new_way),
     entry(Group::Edit, bindings::ID, "Bind the selected leg to a variable…", &[plain(Key::B)], bind),
+    choice(Group::Edit, "lock", "Lock the plan against dragging", |s| Kind::Switch(s.view.locked), |s| view(ViewCommand::Lock(!s.view.locked))).with_keys(&[ctrl(Key::L)]),
     entry(Group::Edit, "select-nothing", "Close help, tour or card, or select nothing", &[plain(Key::Escape)], escape),
     entry(Group::View, "search", "Search in the plan", &[ctrl(Key::F)], |_| view(ViewCommand::Search)),
 

@@ -179,7 +179,12 @@ impl App {
 
     fn change_view(&mut self, command: ViewCommand, now_s: f64) {
         match command {
-            ViewCommand::Select(selection) => self.view.select(selection),
+            ViewCommand::Select(selection) => {
+                if let Some(selection) = &selection {
+                    self.map.reveal(selection, self.document.plan());
+                }
+                self.view.select(selection);
+            }
             ViewCommand::PointOut(what) => self.view.pointed = what,
             ViewCommand::Toggle(leg) => self.view.toggle(leg),
             ViewCommand::Extend(leg) => self.view.extend(leg, self.document.plan()),
@@ -188,6 +193,7 @@ impl App {
                 self.view.follow = false;
                 self.map.fit();
             }
+            ViewCommand::Lock(locked) => self.view.locked = locked,
             ViewCommand::Follow(follow) => self.follow(follow),
             ViewCommand::Guide(answer) => self.answer(answer),
             ViewCommand::Tool(id) => {

@@ -6,7 +6,7 @@ use super::tools::{Canvas, new_leg};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::coordinates::{self, Known};
 use crate::panels::start;
-use egui::{Context, Event, Key, Modifiers, Response, Ui};
+use egui::{Context, Event, Key, Modifiers, Ui};
 use flight_plan::clipboard::{self, Pasted};
 use flight_plan::create::{self, Drawn, LegChoice};
 use flight_plan::{Place, Value};
@@ -14,7 +14,7 @@ use geometry::LatLon;
 use new_leg::{Aim, Side};
 
 /// Takes the keys and what the menu asked for, unless something is being typed.
-pub fn run(ui: &Ui, map: &Response, menu: &mut Menu, canvas: &Canvas<'_>, queue: &mut Queue) {
+pub fn run(ui: &Ui, menu: &mut Menu, canvas: &Canvas<'_>, queue: &mut Queue) {
     if ui.ctx().text_edit_focused() || canvas.scene.is_asking() {
         return;
     }
@@ -25,7 +25,7 @@ pub fn run(ui: &Ui, map: &Response, menu: &mut Menu, canvas: &Canvas<'_>, queue:
             Event::Copy => drop(copy(ui.ctx(), canvas)),
             Event::Cut => cut(ui.ctx(), canvas, queue),
             Event::Paste(text) => {
-                let under = map.hover_pos().map(|at| canvas.view.geo(at)).filter(|at| at.is_valid());
+                let under = canvas.pointer.map(|at| canvas.view.geo(at)).filter(|at| at.is_valid());
                 paste(&text, menu.paste_at().or(under), canvas, queue);
             }
             _ => {}

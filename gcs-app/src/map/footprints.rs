@@ -10,7 +10,7 @@ use crate::panels::Scene;
 use crate::theme::Palette;
 use crate::units::Units;
 use egui::{Align2, Painter, Pos2, Shape, Stroke, vec2};
-use flight_plan::Id;
+use flight_plan::{Act, Edit, Id, Leg, LegAction, Trigger, Value};
 use geometry::LatLon;
 use std::collections::HashMap;
 
@@ -20,6 +20,11 @@ const LONG: f64 = 0.75;
 const MOST: usize = 600;
 /// Smaller ones could not be told apart, screen points: of a selected leg, and of others.
 const LEAST: [f64; 2] = [5.0, 60.0];
+
+/// Pictures that are taken from the map have so much in common with the next.
+const OVERLAP: f64 = 0.6;
+/// Metres between pictures: at least, and where it is not known how high they are taken.
+const EVERY_M: [f64; 2] = [5.0, 50.0];
 
 /// One picture on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +42,36 @@ impl Footprint {
             ahead.destination(self.track_deg + 90.0, across_m * across)
         })
     }
+}
+
+/// The edit that lets a leg take pictures all along it, overlapping at its least height above the ground; of a leg that takes some, the
+/// one that ends that. True: it takes some.
+pub fn toggled(scene: &Scene<'_>, leg: &Leg) -> (bool, Edit) {
+    let is_picture = |action: &LegAction| {
+        matches!(
+            (&action.trigger, &action.act),
+            (Trigger::Every(_), Act::Photo) | (_, Act::PhotoSeries { .. })
+        )
+    };
+    let mut actions = leg.actions.clone();
+    actions.retain(|action| !is_picture(action));
+    let takes = actions.len() < leg.actions.len();
+    if !takes {
+        let every_m = Value::Constant(every_m(scene.forecast(), &leg.id));
+        actions.push(LegAction { trigger: Trigger::Every(every_m), act: Act::Photo });
+    }
+    (takes, Edit::SetActions { leg: leg.id.clone(), actions })
+}
+
+/// Whole metres between pictures of a leg.
+fn every_m(forecast: &Forecast, leg: &Id) -> f64 {
+    let passages = forecast.passages.iter().filter(|passage| passage.leg == *leg);
+    let height_m = passages.filter_map(|passage| passage.clearance_m).reduce(f64::min);
+    let [least_m, usual_m] = EVERY_M;
+    height_m.map_or(usual_m, |height_m| {
+        let long_m = 2.0 * height_m * (USUAL_ACROSS_DEG / 2.0).to_radians().tan() * LONG;
+        (long_m * (1.0 - OVERLAP)).round().max(least_m)
+    })
 }
 
 /// Draws them, where they are large enough to be seen.

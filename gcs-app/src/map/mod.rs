@@ -7,10 +7,11 @@ mod chips;
 mod clipboard;
 pub mod coverage;
 pub mod drawings;
-mod footprints;
+pub mod footprints;
 pub mod foreseen;
 pub mod furniture;
 pub mod graticule;
+pub mod guard;
 mod items;
 mod left_out;
 pub mod marks;
@@ -33,7 +34,7 @@ use crate::layers::Opened;
 use crate::panels::{Scene, field, start};
 use crate::theme::{self, Palette};
 use crate::tiles::{Reader, Relief};
-use egui::{DragPanButtons, Painter, Role, Ui};
+use egui::{DragPanButtons, Painter, Pos2, Role, Ui};
 use flight_plan::create::Way;
 use flight_plan::{Id, Variables};
 use geometry::LatLon;
@@ -71,6 +72,8 @@ pub struct MapState {
     relief: Option<Raster>,
     /// Maps that users brought, by the number of their layer.
     rasters: BTreeMap<u64, Raster>,
+    /// A place to be brought into view, if it is not.
+    reveal: Option<LatLon>,
     /// A box to be shown in the next frame.
     fit_to: Option<[LatLon; 2]>,
     path: path::Layer,
@@ -96,6 +99,11 @@ impl MapState {
             // 13 is within the map's range
             let _ = self.memory.set_zoom(13.0);
         }
+    }
+
+    /// Brings what was selected into the middle, if it is not in view.
+    pub fn reveal(&mut self, selection: &Selection, plan: &flight_plan::FlightPlan) {
+        self.reveal = self.place_of(selection, plan);
     }
 
     /// Shows where a new plan begins, some kilometres around it.
@@ -222,13 +230,20 @@ impl MapState {
             .double_click_to_zoom(false)
             .show(ui, |ui, response, projector, _| {
                 let view = View::of(projector);
-                self.draw(ui, response, &view, scene, queue);
+                let pointer = if selects { None } else { pointer(ui, &view) };
+                self.draw(ui, response, (&view, pointer), scene, queue);
                 view
             });
         let follows = followed && scene.view.follow;
         self.navigation.run(&shown.response, &shown.inner, follows, &mut memory);
         if follows && memory.detached().is_some() {
             queue.view(ViewCommand::Follow(false));
+        }
+        if let Some(at) = self.reveal.take().filter(|_| !scene.view.follow)
+            && !shown.inner.rect.contains(shown.inner.place(at))
+        {
+            memory.center_at(lat_lon(at.lat_deg, at.lon_deg));
+            ui.ctx().request_repaint();
         }
         furniture::buttons(ui, &mut memory, scene, queue);
         furniture::toolbar(ui, &mut self.tools, scene, queue);
@@ -239,7 +254,7 @@ impl MapState {
         &mut self,
         ui: &mut Ui,
         response: &egui::Response,
-        view: &View,
+        (view, pointer): (&View, Option<Pos2>),
         scene: &Scene<'_>,
         queue: &mut Queue,
     ) {
@@ -251,12 +266,12 @@ impl MapState {
         self.draw_faults(&painter, view, scene, p);
         path::move_cursor(response, view, scene, queue);
         let snaps = !ui.input(|i| i.modifiers.alt);
-        let canvas = Canvas { view, sketch: &self.sketch, scene, snaps };
+        let canvas = Canvas { view, sketch: &self.sketch, scene, pointer, snaps };
         self.items.run(ui, &canvas, !self.tools.offers_handles(), queue);
         let asked = self.tools.run(ui, response, &canvas, queue, p);
         self.menu.run(ui, asked, &canvas, queue);
         variables::take_dropped(ui, &canvas, queue);
-        clipboard::run(ui, response, &mut self.menu, &canvas, queue);
+        clipboard::run(ui, &mut self.menu, &canvas, queue);
         path::draw_cursor(&painter, view, scene, p);
         start::draw(&painter, view, scene, p);
         aircraft::draw(&painter, view, scene, p);
@@ -349,6 +364,12 @@ impl MapState {
         let _ = self.memory.set_zoom(zoom);
         true
     }
+}
+
+/// Where the pointer is over the map, or was pressed there.
+fn pointer(ui: &Ui, view: &View) -> Option<Pos2> {
+    let at = ui.input(|i| i.pointer.press_origin().or(i.pointer.hover_pos()));
+    at.filter(|_| ui.rect_contains_pointer(view.rect))
 }
 
 /// The variables as they are in flight, if what is flown is this document.

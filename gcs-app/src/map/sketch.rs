@@ -1,12 +1,16 @@
 //! A plan's places, before anything is flown: what can be dragged, areas, and the lines of emergency
 //! plans. Broken drafts give what can be made of them.
 
+mod axes;
 mod handle;
 pub mod numbers;
 pub mod photos;
+mod radius;
+mod ruler;
 mod ways;
 
 pub use handle::{Handle, Handled};
+pub use radius::{bound_radius, radius_edit};
 pub use ways::Way;
 
 use flight_plan::{
@@ -29,11 +33,24 @@ pub struct Circle {
     pub is_area: bool,
 }
 
+/// The straight line of a leg.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// The leg that goes along it.
+    pub leg: Id,
+    /// Where the leg before ends.
+    pub from: LatLon,
+    /// Where it leads.
+    pub to: LatLon,
+}
+
 /// Everything of a plan that can be placed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sketch {
     /// What can be dragged.
     pub handles: Vec<Handle>,
+    /// Straight legs whose ends are known.
+    pub lines: Vec<Line>,
     /// Scans and orbits.
     pub circles: Vec<Circle>,
     /// Polygons to be scanned: whose, and their rings, the outer one first.
@@ -109,7 +126,7 @@ impl Sketch {
         }
     }
 
-    /// The middle of a straight leg, if both of its ends are known.
+    /// The line and the middle of a straight leg, if both of its ends are known.
     fn add_middle(&mut self, context: &LegContext<'_>, reader: &Reader<'_>) {
         let is_straight = matches!(context.leg.kind, LegKind::Tf(_) | LegKind::Df { .. });
         let before = context.index.checked_sub(1).and_then(|i| context.siblings.get(i));
@@ -118,6 +135,7 @@ impl Sketch {
         let Some((from, to)) = ends else { return };
         let what = Handled::Between { leg: context.leg.id.clone(), gap_m: from.distance_m(to) as u32 };
         self.handles.push(Handle { what, at: from.interpolate(to, 0.5) });
+        self.lines.push(Line { leg: context.leg.id.clone(), from, to });
     }
 
     fn add_zone(&mut self, zone: &Zone) {
@@ -339,43 +357,6 @@ impl Reader<'_> {
     }
 }
 
-/// The variable that sets a radius, and what is added to it: `fire_radius + 200.0` is `(fire_radius, 200)`.
-pub fn bound_radius(source: &str) -> Option<(Id, f64)> {
-    let (name, added) = match source.split_once('+') {
-        Some((name, added)) => (name.trim(), added.trim().parse().ok()?),
-        None => (source.trim(), 0.0),
-    };
-    let is_name = !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
-    is_name.then(|| (Id::new(name), added))
-}
-
-/// The edit that gives a circle of a leg another radius, in metres; within its variable's bounds if it has one.
-pub fn radius_edit(plan: &FlightPlan, leg: &Id, radius_m: f64) -> Option<flight_plan::Edit> {
-    use flight_plan::Edit;
-    if plan.zone(leg).is_some() {
-        return Some(Edit::SetRadius { leg: leg.clone(), radius_m: radius_m.max(1.0).round() });
-    }
-    let radius = match &plan.leg(leg)?.leg.kind {
-        LegKind::Orbit { radius_m, .. } => radius_m,
-        LegKind::Scan(Scan { area: Area::Circle { radius_m, .. }, .. })
-        | LegKind::Pattern(
-            Pattern::Contour { area: Area::Circle { radius_m, .. }, .. }
-            | Pattern::Spiral { outer_radius_m: radius_m, .. }
-            | Pattern::ExpandingSquare { radius_m, .. }
-            | Pattern::Sector { radius_m, .. }
-            | Pattern::FigureEight { radius_m, .. },
-        ) => radius_m,
-        _ => return None,
-    };
-    let Value::Expression(source) = radius else {
-        return Some(Edit::SetRadius { leg: leg.clone(), radius_m: radius_m.max(1.0).round() });
-    };
-    let (name, added) = bound_radius(source)?;
-    let variable = plan.variable(&name)?;
-    let value = (radius_m - added).clamp(variable.min.unwrap_or(1.0), variable.max.unwrap_or(1.0e6).max(1.0));
-    Some(Edit::SetVariable { name, value: VariableValue::Number(value.round()) })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -391,22 +372,5 @@ mod tests {
         assert_eq!(placed(&variables), expected(350.0));
         variables.set(&plan, &"fire_radius".into(), VariableValue::Number(430.0)).unwrap();
         assert_eq!(placed(&variables), expected(430.0), "as it is in flight");
-    }
-
-    #[test]
-    fn radii_bound_to_a_variable_are_recognised() {
-        for (source, expected) in [
-            ("fire_radius", Some(("fire_radius", 0.0))),
-            ("fire_radius + 200.0", Some(("fire_radius", 200.0))),
-            ("fire_radius * 2.0", None),
-            ("a + b", None),
-            ("", None),
-        ] {
-            assert_eq!(
-                bound_radius(source),
-                expected.map(|(name, added)| (Id::new(name), added)),
-                "{source}"
-            );
-        }
     }
 }

@@ -175,6 +175,8 @@ pub struct ViewState {
     pub maps: bool,
     /// What lies on the map's edge and over it.
     pub edge: Edge,
+    /// Nothing of the plan can be dragged.
+    pub locked: bool,
     /// The map follows the aircraft.
     pub follow: bool,
     /// Cursor in the preview, seconds from its start.

@@ -1,4 +1,6 @@
-//! Altitude along the path, with the ground below, stages as bands, and a cursor on the timeline.
+//! Altitude along the path, with the ground below, stages as bands, a cursor on the timeline, and altitudes to be dragged.
+
+mod levels;
 
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{PreviewCommand, Queue};
@@ -17,6 +19,7 @@ use egui::{
 pub struct Profile {
     /// Show what was flown already, too.
     whole: bool,
+    levels: levels::Levels,
 }
 
 impl Panel for Profile {
@@ -36,7 +39,7 @@ impl Panel for Profile {
         timeline::show(ui, scene, queue);
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        plot(ui, scene, self.whole, queue);
+        plot(ui, scene, self.whole, &mut self.levels, queue);
     }
 }
 
@@ -47,8 +50,8 @@ fn where_it_is<'a>(scene: &Scene<'a>) -> Option<&'a Point> {
     scene.forecast().nearest(position.value.position, status.value.place.as_ref()?)
 }
 
-/// The profile; dragging on it moves the cursor.
-fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, queue: &mut Queue) {
+/// The profile; dragging on it moves the cursor, dragging a leg's mark its altitude.
+fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, levels: &mut levels::Levels, queue: &mut Queue) {
     let size = ui.available_size().max(vec2(120.0, 80.0));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let forecast = scene.forecast();
@@ -68,7 +71,10 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, queue: &mut Queue) {
         painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(13.0), p.weak);
         return;
     }
-    let axes = Axes::new(rect, forecast, from_s);
+    let mut axes = Axes::new(rect, forecast, from_s);
+    if let Some((low_m, high_m)) = levels.held_m() {
+        (axes.low_m, axes.high_m) = (low_m, high_m);
+    }
     draw_axes(&painter, &axes, scene, p);
     // what was flown before is left of the plot
     let shown = Rect::everything_right_of(axes.plot.left() - 8.0);
@@ -77,6 +83,7 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, queue: &mut Queue) {
     draw_ground(&painter, &axes, forecast, p);
     draw_path(&painter, &axes, scene, p);
     draw_cursor(&painter, &axes, scene, p);
+    levels.run(ui, &painter, &axes, scene, queue);
     if let Some(pointer) =
         response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())
     {

@@ -48,7 +48,7 @@ type Case = (Key, &'static [Vec2], LegChoice, &'static [(&'static str, &'static 
 
 #[test]
 fn every_handle_sets_its_number_in_one_step_and_no_altitude() {
-    let cases: [Case; 11] = [
+    let cases: [Case; 12] = [
         (
             Key::A,
             &AREA,
@@ -61,7 +61,8 @@ fn every_handle_sets_its_number_in_one_step_and_no_altitude() {
         (Key::O, &CIRCLE, LegChoice::Spiral, &[("Inner radius", "innerRadius"), ("Spacing", "spacing")]),
         (Key::O, &CIRCLE, LegChoice::ExpandingSquare, &[("Heading", "heading"), ("Spacing", "spacing")]),
         (Key::O, &CIRCLE, LegChoice::Sector, &[("Heading", "heading"), ("Radius", "radius")]),
-        (Key::O, &CIRCLE, LegChoice::FigureEight, &[("Heading", "heading")]),
+        (Key::O, &CIRCLE, LegChoice::FigureEight, &[("Heading", "heading"), ("Turns", "turns")]),
+        (Key::O, &CIRCLE, LegChoice::Orbit, &[("Turns", "turns"), ("Radius", "radius")]),
         (Key::T, &CIRCLE[..1], LegChoice::Hm, &[("Length", "length"), ("Course", "course")]),
         (Key::T, &CIRCLE[..1], LegChoice::Cf, &[("Course", "course")]),
         (Key::T, &CIRCLE[..1], LegChoice::Fa, &[("Course", "course")]),
@@ -127,6 +128,28 @@ fn a_holding_changes_its_side_and_an_arc_its_centre() {
     let at = window.centre(&format!("Centre of the arc {leg}"));
     window.drag(at, vec2(20.0, 12.0));
     assert!(window.centre(&format!("Centre of the arc {leg}")).distance(at + vec2(20.0, 12.0)) < 2.0);
+}
+
+#[test]
+fn every_pattern_that_turns_is_turned_the_other_way_by_a_click() {
+    let cases: [(Key, &[Vec2], LegChoice); 6] = [
+        (Key::O, &CIRCLE, LegChoice::Orbit),
+        (Key::O, &CIRCLE, LegChoice::Spiral),
+        (Key::O, &CIRCLE, LegChoice::ExpandingSquare),
+        (Key::O, &CIRCLE, LegChoice::Sector),
+        (Key::O, &CIRCLE, LegChoice::FigureEight),
+        (Key::A, &AREA, LegChoice::Contour),
+    ];
+    for (tool, figure, choice) in cases {
+        let (mut window, leg) = with(tool, figure, choice);
+        let kind = |window: &Window| format!("{:?}", window.plan().leg(&leg).unwrap().leg.kind);
+        let before = kind(&window);
+        let (from, to) = if before.contains("turn: Right") { ("Right", "Left") } else { ("Left", "Right") };
+        window.click(&format!("Turn {leg} the other way"));
+        assert_eq!(kind(&window), before.replace(&format!("turn: {from}"), &format!("turn: {to}")));
+        window.click("Undo");
+        assert_eq!(kind(&window), before, "one step");
+    }
 }
 
 /// Drags with Shift.

@@ -63,6 +63,35 @@ fn cut_takes_away_and_ctrl_d_doubles() {
 }
 
 #[test]
+fn a_set_of_legs_is_copied_and_pasted_as_one() {
+    let mut window = window();
+    window.click("TF side1");
+    for _ in 0..2 {
+        window.press_with(egui::Modifiers::SHIFT, egui::Key::ArrowDown);
+    }
+    assert_eq!(window.app().view().also.len(), 2);
+    let text = taken(&mut window, Event::Copy);
+    let mut other = self::window();
+    other.click("TF side4");
+    let here = other.centre("Map") + vec2(60.0, 40.0);
+    other.harness.hover_at(here);
+    other.steps(2);
+    other.paste(&text);
+    assert_eq!(legs(&other), ["side1", "side2", "side3", "side4", "side5", "side6", "side7"]);
+    assert_eq!(other.app().view().also.len(), 2, "they are selected");
+    let plan = other.plan();
+    let at = |id: &str| transform::places(&plan, plan.leg(&Id::new(id)).unwrap().leg)[0];
+    for (a, b, copied_a, copied_b) in
+        [("side1", "side2", "side5", "side6"), ("side2", "side3", "side6", "side7")]
+    {
+        let (was, is) = (at(a).distance_m(at(b)), at(copied_a).distance_m(at(copied_b)));
+        assert!((was - is).abs() < 0.5, "{was} {is}");
+    }
+    other.click("Undo");
+    assert_eq!(legs(&other).len(), 4, "one step");
+}
+
+#[test]
 fn pasted_coordinates_are_a_waypoint() {
     let mut window = window();
     window.click("TF side4");

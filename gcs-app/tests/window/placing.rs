@@ -4,7 +4,7 @@ use super::{SQUARE, Window};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::Queryable;
-use flight_plan::{Id, LegKind, Place, Value, VariableValue, ZoneShape};
+use flight_plan::{Area, Id, LegKind, Place, Value, VariableValue, ZoneShape};
 
 fn window() -> Window {
     let mut window = Window::open(SQUARE);
@@ -100,6 +100,28 @@ fn a_waypoint_that_is_dragged_onto_a_variable_is_that_variable() {
     window.drag(from, variable - from + vec2(3.0, 2.0));
     let place = window.plan().leg(&"leg1".into()).unwrap().leg.place().cloned();
     assert_eq!(place, Some(Place::Position(Value::Expression("fire".into()))));
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+}
+
+#[test]
+fn a_scan_whose_centre_is_dragged_onto_a_variable_is_about_that_variable() {
+    let mut window = with(VARIABLE);
+    window.click("TF side4");
+    window.press(Key::A);
+    window.click("circle");
+    let at = window.centre("Map") + vec2(90.0, 120.0);
+    window.click_at(at);
+    window.click_at(at + vec2(60.0, 0.0));
+    window.press(Key::V);
+    let (before, scan) = (window.plan(), Id::new(&window.selected()));
+    let (variable, from) = (window.centre("Place of fire"), window.centre(&format!("Centre of {scan}")));
+    window.drag(from, variable - from + vec2(3.0, 2.0));
+    let LegKind::Scan(dragged) = window.plan().leg(&scan).unwrap().leg.kind.clone() else {
+        panic!("no scan")
+    };
+    let Area::Circle { centre, .. } = dragged.area else { panic!("no circle") };
+    assert_eq!(centre, Place::Position(Value::Expression("fire".into())));
     window.click("Undo");
     assert_eq!(window.plan(), before, "one step");
 }

@@ -211,6 +211,19 @@ fn several_legs_are_looped_raised_and_deleted_together() {
     assert_eq!(window.plan(), before, "one step");
 
     window.click("TF side1");
+    click_with(&mut window, "TF side3", egui::Modifiers::SHIFT);
+    choose(&mut window, "TF side2", "Put a fork around them");
+    let plan = window.plan();
+    let fork = plan.leg(&window.selected().as_str().into()).unwrap();
+    let past = fork.leg.as_fork().unwrap().branches[1].clone();
+    assert_eq!(
+        (fork.index, past.label.as_str(), past.next),
+        (0, "Skip side1 to side3", Some("side4".into()))
+    );
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+
+    window.click("TF side1");
     click_with(&mut window, "TF side3", egui::Modifiers::COMMAND);
     assert!(window.shows("2 legs"));
     window.click("Raise them");

@@ -71,8 +71,13 @@ pub enum Handled {
         /// It does already.
         chosen: bool,
     },
-    /// The side on which a holding is not: clicked, it is.
-    Side(Id),
+    /// The side on which a holding is not, or the other way round a circle: clicked, it is so.
+    Side {
+        /// The leg.
+        leg: Id,
+        /// It holds.
+        is_holding: bool,
+    },
 }
 
 impl Handled {
@@ -87,14 +92,14 @@ impl Handled {
             | Self::Number { leg, .. }
             | Self::ArcCentre(leg)
             | Self::Entry { leg, .. }
-            | Self::Side(leg)
+            | Self::Side { leg, .. }
             | Self::Ghost { leg, .. } => Some(leg),
         }
     }
 
     /// It stands for a choice: it is clicked, not dragged.
     pub fn is_choice(&self) -> bool {
-        matches!(self, Self::Entry { .. } | Self::Side(_))
+        matches!(self, Self::Entry { .. } | Self::Side { .. })
     }
 
     /// Its name.
@@ -117,7 +122,8 @@ impl Handled {
             Self::Number { leg, number, .. } => format!("{} of {leg}", numbers::name(number)),
             Self::ArcCentre(leg) => format!("Centre of the arc {leg}"),
             Self::Entry { leg, entry, .. } => format!("Begin {leg} at its {}", corner(*entry)),
-            Self::Side(leg) => format!("Hold {leg} on this side"),
+            Self::Side { leg, is_holding: true } => format!("Hold {leg} on this side"),
+            Self::Side { leg, is_holding: false } => format!("Turn {leg} the other way"),
         }
     }
 }

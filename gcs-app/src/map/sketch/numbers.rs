@@ -1,5 +1,8 @@
 //! Handles of a leg's numbers and choices: how far a place is along a line, or in which direction it lies, is the number.
 
+pub use super::ruler::Ruler;
+
+use super::axes::Axes;
 use super::{Handle, Handled, Reader, bound_radius};
 use crate::units::{self, Units};
 use aircraft::Profile;
@@ -7,56 +10,16 @@ use flight_plan::{
     Area, Edit, FlightPlan, Holding, HoldingLength, Id, Leg, LegKind, Pattern, Place, Scan, ScanEntry,
     ScanStyle, Spacing, TurnDirection, Value, VariableValue,
 };
-use geometry::geodesy::{normalise_180, normalise_360};
 use geometry::{LatLon, LocalFrame, Polygon, Vec2};
 
 /// From a fix to the handle of the course that leads there, metres.
 const COURSE_M: f64 = 500.0;
 /// Handles of directions are so much farther out than what they turn.
 const BEYOND: f64 = 1.25;
-
-/// How a place says a number.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Ruler {
-    /// How far it is from a place in one direction; so many of the number make a metre.
-    Along {
-        /// Where the number is 0.
-        from: LatLon,
-        /// The direction, degrees true.
-        bearing_deg: f64,
-        /// 1 for metres, 2 for a whole width from its middle.
-        per_m: f64,
-    },
-    /// In which direction it lies.
-    Around {
-        /// From here.
-        from: LatLon,
-        /// Added to the direction, degrees.
-        plus_deg: f64,
-    },
-}
-
-impl Ruler {
-    /// The number that a place says, whole.
-    pub fn read(&self, at: LatLon) -> f64 {
-        match self {
-            Self::Along { from, bearing_deg, per_m } => {
-                let way = from.inverse(at);
-                let off_rad = normalise_180(way.bearing_start_deg - bearing_deg).to_radians();
-                (way.distance_m * off_rad.cos() * per_m).max(0.0).round()
-            }
-            Self::Around { from, plus_deg } => normalise_360((from.bearing_deg(at) + plus_deg).round()),
-        }
-    }
-
-    /// Where a number is; a direction `far_m` away.
-    fn place(&self, number: f64, far_m: f64) -> LatLon {
-        match self {
-            Self::Along { from, bearing_deg, per_m } => from.destination(*bearing_deg, number / per_m),
-            Self::Around { from, plus_deg } => from.destination(number - plus_deg, far_m),
-        }
-    }
-}
+/// One turn more moves the handle of the turns by this share of the radius.
+const TURN: f64 = 1.0 / 6.0;
+/// The mark of the other side is so far from the middle, as a share of the radius.
+const ASIDE: f64 = 0.75;
 
 /// What people call a number that has a handle.
 pub fn name(number: &str) -> &'static str {
@@ -70,6 +33,7 @@ pub fn name(number: &str) -> &'static str {
         "width" => "Width",
         "length" => "Length",
         "time" => "Time",
+        "turns" => "Turns",
         _ => "Value",
     }
 }
@@ -79,6 +43,7 @@ pub fn words(number: &str, value: f64, u: Units) -> String {
     let shown = match number {
         "heading" | "course" | "bearing" => units::bearing(value),
         "time" => units::duration(value),
+        "turns" => format!("{value:.0}"),
         _ => u.length().show(value),
     };
     format!("{} {shown}", name(number))
@@ -111,8 +76,9 @@ pub fn choice(plan: &FlightPlan, what: &Handled) -> Option<Edit> {
             // once more: again the nearest
             scan.entry = if scan.entry == *entry { ScanEntry::Nearest } else { *entry };
         }
-        (Handled::Side(_), LegKind::Hf(holding) | LegKind::Ha(holding) | LegKind::Hm { holding, .. }) => {
-            holding.turn = other(holding.turn);
+        (Handled::Side { .. }, kind) => {
+            let turn = turn_mut(kind)?;
+            *turn = other(*turn);
         }
         _ => return None,
     }
@@ -125,6 +91,22 @@ pub fn move_arc_centre(plan: &FlightPlan, leg: &Id, to: LatLon) -> Option<Edit> 
     let LegKind::Rf { centre, .. } = &mut leg.kind else { return None };
     *centre = to;
     Some(Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(leg) })
+}
+
+/// The direction in which a leg turns, if it is a choice.
+fn turn_mut(kind: &mut LegKind) -> Option<&mut TurnDirection> {
+    match kind {
+        LegKind::Hf(holding) | LegKind::Ha(holding) | LegKind::Hm { holding, .. } => Some(&mut holding.turn),
+        LegKind::Orbit { turn, .. }
+        | LegKind::Pattern(
+            Pattern::Spiral { turn, .. }
+            | Pattern::ExpandingSquare { turn, .. }
+            | Pattern::Sector { turn, .. }
+            | Pattern::Contour { turn, .. }
+            | Pattern::FigureEight { turn, .. },
+        ) => Some(turn),
+        _ => None,
+    }
 }
 
 fn other(turn: TurnDirection) -> TurnDirection {
@@ -158,6 +140,10 @@ impl Maker<'_> {
             LegKind::Fa { from, course_deg } => self.course(&from.place, course_deg, 0.0)?,
             LegKind::Hf(holding) | LegKind::Ha(holding) | LegKind::Hm { holding, .. } => {
                 self.holding(holding)?
+            }
+            LegKind::Orbit { centre, radius_m, turns, .. } => {
+                self.other_way(centre, radius_m)?;
+                self.turns(centre, 180.0, turns, radius_m, 1.0)?;
             }
             LegKind::Scan(scan) => self.scan(scan)?,
             LegKind::Pattern(pattern) => self.pattern(pattern)?,
@@ -210,7 +196,32 @@ impl Maker<'_> {
         let aside_deg = if holding.turn == TurnDirection::Right { -90.0 } else { 90.0 };
         let turn_m = 2.0 * profile.turn_radius_m(profile.cruise_airspeed_mps);
         let middle = from.destination(out_deg, length_m / 2.0);
-        self.put(Handled::Side(self.leg.id.clone()), middle.destination(course_deg + aside_deg, turn_m));
+        let what = Handled::Side { leg: self.leg.id.clone(), is_holding: true };
+        self.put(what, middle.destination(course_deg + aside_deg, turn_m));
+        Some(())
+    }
+
+    /// A click on the mark in a circle turns the leg the other way.
+    fn other_way(&mut self, centre: &Place, radius_m: &Value<f64>) -> Option<()> {
+        let (centre, radius_m) = (self.reader.place(centre)?, self.reader.number(radius_m)?);
+        let at = centre.destination(225.0, radius_m * ASIDE);
+        self.put(Handled::Side { leg: self.leg.id.clone(), is_holding: false }, at);
+        Some(())
+    }
+
+    /// Outwards from a place so many radii from the middle, a step for each turn.
+    fn turns(
+        &mut self,
+        centre: &Place,
+        bearing_deg: f64,
+        turns: &Value<f64>,
+        radius_m: &Value<f64>,
+        radii: f64,
+    ) -> Option<()> {
+        let (centre, radius_m) = (self.reader.place(centre)?, self.reader.number(radius_m)?);
+        let (turns, per_m) = (self.reader.number(turns)?, 1.0 / (radius_m * TURN).max(1.0));
+        let from = centre.destination(bearing_deg, radius_m * radii);
+        self.number("turns", turns, Ruler::Along { from, bearing_deg, per_m }, 0.0);
         Some(())
     }
 
@@ -273,6 +284,7 @@ impl Maker<'_> {
     fn pattern(&mut self, pattern: &Pattern) -> Option<()> {
         match pattern {
             Pattern::Spiral { centre, inner_radius_m, outer_radius_m, spacing, .. } => {
+                self.other_way(centre, outer_radius_m)?;
                 let from = self.reader.place(centre)?;
                 let inner_m = self.reader.number(inner_radius_m)?;
                 let ruler = Ruler::Along { from, bearing_deg: 270.0, per_m: 1.0 };
@@ -281,13 +293,19 @@ impl Maker<'_> {
                 self.spacing(spacing, Ruler::Along { from: rim, bearing_deg: 180.0, per_m: 1.0 });
             }
             Pattern::ExpandingSquare { centre, spacing, heading_deg, radius_m, .. } => {
+                self.other_way(centre, radius_m)?;
                 let heading_deg = self.heading(centre, heading_deg, radius_m)?;
                 let from = self.reader.place(centre)?;
                 self.spacing(spacing, Ruler::Along { from, bearing_deg: heading_deg, per_m: 1.0 });
             }
-            Pattern::Sector { centre, radius_m, heading_deg, .. }
-            | Pattern::FigureEight { centre, radius_m, heading_deg, .. } => {
+            Pattern::Sector { centre, radius_m, heading_deg, .. } => {
+                self.other_way(centre, radius_m)?;
                 self.heading(centre, heading_deg, radius_m)?;
+            }
+            Pattern::FigureEight { centre, radius_m, heading_deg, turns, .. } => {
+                self.other_way(centre, radius_m)?;
+                let heading_deg = self.heading(centre, heading_deg, radius_m)?;
+                self.turns(centre, heading_deg + 180.0, turns, radius_m, 0.25)?;
             }
             Pattern::Corridor { route, width_m, spacing } => {
                 let (from, way_deg) = self.beside(route)?;
@@ -302,6 +320,8 @@ impl Maker<'_> {
             }
             Pattern::Contour { area, spacing, inward, .. } => {
                 let (frame, corners) = self.outline(area)?;
+                let within = frame.to_geo(*corners.first()? * 0.5);
+                self.put(Handled::Side { leg: self.leg.id.clone(), is_holding: false }, within);
                 // beside the middle, where the outline has a mark
                 let edge = *corners.first()? * 0.7 + *corners.get(1)? * 0.3;
                 let in_deg = (edge * -1.0).bearing_rad().to_degrees();
@@ -324,65 +344,5 @@ impl Maker<'_> {
     fn beside(&self, route: &[Place]) -> Option<(LatLon, f64)> {
         let (from, to) = (self.reader.place(route.first()?)?, self.reader.place(route.get(1)?)?);
         Some((from.interpolate(to, 0.25), from.bearing_deg(to)))
-    }
-}
-
-/// How far an outline reaches along a heading and across it.
-struct Axes {
-    along: Vec2,
-    across: Vec2,
-    along_m: (f64, f64),
-    across_m: (f64, f64),
-}
-
-impl Axes {
-    fn of(corners: &[Vec2], heading_deg: f64) -> Self {
-        let along = Vec2::from_bearing_rad(heading_deg.to_radians());
-        let across = Vec2::from_bearing_rad((heading_deg + 90.0).to_radians());
-        let reach = |axis: Vec2| {
-            corners
-                .iter()
-                .map(|corner| corner.dot(axis))
-                .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)))
-        };
-        Self { along, across, along_m: reach(along), across_m: reach(across) }
-    }
-
-    /// -1 is at one end, 1 at the other.
-    fn place(&self, across: f64, along: f64) -> Vec2 {
-        let on = |(low, high): (f64, f64), share: f64| (low + high) / 2.0 + (high - low) / 2.0 * share;
-        self.across * on(self.across_m, across) + self.along * on(self.along_m, along)
-    }
-
-    fn middle(&self) -> Vec2 {
-        self.place(0.0, 0.0)
-    }
-
-    fn half_m(&self) -> f64 {
-        (self.along_m.1 - self.along_m.0) / 2.0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_ruler_reads_the_number_whose_place_it_gives() {
-        let from = LatLon::new(46.0, 8.0);
-        for number in [0.0, 1.0, 120.0, 3000.0] {
-            for bearing_deg in [0.0, 100.0, 270.0] {
-                let ruler = Ruler::Along { from, bearing_deg, per_m: 2.0 };
-                assert_eq!(ruler.read(ruler.place(number, 0.0)), number);
-            }
-        }
-        for number in [0.0, 90.0, 359.0] {
-            for plus_deg in [0.0, 180.0] {
-                let ruler = Ruler::Around { from, plus_deg };
-                assert_eq!(ruler.read(ruler.place(number, 700.0)), number);
-            }
-        }
-        let behind = Ruler::Along { from, bearing_deg: 0.0, per_m: 1.0 };
-        assert_eq!(behind.read(from.destination(180.0, 50.0)), 0.0, "never less than nothing");
     }
 }

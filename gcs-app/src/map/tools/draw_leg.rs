@@ -1,5 +1,6 @@
 //! Areas, lines and circles that become patterns.
 
+use super::bands::{self, Band};
 use super::new_leg::{self, Aim, Side, choose_kind, choose_side, words};
 use super::pen::{Figure, Mark, Pen};
 use super::trial::Trials;
@@ -54,6 +55,8 @@ pub struct DrawLeg {
     pen: Pen,
     /// What it would become, as it would be flown.
     trials: Trials,
+    /// Where the path may go on behind it.
+    bands: Vec<Band>,
 }
 
 impl DrawLeg {
@@ -66,6 +69,7 @@ impl DrawLeg {
             side: Side::default(),
             pen: Pen::new(figure),
             trials: Trials::default(),
+            bands: Vec::new(),
         }
     }
 
@@ -138,6 +142,7 @@ impl Tool for DrawLeg {
 
     fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
         self.pen.hover(at, canvas);
+        self.bands = self.aim(canvas.scene).map_or(Vec::new(), |aim| bands::behind(canvas, &aim));
         let Some((marks, aim)) = self.pen.so_far().zip(self.aim(canvas.scene)) else {
             return self.trials.clear();
         };
@@ -186,6 +191,9 @@ impl Tool for DrawLeg {
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
         if let Some(trial) = self.trials.get() {
             trial.paint(painter, canvas, p);
+        }
+        if let Some(from) = self.pen.pointer() {
+            bands::paint(painter, canvas, from.at, &self.bands, p);
         }
         self.pen.paint(painter, canvas, p);
     }

@@ -7,7 +7,7 @@ use crate::map::text;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use flight_plan::transform::{self, Motion};
-use flight_plan::{FlightPlan, Id, Section};
+use flight_plan::{FlightPlan, Id};
 use geometry::LatLon;
 use std::sync::Arc;
 
@@ -172,12 +172,12 @@ fn around(canvas: &Canvas<'_>) -> Option<Rect> {
     (legs > 1 && around.is_finite()).then(|| around.expand(AROUND))
 }
 
-/// The main plan's legs that have a place in a part of the screen.
+/// The legs that have a place in a part of the screen, those of emergency plans too.
 pub fn legs_within(area: Rect, canvas: &Canvas<'_>) -> Vec<Id> {
     let plan = canvas.scene.document.plan();
     let within =
         |leg| transform::places(plan, leg).into_iter().any(|at| area.contains(canvas.view.place(at)));
     let contexts = plan.all_legs();
-    let found = contexts.iter().filter(|context| context.section == Section::Main && within(context.leg));
+    let found = contexts.iter().filter(|context| within(context.leg));
     found.map(|context| context.leg.id.clone()).collect()
 }

@@ -20,7 +20,7 @@ pub fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle,
     let Canvas { view, sketch, scene, .. } = *canvas;
     let plan = scene.document.plan();
     let is_shown = move |handle: &Handle| match &handle.what {
-        Handled::Number { .. } | Handled::ArcCentre(_) | Handled::Entry { .. } | Handled::Side(_) => {
+        Handled::Number { .. } | Handled::ArcCentre(_) | Handled::Entry { .. } | Handled::Side { .. } => {
             scene.view.also.is_empty() && scene.is_selected(&selection(plan, &handle.what))
         }
         Handled::Radius(_) | Handled::Corner { .. } | Handled::Ghost { .. } => {
@@ -93,7 +93,7 @@ pub fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: b
             painter.circle(at, size * 0.9, if *chosen { p.accent } else { p.halo }, stroke);
             painter.circle_filled(at, 2.0, p.text);
         }
-        Handled::Side(_) => {
+        Handled::Side { .. } => {
             painter.circle(at, size * 0.9, p.halo, stroke);
             text::haloed(painter, at, Align2::CENTER_CENTER, "⇄", 11.0, p.text, p);
         }

@@ -81,6 +81,8 @@ pub struct Canvas<'a> {
     pub sketch: &'a Sketch,
     /// Everything else there is to know.
     pub scene: &'a Scene<'a>,
+    /// Where the pointer is over the map or what can be grabbed there, or was pressed; not while Shift draws around something.
+    pub pointer: Option<Pos2>,
     /// What is drawn near a fix means the fix; Alt holds that off.
     pub snaps: bool,
 }

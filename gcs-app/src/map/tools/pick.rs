@@ -11,6 +11,8 @@ use geometry::LatLon;
 
 /// A line so near to the pointer is meant, screen points.
 const NEAR: f32 = 7.0;
+/// A new waypoint is dragged from a line that is so long, screen points.
+const SHORTEST: f32 = 40.0;
 /// A handle so near to the pointer is meant, screen points.
 const REACH: f32 = 9.0;
 
@@ -74,7 +76,7 @@ pub fn selection(plan: &FlightPlan, what: &Handled) -> Selection {
         | Handled::Number { leg: id, .. }
         | Handled::ArcCentre(id)
         | Handled::Entry { leg: id, .. }
-        | Handled::Side(id)
+        | Handled::Side { leg: id, .. }
         | Handled::Ghost { leg: id, .. }
         | Handled::Between { leg: id, .. } => match plan.zone(id) {
             Some(_) => Selection::Zone(id.clone()),
@@ -111,7 +113,24 @@ fn outlines_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
 }
 
 fn is_near(at: Pos2, from: Pos2, to: Pos2) -> bool {
+    foot(at, from, to).distance(at) < NEAR
+}
+
+/// The place on a line that is nearest.
+fn foot(at: Pos2, from: Pos2, to: Pos2) -> Pos2 {
     let (way, off) = (to - from, at - from);
     let share = (off.dot(way) / way.length_sq().max(1.0)).clamp(0.0, 1.0);
-    (from + way * share).distance(at) < NEAR
+    from + way * share
+}
+
+/// The straight leg whose line is under the pointer, and where on it; none that is too short to be told from its ends.
+pub fn line_under(at: Pos2, canvas: &Canvas<'_>) -> Option<(Id, Pos2)> {
+    let Canvas { view, sketch, .. } = *canvas;
+    let near = sketch.lines.iter().filter_map(|line| {
+        let (from, to) = (view.place(line.from), view.place(line.to));
+        let on = foot(at, from, to);
+        (from.distance(to) > SHORTEST && on.distance(at) < NEAR).then_some((line, on))
+    });
+    let nearest = near.min_by(|(_, a), (_, b)| a.distance(at).total_cmp(&b.distance(at)));
+    nearest.map(|(line, on)| (line.leg.clone(), on))
 }

@@ -1,5 +1,6 @@
 //! A procedure, put where it is wanted: a click is its anchor, a second one says its bearing.
 
+use super::bands::{self, Band};
 use super::new_leg::{self, Aim, Side, choose_side, words};
 use super::pen::{Figure, Mark, Pen};
 use super::trial::Trials;
@@ -25,6 +26,8 @@ pub struct PlaceProcedure {
     chosen: Option<Id>,
     side: Side,
     trials: Trials,
+    /// Where the path may go on behind it.
+    bands: Vec<Band>,
 }
 
 impl Default for PlaceProcedure {
@@ -34,6 +37,7 @@ impl Default for PlaceProcedure {
             chosen: None,
             side: Side::default(),
             trials: Trials::default(),
+            bands: Vec::new(),
         }
     }
 }
@@ -121,6 +125,7 @@ impl Tool for PlaceProcedure {
 
     fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
         self.pen.hover(at, canvas);
+        self.bands = self.aim(canvas.scene).map_or(Vec::new(), |aim| bands::behind(canvas, &aim));
         let marks = self.pen.begun();
         let Some((leg, aim)) = self.call(&marks, canvas.scene).zip(self.aim(canvas.scene)) else {
             return self.trials.clear();
@@ -170,6 +175,9 @@ impl Tool for PlaceProcedure {
         if let Some(trial) = self.trials.get() {
             trial.paint(painter, canvas, p);
         }
+        // it begins and ends about its anchor
+        let anchor = self.pen.last().or(self.pen.pointer().map(|mark| mark.at));
+        anchor.into_iter().for_each(|from| bands::paint(painter, canvas, from, &self.bands, p));
         self.pen.paint(painter, canvas, p);
     }
 }

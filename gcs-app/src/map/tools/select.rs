@@ -5,28 +5,37 @@ use super::bands;
 use super::group::{Group, legs_within};
 use super::handles::{draw, draw_labels, label, near, value};
 use super::pen::{Mark, way};
-use super::pick::{lines_near, selection};
+use super::pick::{line_under, lines_near, selection};
 use super::snap::{self, snap_but};
 use super::{Canvas, Card, Grip, Pointer, Tool, Touch};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use crate::map::guard;
 use crate::map::sketch::{Handle, Handled, Sketch, numbers, radius_edit};
 use crate::map::text;
+use crate::panels::Scene;
 use crate::theme::Palette;
 use aircraft::Profile;
-use egui::{Align2, Key, Painter, Pos2, Rect, vec2};
+use egui::{Align2, Key, Painter, Pos2, Rect, Stroke, vec2};
 use flight_plan::create::{self, Drawn, LegChoice};
 use flight_plan::{
     Area, Edit, FlightPlan, Id, LegKind, Pattern, Place, Problem, Scan, Spot, Value, VariableValue, ZoneShape,
 };
 use geometry::LatLon;
 
+/// The grip's key that is the line under the pointer.
+const LINE: usize = usize::MAX;
+/// Something that can be grabbed is so near to the pointer that the line there is not meant, screen points.
+const BESIDE: f32 = 12.0;
+
 /// The tool; the one in use unless another one is chosen.
 #[derive(Debug, Default)]
 pub struct Select {
     /// The corner that was grabbed last: Delete removes it.
     corner: Option<Handled>,
-    /// The mark that is being dragged, by its name, and what it has become.
+    /// The mark or line that is being dragged, by its name, and what it has become.
     inserting: Option<(String, Handled)>,
+    /// The leg whose line was grabbed.
+    line: Option<Id>,
     /// What the last click may have meant.
     among: Vec<Selection>,
     /// The handles around several selected legs.
@@ -37,11 +46,26 @@ pub struct Select {
     dragged: Option<Mark>,
     /// What letting go does: the leg goes to what it was dragged onto.
     landing: Option<Edit>,
+    /// What is being dragged can't be moved now.
+    refused: bool,
 }
 
 impl Select {
-    /// A mark between two corners, or in the middle of a leg, becomes what it stands for.
-    fn insert(&mut self, mark: &Handled, at: LatLon, plan: &FlightPlan, queue: &mut Queue) {
+    /// The line under the pointer, if it is that what a drag from there would mean.
+    fn line_grip(&self, grips: &[Grip], canvas: &Canvas<'_>) -> Option<Grip> {
+        let view = canvas.scene.view;
+        // where an alarm is raised, a click on the path moves it
+        if self.inserting.is_some() || view.locked || view.alarm.is_some() {
+            return None;
+        }
+        let at = canvas.pointer?;
+        let is_free = grips.iter().all(|grip| grip.at.distance(at) > BESIDE);
+        let (leg, _) = line_under(at, canvas).filter(|_| is_free)?;
+        Some(Grip { key: LINE, name: line_name(&leg), at })
+    }
+
+    /// A mark between two corners, in the middle of a leg or anywhere on its line, becomes what it stands for.
+    fn insert(&mut self, mark: &Handled, name: String, at: LatLon, plan: &FlightPlan, queue: &mut Queue) {
         let (edit, becomes) = match mark {
             Handled::Ghost { leg, hole, before } => {
                 let edit = Edit::InsertCorner { leg: leg.clone(), hole: *hole, before: *before, at };
@@ -60,13 +84,17 @@ impl Select {
         if let Handled::Waypoint(new) = &becomes {
             queue.view(ViewCommand::Select(Some(Selection::Leg(new.clone()))));
         }
-        self.inserting = Some((mark.name(), becomes));
+        self.inserting = Some((name, becomes));
     }
 }
 
 impl Tool for Select {
     fn card(&self) -> &'static Card {
         &Card { id: "select", name: "Select and move", symbol: "⬉", key: Key::V }
+    }
+
+    fn status(&self, scene: &Scene<'_>) -> Option<String> {
+        scene.view.locked.then(|| guard::LOCKED.into())
     }
 
     fn grips(&self, canvas: &Canvas<'_>) -> Vec<Grip> {
@@ -77,7 +105,9 @@ impl Tool for Select {
         };
         let shown = near(canvas).filter(|(_, handle, _)| self.inserting.is_none() || !is_mark(handle));
         let grips = shown.map(|(key, handle, at)| Grip { key, name: name(handle), at });
-        grips.chain(self.group.grips(canvas)).collect()
+        let grips: Vec<Grip> = grips.chain(self.group.grips(canvas)).collect();
+        // below the others
+        self.line_grip(&grips, canvas).into_iter().chain(grips).collect()
     }
 
     fn hover(&mut self, _at: Option<Pos2>, canvas: &Canvas<'_>) {
@@ -86,15 +116,28 @@ impl Tool for Select {
         self.corner = self.corner.take().filter(selected);
     }
 
-    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+    fn press(&mut self, mut pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+        self.line = None;
+        if pointer.grip == Some(LINE) {
+            if !pointer.clicks {
+                return self.grab_line(canvas, queue);
+            }
+            pointer.grip = None;
+        }
         let plan = canvas.scene.document.plan();
-        if pointer.grip.is_some_and(|key| self.group.press(key, pointer.clicks, canvas)) {
+        let handle = pointer.grip.and_then(|key| canvas.sketch.handles.get(key));
+        self.refused = false;
+        if let Some(why) = why_not(pointer, handle, canvas) {
+            self.refused = true;
+            queue.view(ViewCommand::Notice(why));
+        } else if pointer.grip.is_some_and(|key| self.group.press(key, pointer.clicks, canvas)) {
             return;
         }
-        let handle = pointer.grip.and_then(|key| canvas.sketch.handles.get(key));
         self.grabbed = handle.filter(|_| !pointer.clicks).cloned();
         self.among = if pointer.grip.is_none() { lines_near(pointer.at, canvas) } else { Vec::new() };
-        let chosen = handle.filter(|_| pointer.clicks).and_then(|handle| numbers::choice(plan, &handle.what));
+        let chosen = handle
+            .filter(|_| pointer.clicks && !self.refused)
+            .and_then(|handle| numbers::choice(plan, &handle.what));
         if let Some(edit) = chosen {
             return queue.edit(edit);
         }
@@ -117,18 +160,24 @@ impl Tool for Select {
     }
 
     fn drag(&mut self, grip: usize, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue) {
-        if self.group.drag(to, canvas, queue) {
+        if self.refused || self.group.drag(to, canvas, queue) {
             return;
         }
-        let Some(handle) = canvas.sketch.handles.get(grip) else { return };
         let plan = canvas.scene.document.plan();
+        if let (Some(leg), true) = (self.line.take(), self.inserting.is_none()) {
+            let (name, at) = (line_name(&leg), canvas.view.geo(to));
+            return if at.is_valid() {
+                self.insert(&Handled::Between { leg, gap_m: 0 }, name, at, plan, queue)
+            };
+        }
+        let Some(handle) = canvas.sketch.handles.get(grip) else { return };
         let mark = self.snapped(handle, to, canvas);
         let to = mark.at;
         self.landing = landing(plan, self.grabbed.as_ref(), &mark);
         self.dragged = Some(mark);
         if is_mark(handle) {
             return if to.is_valid() {
-                self.insert(&handle.what, to, plan, queue)
+                self.insert(&handle.what, handle.what.name(), to, plan, queue)
             };
         }
         if let Some(edit) = edit(plan, canvas.sketch, &handle.what, to) {
@@ -180,10 +229,22 @@ impl Tool for Select {
             self.paint_drag(painter, handle, canvas, p);
         }
         self.group.paint(painter, canvas, p);
+        if let (Some(LINE), Some(at)) = (touch.hovered, canvas.pointer) {
+            painter.circle(at, 3.5, p.halo, Stroke::new(1.4, p.accent));
+        }
     }
 }
 
 impl Select {
+    /// A drag begins on a line.
+    fn grab_line(&mut self, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let leg = canvas.pointer.and_then(|at| line_under(at, canvas)).map(|(leg, _)| leg);
+        let why = leg.as_ref().and_then(|leg| guard::of_legs(canvas.scene, std::slice::from_ref(leg)));
+        self.refused = why.is_some();
+        self.line = leg.filter(|_| why.is_none());
+        why.into_iter().for_each(|why| queue.view(ViewCommand::Notice(why)));
+    }
+
     /// What is near where a handle is dragged; nothing that moves with it. Numbers and marks don't snap.
     fn snapped(&self, handle: &Handle, to: Pos2, canvas: &Canvas<'_>) -> Mark {
         let snaps = matches!(
@@ -235,6 +296,16 @@ impl Select {
     }
 }
 
+/// Why what is grabbed, or a mark that is clicked, can't be changed now. Whatever it is, it can be selected.
+fn why_not(pointer: Pointer, handle: Option<&Handle>, canvas: &Canvas<'_>) -> Option<String> {
+    let Some(handle) = handle else {
+        let grabs = pointer.grip.is_some() && !pointer.clicks;
+        return grabs.then(|| guard::of_legs(canvas.scene, &canvas.scene.selected_legs())).flatten();
+    };
+    let changes = !pointer.clicks || handle.what.is_choice();
+    changes.then(|| guard::of_handle(canvas.scene, &handle.what)).flatten()
+}
+
 /// What letting a leg's place go there does, if there is a fix or variable. A variable that was dragged along goes back.
 fn landing(plan: &FlightPlan, grabbed: Option<&Handle>, mark: &Mark) -> Option<Edit> {
     let Handle { what: Handled::Waypoint(leg) | Handled::Centre(leg), at: was } = grabbed? else {
@@ -247,6 +318,10 @@ fn landing(plan: &FlightPlan, grabbed: Option<&Handle>, mark: &Mark) -> Option<E
     let back = create::bound_to(plan.leg(leg)?.leg)
         .map(|name| Edit::SetVariable { name, value: VariableValue::Position(*was) });
     Some(Edit::All(back.into_iter().chain([lands]).collect()))
+}
+
+fn line_name(leg: &Id) -> String {
+    format!("Line to {leg}")
 }
 
 /// Not there yet: it is when it is dragged.
@@ -306,6 +381,8 @@ fn edit(plan: &FlightPlan, sketch: &Sketch, what: &Handled, to: LatLon) -> Optio
         }
         Handled::Number { leg, number, ruler } => numbers::edit(plan, leg, number, ruler.read(to)),
         Handled::ArcCentre(leg) => numbers::move_arc_centre(plan, leg, to),
-        Handled::Ghost { .. } | Handled::Between { .. } | Handled::Entry { .. } | Handled::Side(_) => None,
+        Handled::Ghost { .. } | Handled::Between { .. } | Handled::Entry { .. } | Handled::Side { .. } => {
+            None
+        }
     }
 }

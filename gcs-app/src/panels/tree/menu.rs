@@ -2,6 +2,7 @@
 
 use super::alternates;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use crate::map::footprints;
 use crate::panels::{Scene, binding};
 use aircraft::Profile;
 use egui::{Button, Ui};
@@ -112,7 +113,7 @@ fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
     let together = scene.selected_legs();
     match of {
         Selection::Leg(_) if together.len() > 1 && scene.is_selected(of) => of_legs(plan, &together),
-        Selection::Leg(leg) => of_leg(plan, leg),
+        Selection::Leg(leg) => of_leg(plan, leg).into_iter().chain(pictures(scene, leg)).collect(),
         Selection::Stage(stage) => vec![
             Entry::new("Move up", "Ctrl+Up", create::shift_stage(plan, stage, -1)),
             Entry::new("Move down", "Ctrl+Down", create::shift_stage(plan, stage, 1)),
@@ -130,9 +131,20 @@ fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
 fn of_legs(plan: &FlightPlan, legs: &[Id]) -> Vec<Entry> {
     vec![
         Entry::making("Put them into a loop", create::loop_around(plan, legs), Selection::Leg),
+        Entry::making("Put a fork around them", create::fork_around(plan, legs), Selection::Leg),
         Entry::making("Make a procedure of them", create::procedure_of(plan, legs), Selection::Procedure),
         Entry::new("Delete them", "Del", Some(create::delete_legs(plan, legs))),
     ]
+}
+
+/// Of a leg that is flown.
+fn pictures(scene: &Scene<'_>, leg: &Id) -> Option<Entry> {
+    let leg = scene.document.plan().any_leg(leg)?;
+    let choice = LegChoice::of(&leg.kind);
+    let (takes, edit) = footprints::toggled(scene, leg);
+    let name = if takes { "Take no pictures along it" } else { "Take pictures along it" };
+    let is_flown = is_flown_itself(choice) && choice != LegChoice::Call;
+    is_flown.then(|| Entry::new(name, "", Some(edit)))
 }
 
 fn of_leg(plan: &FlightPlan, leg: &Id) -> Vec<Entry> {
@@ -143,7 +155,7 @@ fn of_leg(plan: &FlightPlan, leg: &Id) -> Vec<Entry> {
         Entry::new("Move up", "Ctrl+Up", create::shift(plan, leg, -1)),
         Entry::new("Move down", "Ctrl+Down", create::shift(plan, leg, 1)),
         Entry::making("Put into a loop", create::loop_around(plan, one), Selection::Leg),
-        Entry::making("Fork before it", create::fork(plan, leg), Selection::Leg),
+        Entry::making("Fork before it", create::fork_around(plan, one), Selection::Leg),
         Entry::making("Make a procedure of it", create::procedure_of(plan, one), Selection::Procedure),
     ];
     if is_loop {

@@ -1,5 +1,6 @@
 //! Legs that are there, arranged anew: copied, moved, put into a loop, a fork or a procedure.
 
+use super::branch::merge;
 use super::kind::LegChoice;
 use super::leg::{Drawn, leg};
 use crate::{Branch, Call, Edit, FlightPlan, Id, Leg, LegKind, Place, Procedure, Spot, Thing, Value};
@@ -46,17 +47,31 @@ pub fn unloop(plan: &FlightPlan, id: &Id) -> Option<Edit> {
     (!body.is_empty()).then(|| Edit::All(edits.collect()))
 }
 
-/// A fork before a leg: through that leg, which is the default, or past it.
-pub fn fork(plan: &FlightPlan, before: &Id) -> Option<(Id, Edit)> {
-    let (list, index) = list_of(plan, before)?;
-    let past = list.get(index + 1)?.id.clone();
+/// A fork around legs that follow each other: through them, which is the default, or past them. Where nothing follows them,
+/// the ways meet in a merge.
+pub fn fork_around(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
+    let legs = in_order(plan, legs)?;
+    let (first, last) = (legs.first()?, legs.last()?);
+    let (list, index) = list_of(plan, first)?;
+    let through = list.get(index..index + legs.len())?;
+    if through.last()?.id != *last {
+        return None;
+    }
+    let follower = through.last()?.next.clone().or(list.get(index + legs.len()).map(|leg| leg.id.clone()));
+    let past = follower.clone().unwrap_or_else(|| plan.unique_id("merge"));
+    let merge = if follower.is_none() { Some(merge(plan, past.clone())?) } else { None };
     let mut made = leg(plan, &Profile::default(), LegChoice::Intersection, &Drawn::Nothing, None, None)?;
     if let LegKind::Intersection { branches, .. } = &mut made.kind {
-        let label = format!("Skip {before}");
+        let label = match legs.len() {
+            1 => format!("Skip {}", plan.label(first)),
+            _ => format!("Skip {} to {}", plan.label(first), plan.label(last)),
+        };
         branches.push(Branch { id: Id::new("skip"), label, next: Some(past), when: None });
     }
     let id = made.id.clone();
-    Some((id, Edit::InsertLeg { leg: Box::new(made), at: Spot::Before(before.clone()) }))
+    let fork = Edit::InsertLeg { leg: Box::new(made), at: Spot::Before(first.clone()) };
+    let merge = merge.map(|merge| Edit::InsertLeg { leg: Box::new(merge), at: Spot::After(last.clone()) });
+    Some((id, Edit::All(std::iter::once(fork).chain(merge).collect())))
 }
 
 /// A procedure of legs of one list, which is called in their place.

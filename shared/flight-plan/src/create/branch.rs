@@ -101,7 +101,7 @@ fn way_id(number: usize) -> Id {
 }
 
 /// An intersection where ways meet again.
-fn merge(plan: &FlightPlan, id: Id) -> Option<Leg> {
+pub(super) fn merge(plan: &FlightPlan, id: Id) -> Option<Leg> {
     let mut made = new_leg(plan, &Profile::default(), LegChoice::Intersection, &Drawn::Nothing, None, None)?;
     if let LegKind::Intersection { branches, default, .. } = &mut made.kind {
         branches.clear();

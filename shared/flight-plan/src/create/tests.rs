@@ -266,8 +266,16 @@ fn legs_are_copied_moved_and_put_into_loops_forks_and_procedures() {
     let body: Vec<&str> = looped.leg(&id).unwrap().leg.body().iter().map(|leg| leg.id.as_str()).collect();
     assert_eq!(body, ["leg1", "leg2"]);
     assert_eq!(unloop(&looped, &id).unwrap().apply(&looped).unwrap(), plan, "and back");
-    let forked = then(Some(fork(&plan, &"leg1".into()).unwrap().1));
+    let forked = then(Some(fork_around(&plan, &["leg1".into()]).unwrap().1));
     assert_eq!((ids(&forked).join(" "), errors(&forked)), ("scan fork1 leg1 leg2".into(), Vec::new()));
+    let (id, edit) = fork_around(&plan, &["leg1".into(), "scan".into()]).unwrap();
+    let forked = then(Some(edit));
+    assert_eq!((ids(&forked).join(" "), errors(&forked)), ("fork1 scan leg1 leg2".into(), Vec::new()));
+    let past = forked.leg(&id).unwrap().leg.as_fork().unwrap().branches[1].next.clone();
+    assert_eq!(past, Some("leg2".into()), "past both of them");
+    let forked = then(Some(fork_around(&plan, &["leg1".into(), "leg2".into()]).unwrap().1));
+    assert_eq!((ids(&forked).join(" "), errors(&forked)), ("scan fork1 leg1 leg2 merge".into(), Vec::new()));
+    assert!(fork_around(&plan, &["scan".into(), "leg2".into()]).is_none(), "they don't follow each other");
     let (id, edit) = procedure_of(&plan, &["leg1".into(), "leg2".into()]).unwrap();
     let called = then(Some(edit));
     assert_eq!((ids(&called).join(" "), errors(&called)), ("scan call1".into(), Vec::new()));

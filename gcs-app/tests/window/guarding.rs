@@ -1,0 +1,61 @@
+//! What can't be moved by hand: everything while the plan is locked, and what the aircraft has behind it.
+
+use super::flying::flying;
+use super::{SQUARE, Window};
+use egui::{Key, Modifiers, Vec2, vec2};
+use egui_kittest::kittest::Queryable;
+
+fn notice(window: &Window) -> String {
+    window.app().view().notice.clone().unwrap_or_default()
+}
+
+/// Drags a handle; true if that changed the plan.
+fn moves(window: &mut Window, handle: &str, by: Vec2) -> bool {
+    let before = window.plan();
+    let from = window.centre(handle);
+    window.drag(from, by);
+    window.plan() != before
+}
+
+#[test]
+fn locked_plan_is_not_dragged_by_accident() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.press_ctrl(Key::L);
+    assert!(window.shows("Locked against accidents"));
+    for handle in ["Fix C", "Altitude of side2"] {
+        assert!(!moves(&mut window, handle, vec2(30.0, -30.0)), "{handle}");
+        assert!(notice(&window).contains("Ctrl+L unlocks it"), "{handle}");
+    }
+    assert!(!window.is_enabled("Undo"), "no step was made");
+    window.press_ctrl(Key::L);
+    assert!(!window.app().view().locked);
+    assert!(moves(&mut window, "Fix C", vec2(30.0, -30.0)));
+}
+
+#[test]
+fn what_is_behind_the_aircraft_cannot_be_moved() {
+    let (mut window, _) = flying();
+    assert!(!moves(&mut window, "Fix A", vec2(30.0, -20.0)));
+    assert!(notice(&window).contains("side1 is behind the aircraft"), "{}", notice(&window));
+    // the leg that is flown, and one that is ahead
+    assert!(moves(&mut window, "Fix B", vec2(20.0, -20.0)));
+    assert!(moves(&mut window, "Fix D", vec2(20.0, -20.0)));
+    // a set with one that is behind
+    window.click("TF side1");
+    let row = window.centre("TF side2");
+    window.harness.hover_at(row);
+    window.steps(1);
+    for pressed in [true, false] {
+        let (button, modifiers) = (egui::PointerButton::Primary, Modifiers::SHIFT);
+        let event = egui::Event::PointerButton { pos: row, button, pressed, modifiers };
+        window.harness.event_modifiers(event, modifiers);
+        window.steps(1);
+    }
+    window.steps(2);
+    assert!(!moves(&mut window, "Move the selected legs", vec2(30.0, 30.0)));
+    // on the ground again everything is ahead
+    window.receive_position(true);
+    assert!(moves(&mut window, "Move the selected legs", vec2(30.0, 30.0)));
+    assert!(window.harness.query_by_label("Fix A").is_some());
+}

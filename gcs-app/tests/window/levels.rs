@@ -1,0 +1,51 @@
+//! Altitudes by hand in the profile.
+
+use super::{SQUARE, Window};
+use egui::vec2;
+use flight_plan::{Altitude, AltitudeReference, Value, transform};
+
+fn altitude(window: &Window, leg: &str) -> Option<Altitude> {
+    window.plan().leg(&leg.into()).unwrap().leg.altitude.clone()
+}
+
+#[test]
+fn altitude_is_dragged_in_the_profile_in_one_step() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let places = |window: &Window| {
+        let plan = window.plan();
+        transform::places(&plan, plan.leg(&"side2".into()).unwrap().leg)
+    };
+    let (before, there) = (window.plan(), places(&window));
+    assert_eq!(altitude(&window, "side2"), None, "it has its stage's");
+    let mark = window.centre("Altitude of side2");
+    window.drag(mark, vec2(0.0, -25.0));
+    let Some(Altitude { metres: Value::Constant(metres), reference }) = altitude(&window, "side2") else {
+        panic!("no altitude of its own")
+    };
+    assert!(metres > 155.0 && metres % 5.0 == 0.0, "{metres}");
+    assert_eq!(reference, AltitudeReference::Home, "as it was measured");
+    assert_eq!(places(&window), there);
+    assert_eq!(window.selected(), "side2");
+    window.until_analysed();
+    let [raised, other] = ["side2", "side3"].map(|leg| window.centre(&format!("Altitude of {leg}")).y);
+    assert!(raised < other - 3.0, "the mark is at the new altitude: {raised} {other}");
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+}
+
+#[test]
+fn altitude_that_is_a_formula_is_not_dragged() {
+    let formula = r#"<TF id="side2" fix="B" altitude="= high" altitudeReference="home"/>"#;
+    let plan = SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, formula);
+    let variable =
+        r#"<variables><variable name="high" type="number" unit="m" initial="150"/></variables><mainPlan"#;
+    let mut window = Window::open(&plan.replacen("<mainPlan", variable, 1));
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+    let before = window.plan();
+    let mark = window.centre("Altitude of side2");
+    window.drag(mark, vec2(0.0, -25.0));
+    assert_eq!(window.plan(), before);
+    assert!(window.app().view().notice.as_ref().is_some_and(|why| why.contains("formula")));
+}

@@ -1,0 +1,107 @@
+//! Lines on the map: waypoints out of them, rubber bands, pictures along them, and the view on what is selected.
+
+use super::{SQUARE, Window};
+use egui::{Key, Pos2, vec2};
+use egui_kittest::kittest::Queryable;
+
+fn window() -> Window {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window
+}
+
+fn legs(window: &Window) -> Vec<String> {
+    let stage = window.plan().stage(&"circuit".into()).unwrap().clone();
+    stage.legs.iter().map(|leg| leg.id.to_string()).collect()
+}
+
+/// A quarter along the line to side3, where no mark is.
+fn on_line(window: &Window) -> Pos2 {
+    window.centre("Fix B").lerp(window.centre("Fix C"), 0.25)
+}
+
+#[test]
+fn a_waypoint_is_dragged_out_of_the_line_anywhere() {
+    let mut window = window();
+    let before = window.plan();
+    let at = on_line(&window);
+    window.harness.hover_at(at);
+    window.steps(2);
+    assert!(window.shows("Line to side3"));
+    let fix = window.centre("Fix A");
+    window.drag(at, vec2(60.0, 30.0));
+    assert_eq!(window.centre("Fix A"), fix, "the map stays");
+    assert_eq!(legs(&window), ["side1", "side2", "leg1", "side3", "side4"]);
+    assert_eq!(window.selected(), "leg1");
+    assert!(window.centre("Waypoint leg1").distance(at + vec2(60.0, 30.0)) < 3.0);
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+}
+
+#[test]
+fn a_click_on_a_line_selects_and_a_drag_beside_it_moves_the_map() {
+    let mut window = window();
+    let at = on_line(&window);
+    window.click_at(at);
+    assert_eq!((window.selected(), legs(&window).len()), ("side3".into(), 4));
+    let (beside, fix) = (at + vec2(40.0, 60.0), window.centre("Fix A"));
+    window.drag(beside, vec2(50.0, 20.0));
+    assert_eq!(legs(&window).len(), 4);
+    assert!(window.centre("Fix A").distance(fix) > 20.0);
+}
+
+#[test]
+fn every_tool_that_draws_legs_shows_what_they_lead_to() {
+    let band = gcs_app::theme::palette(true).contingency;
+    for tool in [Key::T, Key::A, Key::L, Key::O] {
+        let mut window = window();
+        window.click("TF side2");
+        window.press(tool);
+        let away = window.centre("Undo");
+        window.harness.hover_at(away);
+        window.steps(2);
+        let before = window.lines_within("Map", band);
+        let at = window.centre("Map") + vec2(60.0, 40.0);
+        window.harness.hover_at(at);
+        window.steps(2);
+        assert!(window.lines_within("Map", band) > before, "{tool:?}: a band to the alternate");
+    }
+}
+
+#[test]
+fn pictures_along_a_leg_are_taken_from_its_menu_and_seen_on_the_map() {
+    let mut window = window();
+    let before = window.plan();
+    window.click("TF side3");
+    let choose = |window: &mut Window, entry: &str| {
+        window.harness.get_by_label("TF side3").click_secondary();
+        window.steps(3);
+        let at = window.harness.get_by_label_contains(entry).rect().center();
+        window.click_at(at);
+        window.until_analysed();
+    };
+    choose(&mut window, "Take pictures along it");
+    assert_eq!(window.plan().leg(&"side3".into()).unwrap().leg.actions.len(), 1);
+    assert_eq!(window.errors(), Vec::<String>::new());
+    assert!(window.paints("Picture every") && window.paints("overlap"));
+    choose(&mut window, "Take no pictures along it");
+    assert_eq!(window.plan(), before);
+    assert!(!window.paints("overlap"));
+}
+
+#[test]
+fn what_is_selected_elsewhere_comes_into_view() {
+    let mut window = window();
+    let shown = window.centre("Fix B");
+    window.click("TF side3");
+    assert_eq!(window.centre("Fix B"), shown, "it was in view");
+    let beside = window.centre("Map") + vec2(200.0, -120.0);
+    for _ in 0..6 {
+        window.drag(beside, vec2(-300.0, 0.0));
+    }
+    assert!(window.harness.query_by_label("Fix C").is_none(), "it is out of view");
+    window.click("TF side2");
+    window.click("TF side3");
+    let map = window.harness.get_by_label("Map").rect();
+    assert!(map.contains(window.centre("Fix C")), "it is back");
+}
