@@ -135,8 +135,8 @@ pub enum ViewCommand {
     Select(Option<Selection>),
     /// Point out something (a leg, a stage) without selecting it, or nothing any more.
     PointOut(Option<Id>),
-    /// Add a leg to those that are selected, or take it out.
-    Toggle(Id),
+    /// Add a leg, fix, zone or runway to what is selected, or take it out.
+    Toggle(Selection),
     /// Select every leg from the selected one to this one.
     Extend(Id),
     /// Select it and bring it into the map's middle.
@@ -268,7 +268,7 @@ pub enum FlyCommand {
 }
 
 /// What can be selected.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Selection {
     /// A leg, anywhere in the document.
     Leg(Id),
@@ -289,6 +289,11 @@ pub enum Selection {
 }
 
 impl Selection {
+    /// It can be selected together with others: it has a place of its own.
+    pub fn is_in_sets(&self) -> bool {
+        matches!(self, Self::Leg(_) | Self::Fix(_) | Self::Zone(_) | Self::Runway(_))
+    }
+
     /// The identifier it stands for.
     pub fn id(&self) -> &Id {
         match self {

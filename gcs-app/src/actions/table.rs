@@ -229,6 +229,7 @@ const NOTHING: &str = "Select something of the plan first";
 fn delete(scene: &Scene<'_>) -> Asked {
     let plan = scene.document.plan();
     let edit = match &scene.view.selection {
+        Some(_) if !scene.view.also.is_empty() => create::delete_set(plan, &scene.selected_set()),
         Some(Selection::Leg(first)) => {
             let mut legs = scene.selected_legs();
             // those of procedures are selected one by one

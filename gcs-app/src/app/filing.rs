@@ -157,12 +157,12 @@ impl App {
         let plan = self.document.plan();
         let areas = imported.choices.areas;
         let added = drawings::add(&imported.features, areas, plan, self.view.selection.as_ref());
-        let done = added.and_then(|Pasted { legs, edit }| self.document.edit(&edit).map(|()| legs));
+        let done = added.and_then(|Pasted { legs, edit, .. }| self.document.edit(&edit).map(|()| legs));
         match done {
             Ok(legs) => {
                 let mut legs = legs.into_iter();
                 self.view.select(legs.next().map(Selection::Leg));
-                self.view.also.extend(legs);
+                self.view.also.extend(legs.map(Selection::Leg));
                 let name = imported.path.file_name().unwrap_or_default().to_string_lossy();
                 self.toasts.add(now_s, Level::Info, format!("Added what {name} draws"));
             }

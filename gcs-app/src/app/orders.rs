@@ -186,7 +186,7 @@ impl App {
                 self.view.select(selection);
             }
             ViewCommand::PointOut(what) => self.view.pointed = what,
-            ViewCommand::Toggle(leg) => self.view.toggle(leg),
+            ViewCommand::Toggle(what) => self.view.toggle(what),
             ViewCommand::Extend(leg) => self.view.extend(leg, self.document.plan()),
             ViewCommand::JumpTo(selection) => self.jump_to(selection),
             ViewCommand::Fit => {

@@ -1,4 +1,4 @@
-//! Copy, cut, paste and duplicate: legs as text, coordinates as a waypoint, and drawings of other programs.
+//! Copy, cut, paste and duplicate: legs, fixes, zones and runways as text, coordinates as a waypoint, and drawings of other programs.
 
 use super::drawings;
 use super::menu::Menu;
@@ -9,7 +9,7 @@ use crate::panels::start;
 use egui::{Context, Event, Key, Modifiers, Ui};
 use flight_plan::clipboard::{self, Pasted};
 use flight_plan::create::{self, Drawn, LegChoice};
-use flight_plan::{Place, Value};
+use flight_plan::{Id, Place, Thing, Value};
 use geometry::LatLon;
 use new_leg::{Aim, Side};
 
@@ -32,28 +32,32 @@ pub fn run(ui: &Ui, menu: &mut Menu, canvas: &Canvas<'_>, queue: &mut Queue) {
         }
     }
     if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::D)) {
-        let legs = canvas.scene.selected_legs();
-        put(clipboard::duplicate(canvas.scene.document.plan(), &legs), queue);
+        let set = canvas.scene.selected_set();
+        put(clipboard::duplicate(canvas.scene.document.plan(), &set), queue);
     }
 }
 
-/// The selected legs to the clipboard; or the place of what is selected. `None`: there is nothing to be copied.
+/// What is selected to the clipboard, of a stage its legs; of a fix or runway alone the place. `None`: there is nothing to be copied.
 fn copy(ctx: &Context, canvas: &Canvas<'_>) -> Option<()> {
-    let plan = canvas.scene.document.plan();
-    let legs = clipboard::copy(plan, &canvas.scene.selected_legs());
-    let place = || match &canvas.scene.view.selection {
+    let (plan, scene) = (canvas.scene.document.plan(), canvas.scene);
+    let place = match &scene.view.selection {
         Some(Selection::Fix(id)) => plan.fix(id).map(|fix| fix.position),
         Some(Selection::Runway(id)) => plan.runway(id).map(|runway| runway.threshold),
         _ => None,
     };
-    ctx.copy_text(legs.or_else(|| place().map(crate::units::position))?);
+    let place = place.filter(|_| scene.view.also.is_empty()).map(crate::units::position);
+    let set: Vec<Id> = match &scene.view.selection {
+        Some(Selection::Stage(id)) => plan.stage(id)?.legs.iter().map(|leg| leg.id.clone()).collect(),
+        _ => scene.selected_set(),
+    };
+    ctx.copy_text(place.or_else(|| clipboard::copy(plan, &set))?);
     Some(())
 }
 
 fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
-    let legs = canvas.scene.selected_legs();
-    if !legs.is_empty() && copy(ctx, canvas).is_some() {
-        queue.edit(create::delete_legs(canvas.scene.document.plan(), &legs));
+    let set = canvas.scene.selected_set();
+    if !set.is_empty() && copy(ctx, canvas).is_some() {
+        queue.edit(create::delete_set(canvas.scene.document.plan(), &set));
     }
 }
 
@@ -95,14 +99,20 @@ fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Que
     }
 }
 
-/// Puts legs into the plan and selects them, or says why that can't be.
+/// Puts what was pasted into the plan and selects it, or says why that can't be.
 fn put(pasted: Result<Pasted, String>, queue: &mut Queue) {
     match pasted {
-        Ok(Pasted { legs, edit }) => {
+        Ok(Pasted { legs, things, edit }) => {
             queue.edit(edit);
-            let mut legs = legs.into_iter();
-            queue.view(ViewCommand::Select(legs.next().map(Selection::Leg)));
-            legs.for_each(|leg| queue.view(ViewCommand::Toggle(leg)));
+            let things = things.into_iter().filter_map(|thing| match thing {
+                Thing::Fix(fix) => Some(Selection::Fix(fix.id)),
+                Thing::Zone(zone) => Some(Selection::Zone(zone.id)),
+                Thing::Runway(runway) => Some(Selection::Runway(runway.id)),
+                Thing::Variable(_) | Thing::Procedure(_) | Thing::EmergencyPlan(_) => None,
+            });
+            let mut made = legs.into_iter().map(Selection::Leg).chain(things);
+            queue.view(ViewCommand::Select(made.next()));
+            made.for_each(|other| queue.view(ViewCommand::Toggle(other)));
         }
         Err(why) => queue.view(ViewCommand::Notice(why)),
     }

@@ -60,14 +60,14 @@ pub fn add(
         }
     }
     if flown.is_empty() {
-        return Ok(Pasted { legs: Vec::new(), edit: Edit::All(edits) });
+        return Ok(Pasted { legs: Vec::new(), things: Vec::new(), edit: Edit::All(edits) });
     }
     let Some(Aim::Spot(at)) = new_leg::aim(&with, selected, &Side::Behind) else {
         return Err("This plan has no stage to add legs to: add one in the plan's list (＋).".into());
     };
-    let Pasted { legs, edit } = legs(&flown, at, None, &with)?;
+    let Pasted { legs, things, edit } = legs(&flown, at, None, &with)?;
     edits.push(edit);
-    Ok(Pasted { legs, edit: Edit::All(edits) })
+    Ok(Pasted { legs, things, edit: Edit::All(edits) })
 }
 
 /// So many figures can be added to a plan.
@@ -131,7 +131,7 @@ pub fn legs(
         plan = edit.apply(&plan).map_err(|error| error.to_string())?;
         edits.push(edit);
     }
-    Ok(Pasted { legs, edit: Edit::All(edits) })
+    Ok(Pasted { legs, things: Vec::new(), edit: Edit::All(edits) })
 }
 
 fn drawn(shape: &Shape) -> (LegChoice, Drawn) {

@@ -69,7 +69,7 @@ fn draft(painter: &Painter, view: &View, sketch: &Sketch, colour: Color32, p: &P
 fn is_looked_at(scene: &Scene<'_>, leg: &Id, stage: &Id) -> bool {
     let pointed = scene.view.pointed.as_ref();
     let selected = match &scene.view.selection {
-        Some(Selection::Leg(id)) => id == leg || scene.view.also.contains(leg),
+        Some(selected) if selected.is_in_sets() => scene.is_selected(&Selection::Leg(leg.clone())),
         Some(Selection::Stage(id)) => id == stage,
         _ => false,
     };

@@ -50,6 +50,10 @@ impl Panel for Inspector {
 fn selected(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let plan = scene.document.plan();
     let legs = scene.selected_legs();
+    let set = scene.selected_set();
+    if set.len() > 1 && set.len() > legs.len() {
+        return together::mixed(ui, plan, &set, queue);
+    }
     if legs.len() > 1 {
         let drafts: Vec<Draft> =
             legs.iter().filter_map(|leg| Draft::of(plan, &Subject::Leg(leg.clone()))).collect();

@@ -167,8 +167,8 @@ pub struct ViewState {
     pub rename: Option<Selection>,
     /// What is selected.
     pub selection: Option<Selection>,
-    /// Legs that are selected besides a leg.
-    pub also: BTreeSet<Id>,
+    /// Legs, fixes, zones and runways that are selected besides one of these.
+    pub also: BTreeSet<Selection>,
     /// Whose problem the pointer is on.
     pub pointed: Option<Id>,
     /// The dialog of the maps is open.
@@ -221,25 +221,23 @@ impl ViewState {
         self.selection = selection;
         self.also.clear();
     }
-    /// Adds a leg to those that are selected, or takes it out.
-    pub fn toggle(&mut self, leg: Id) {
+    /// Adds a leg, fix, zone or runway to what is selected, or takes it out.
+    pub fn toggle(&mut self, what: Selection) {
         match &self.selection {
-            Some(Selection::Leg(first)) if *first == leg => {
-                self.selection = self.also.pop_first().map(Selection::Leg);
-            }
-            Some(Selection::Leg(_)) => {
-                if !self.also.remove(&leg) {
-                    self.also.insert(leg);
+            Some(first) if *first == what => self.selection = self.also.pop_first(),
+            Some(first) if first.is_in_sets() => {
+                if !self.also.remove(&what) {
+                    self.also.insert(what);
                 }
             }
-            _ => self.select(Some(Selection::Leg(leg))),
+            _ => self.select(Some(what)),
         }
     }
     /// Selects every leg from the selected one to this one, where they are neighbours; else adds it.
     pub fn extend(&mut self, leg: Id, plan: &FlightPlan) {
         match self.between(&leg, plan) {
-            Some(legs) => self.also.extend(legs),
-            None => self.toggle(leg),
+            Some(legs) => self.also.extend(legs.into_iter().map(Selection::Leg)),
+            None => self.toggle(Selection::Leg(leg)),
         }
     }
     fn between(&self, leg: &Id, plan: &FlightPlan) -> Option<Vec<Id>> {
@@ -352,18 +350,34 @@ impl<'a> Scene<'a> {
     }
     /// Is this selected?
     pub fn is_selected(&self, selection: &Selection) -> bool {
-        self.view.selection.as_ref() == Some(selection)
-            || matches!(selection, Selection::Leg(id) if self.view.also.contains(id))
+        self.view.selection.as_ref() == Some(selection) || self.view.also.contains(selection)
     }
     /// The legs that are selected and still in the plan, in its order.
     pub fn selected_legs(&self) -> Vec<Id> {
-        let Some(Selection::Leg(first)) = &self.view.selection else { return Vec::new() };
-        if self.view.also.is_empty() {
-            return self.document.plan().leg(first).map(|_| first.clone()).into_iter().collect();
+        let plan = self.document.plan();
+        match &self.view.selection {
+            Some(Selection::Leg(leg)) if self.view.also.is_empty() => {
+                plan.leg(leg).map(|_| leg.clone()).into_iter().collect()
+            }
+            Some(first) if first.is_in_sets() && !self.view.also.is_empty() => {
+                let legs = plan.all_legs();
+                let ids = legs.iter().map(|context| context.leg.id.clone());
+                ids.filter(|id| self.is_selected(&Selection::Leg(id.clone()))).collect()
+            }
+            _ => Vec::new(),
         }
-        let legs = self.document.plan().all_legs();
-        let ids = legs.iter().map(|context| &context.leg.id);
-        ids.filter(|&id| id == first || self.view.also.contains(id)).cloned().collect()
+    }
+    /// All legs, fixes, zones and runways that are selected and still in the plan.
+    pub fn selected_set(&self) -> Vec<Id> {
+        let plan = self.document.plan();
+        let all = self.view.selection.iter().chain(&self.view.also);
+        let things = all.filter(|what| match what {
+            Selection::Fix(id) => plan.fix(id).is_some(),
+            Selection::Zone(id) => plan.zone(id).is_some(),
+            Selection::Runway(id) => plan.runway(id).is_some(),
+            _ => false,
+        });
+        self.selected_legs().into_iter().chain(things.map(|what| what.id().clone())).collect()
     }
 }
 

@@ -325,7 +325,8 @@ impl Table {
         let together = std::mem::take(&mut self.before_click);
         if together.contains(&leg) {
             queue.view(ViewCommand::Select(Some(Selection::Leg(leg.clone()))));
-            together.into_iter().filter(|id| *id != leg).for_each(|id| queue.view(ViewCommand::Toggle(id)));
+            let others = together.into_iter().filter(|id| *id != leg).map(Selection::Leg);
+            others.for_each(|other| queue.view(ViewCommand::Toggle(other)));
         }
     }
 
@@ -333,7 +334,7 @@ impl Table {
     fn choose(&mut self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let modifiers = ui.input(|i| i.modifiers);
         match (self.current(scene), modifiers.command, modifiers.shift) {
-            (Some(Selection::Leg(leg)), true, _) => queue.view(ViewCommand::Toggle(leg)),
+            (Some(leg @ Selection::Leg(_)), true, _) => queue.view(ViewCommand::Toggle(leg)),
             (Some(Selection::Leg(leg)), _, true) => queue.view(ViewCommand::Extend(leg)),
             _ => self.select(scene, queue),
         }

@@ -329,11 +329,11 @@ impl Problems {
     }
 }
 
-/// What a click does: with Ctrl or Shift, legs are selected together.
+/// What a click does: with Ctrl, what has a place is selected together, with Shift legs.
 fn chosen(ui: &Ui, row: &Row) -> ViewCommand {
     let modifiers = ui.input(|i| i.modifiers);
     match &row.selection {
-        Some(Selection::Leg(id)) if modifiers.command => ViewCommand::Toggle(id.clone()),
+        Some(what) if modifiers.command && what.is_in_sets() => ViewCommand::Toggle(what.clone()),
         Some(Selection::Leg(id)) if modifiers.shift => ViewCommand::Extend(id.clone()),
         other => ViewCommand::Select(other.clone()),
     }

@@ -53,9 +53,9 @@ fn what_is_behind_the_aircraft_cannot_be_moved() {
         window.steps(1);
     }
     window.steps(2);
-    assert!(!moves(&mut window, "Move the selected legs", vec2(30.0, 30.0)));
+    assert!(!moves(&mut window, "Move what is selected", vec2(30.0, 30.0)));
     // on the ground again everything is ahead
     window.receive_position(true);
-    assert!(moves(&mut window, "Move the selected legs", vec2(30.0, 30.0)));
+    assert!(moves(&mut window, "Move what is selected", vec2(30.0, 30.0)));
     assert!(window.harness.query_by_label("Fix A").is_some());
 }

@@ -5,6 +5,7 @@ use super::{SQUARE, Window};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, vec2};
 use flight_plan::create::LegChoice;
 use flight_plan::{Id, LegKind, ScanEntry, TurnDirection, Value, transform};
+use gcs_app::command::Selection;
 use geometry::LatLon;
 
 fn window() -> Window {
@@ -202,14 +203,14 @@ fn places(window: &Window, legs: &[Id]) -> Vec<LatLon> {
 fn what_is_drawn_around_with_shift_moves_as_one() {
     let (mut window, legs) = group();
     let before = places(&window, &legs);
-    let grip = window.centre("Move the selected legs");
+    let grip = window.centre("Move what is selected");
     window.drag(grip, vec2(40.0, -30.0));
     let after = places(&window, &legs);
     for (a, b) in [(0, 1), (1, 2), (2, 0)] {
         let (was, is) = (before[a].distance_m(before[b]), after[a].distance_m(after[b]));
         assert!((was - is).abs() < 0.5 && before[a].distance_m(after[a]) > 10.0, "{was} {is}");
     }
-    assert!(window.centre("Move the selected legs").distance(grip + vec2(40.0, -30.0)) < 3.0);
+    assert!(window.centre("Move what is selected").distance(grip + vec2(40.0, -30.0)) < 3.0);
     window.click("Undo");
     assert_eq!(places(&window, &legs), before, "one step");
 }
@@ -218,13 +219,13 @@ fn what_is_drawn_around_with_shift_moves_as_one() {
 fn a_set_turns_and_scales_by_its_handles() {
     let (mut window, legs) = group();
     let before = places(&window, &legs);
-    let grip = window.centre("Scale the selected legs");
+    let grip = window.centre("Scale what is selected");
     window.drag(grip, vec2(60.0, 50.0));
     let larger = places(&window, &legs);
     let ratio = |a: usize, b: usize| larger[a].distance_m(larger[b]) / before[a].distance_m(before[b]);
     assert!(ratio(0, 1) > 1.2 && (ratio(0, 1) - ratio(1, 2)).abs() < 1e-3);
     window.click("Undo");
-    let grip = window.centre("Turn the selected legs");
+    let grip = window.centre("Turn what is selected");
     window.drag(grip, vec2(90.0, 60.0));
     let turned = places(&window, &legs);
     let by = |a: usize, b: usize| {
@@ -253,5 +254,5 @@ fn a_click_with_shift_adds_a_leg_and_takes_it_out() {
     }
     window.steps(2);
     assert_eq!(window.app().view().also.len(), 1);
-    assert!(!window.app().view().also.contains("leg2"));
+    assert!(!window.app().view().also.contains(&Selection::Leg("leg2".into())));
 }

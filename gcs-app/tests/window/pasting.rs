@@ -92,6 +92,46 @@ fn a_set_of_legs_is_copied_and_pasted_as_one() {
 }
 
 #[test]
+fn legs_fixes_and_zones_are_one_set() {
+    let zone = r#"<zones><keepOut id="village" lat="36.3300" lon="-84.1900" radius="150"/></zones><mainPlan"#;
+    let fix = r#"<fix id="D" lat="36.311787" lon="-84.184407"/><fix id="E" lat="36.3280" lon="-84.1780"/>"#;
+    let plan = SQUARE.replace(r#"<fix id="D" lat="36.311787" lon="-84.184407"/>"#, fix);
+    let mut window = Window::open(&plan.replacen("<mainPlan", zone, 1));
+    window.until_analysed();
+    window.select_row(("TF side4", 0));
+    window.steps(2);
+    for row in ["FIX E", "OUT village"] {
+        window.select_row_with((row, 0), egui::Modifiers::COMMAND);
+        window.steps(2);
+    }
+    assert!(window.shows("3 together"));
+    let before = window.plan();
+    let grip = window.centre("Move what is selected");
+    window.drag(grip, vec2(-25.0, 30.0));
+    let moved = window.plan();
+    assert_ne!(moved.zone(&"village".into()), before.zone(&"village".into()));
+    assert_ne!(moved.fix(&"E".into()), before.fix(&"E".into()));
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+    let text = taken(&mut window, Event::Copy);
+    window.paste(&text);
+    let pasted = window.plan();
+    assert_eq!((pasted.zones.len(), pasted.fixes.len(), legs(&window).len()), (2, 6, 5));
+    assert_eq!(window.app().view().also.len(), 2, "what was pasted is selected");
+    window.press(egui::Key::Delete);
+    assert_eq!(window.plan(), before, "and goes as one");
+}
+
+#[test]
+fn a_stage_is_copied_as_its_legs_and_a_zone_as_a_zone() {
+    let mut window = window();
+    window.select_row(("ENR circuit", 0));
+    window.steps(2);
+    let text = taken(&mut window, Event::Copy);
+    assert!(text.contains("side1") && text.contains("side4"), "{text}");
+}
+
+#[test]
 fn pasted_coordinates_are_a_waypoint() {
     let mut window = window();
     window.click("TF side4");

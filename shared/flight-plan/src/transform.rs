@@ -1,7 +1,7 @@
-//! Legs moved, turned and scaled together, about a pivot.
+//! Legs, fixes, zones and runways moved, turned and scaled together, about a pivot.
 
 use crate::uses::SlotMut;
-use crate::{Edit, FlightPlan, Id, Leg, Part, Place, Value};
+use crate::{Edit, FlightPlan, Id, Leg, Part, Place, Runway, Thing, Value, Zone, ZoneShape};
 use geometry::LatLon;
 use geometry::geodesy::normalise_360;
 use std::collections::HashSet;
@@ -72,18 +72,21 @@ impl Motion {
         }
     }
 
-    /// Legs of a plan, with what is inside them. A fix that no other leg uses goes with them; of another fix, they leave.
-    /// What is bound to a variable stays where the variable says.
-    pub fn edit(&self, plan: &FlightPlan, legs: &[Id]) -> Edit {
+    /// A set of a plan's legs, with what is inside them, fixes, zones and runways. A fix that is not of the set goes with its legs
+    /// if no other leg uses it; of another one, they leave. What is bound to a variable stays where the variable says.
+    pub fn edit(&self, plan: &FlightPlan, set: &[Id]) -> Edit {
         if self.is_still() {
             return Edit::All(Vec::new());
         }
-        let together = with_inner(plan, legs);
-        let outside: HashSet<Id> = fixes(plan, |id| !together.contains(id));
-        let moved: HashSet<Id> = fixes(plan, |id| together.contains(id));
+        let together = with_inner(plan, set);
+        let used: HashSet<Id> = fixes(plan, |id| !together.contains(id));
+        let outside: HashSet<Id> = used.into_iter().filter(|fix| !set.contains(fix)).collect();
+        let mut moved: HashSet<Id> = fixes(plan, |id| together.contains(id));
+        moved.extend(set.iter().cloned());
         let own = moved.difference(&outside).filter_map(|id| plan.fix(id));
         let mut edits: Vec<Edit> =
             own.map(|fix| Edit::MoveFix { fix: fix.id.clone(), to: self.place(fix.position) }).collect();
+        edits.extend(self.zones_and_runways(plan, set));
         let elsewhere = |id: &Id| plan.fix(id).map(|fix| fix.position).filter(|_| outside.contains(id));
         for context in plan.all_legs() {
             if !together.contains(&context.leg.id) || !context.leg.body().is_empty() {
@@ -96,6 +99,64 @@ impl Motion {
             }
         }
         Edit::All(edits)
+    }
+
+    fn zones_and_runways(&self, plan: &FlightPlan, set: &[Id]) -> Vec<Edit> {
+        let zones = plan.zones.iter().filter(|zone| set.contains(&zone.id)).map(|zone| {
+            let mut zone = zone.clone();
+            self.zone(&mut zone);
+            (zone.id.clone(), Thing::Zone(zone))
+        });
+        let runways = plan.runways.iter().filter(|runway| set.contains(&runway.id)).map(|runway| {
+            let mut runway = runway.clone();
+            self.runway(&mut runway);
+            (runway.id.clone(), Thing::Runway(runway))
+        });
+        zones.chain(runways).map(|(id, thing)| Edit::Replace { id, with: Box::new(thing) }).collect()
+    }
+
+    /// A zone of the set.
+    pub(crate) fn zone(&self, zone: &mut Zone) {
+        match &mut zone.shape {
+            ZoneShape::Circle { centre, radius_m } => {
+                *centre = self.place(*centre);
+                *radius_m *= self.scale;
+            }
+            ZoneShape::Polygon(corners) => corners.iter_mut().for_each(|at| *at = self.place(*at)),
+        }
+    }
+
+    /// A runway of the set; it keeps its length.
+    pub(crate) fn runway(&self, runway: &mut Runway) {
+        runway.threshold = self.place(runway.threshold);
+        runway.approach_entry.iter_mut().for_each(|at| *at = self.place(*at));
+        if self.turn_deg != 0.0 {
+            runway.heading_deg = normalise_360(runway.heading_deg + self.turn_deg);
+        }
+    }
+}
+
+/// The places of a set of legs, fixes, zones and runways.
+pub fn places_of(plan: &FlightPlan, set: &[Id]) -> Vec<LatLon> {
+    let set: HashSet<&Id> = set.iter().collect();
+    let contexts = plan.all_legs();
+    let legs = contexts.iter().filter(|context| set.contains(&context.leg.id));
+    let mut found: Vec<LatLon> = legs.flat_map(|context| places(plan, context.leg)).collect();
+    found.extend(plan.fixes.iter().filter(|fix| set.contains(&fix.id)).map(|fix| fix.position));
+    found.extend(plan.zones.iter().filter(|zone| set.contains(&zone.id)).flat_map(outline));
+    for runway in plan.runways.iter().filter(|runway| set.contains(&runway.id)) {
+        found.extend([runway.threshold, runway.threshold.destination(runway.heading_deg, runway.length_m)]);
+    }
+    found.retain(|at| at.is_valid());
+    found
+}
+
+fn outline(zone: &Zone) -> Vec<LatLon> {
+    match &zone.shape {
+        ZoneShape::Circle { centre, radius_m } => {
+            [0.0, 90.0, 180.0, 270.0].map(|bearing| centre.destination(bearing, *radius_m)).to_vec()
+        }
+        ZoneShape::Polygon(corners) => corners.clone(),
     }
 }
 

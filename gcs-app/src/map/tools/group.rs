@@ -1,4 +1,4 @@
-//! Several selected legs as one: a box around them, and handles that move, turn and scale them together.
+//! Several selected legs, fixes, zones and runways as one: a box around them, and handles that move, turn and scale them together.
 
 use super::pen::way;
 use super::{Canvas, Grip};
@@ -7,7 +7,7 @@ use crate::map::text;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use flight_plan::transform::{self, Motion};
-use flight_plan::{FlightPlan, Id};
+use flight_plan::{FlightPlan, Id, Leg, Place};
 use geometry::LatLon;
 use std::sync::Arc;
 
@@ -33,9 +33,9 @@ impl Does {
 
     fn name(self) -> &'static str {
         match self {
-            Self::Move => "Move the selected legs",
-            Self::Turn => "Turn the selected legs",
-            Self::Scale => "Scale the selected legs",
+            Self::Move => "Move what is selected",
+            Self::Turn => "Turn what is selected",
+            Self::Scale => "Scale what is selected",
         }
     }
 
@@ -52,7 +52,7 @@ impl Does {
 #[derive(Debug)]
 struct Drag {
     plan: Arc<FlightPlan>,
-    legs: Vec<Id>,
+    set: Vec<Id>,
     does: Does,
     /// Where the grip was.
     from: Pos2,
@@ -60,14 +60,14 @@ struct Drag {
     motion: Motion,
 }
 
-/// The handles around the selected legs.
+/// The handles around what is selected.
 #[derive(Debug, Default)]
 pub struct Group {
     drag: Option<Drag>,
 }
 
 impl Group {
-    /// None if fewer than two legs are selected.
+    /// None if fewer than two things are selected.
     pub fn grips(&self, canvas: &Canvas<'_>) -> Vec<Grip> {
         let Some(around) = around(canvas) else { return Vec::new() };
         let grips = (FIRST_KEY..).zip(Does::ALL);
@@ -83,7 +83,7 @@ impl Group {
             let pivot = canvas.view.geo(around.center());
             Drag {
                 plan: canvas.scene.document.plan().clone(),
-                legs: canvas.scene.selected_legs(),
+                set: canvas.scene.selected_set(),
                 does: *does,
                 from: does.at(around),
                 pivot,
@@ -98,7 +98,7 @@ impl Group {
         let Some(drag) = &mut self.drag else { return false };
         drag.motion = motion(drag, to, canvas);
         if drag.motion.to.is_valid() {
-            queue.document(DocumentCommand::DragEdit(drag.motion.edit(&drag.plan, &drag.legs)));
+            queue.document(DocumentCommand::DragEdit(drag.motion.edit(&drag.plan, &drag.set)));
         }
         true
     }
@@ -156,28 +156,36 @@ fn words(drag: &Drag, canvas: &Canvas<'_>) -> String {
     }
 }
 
-/// The box around the selected legs on the screen, if they are several.
+/// The box around what is selected on the screen, if that is several things.
 fn around(canvas: &Canvas<'_>) -> Option<Rect> {
     if canvas.scene.view.also.is_empty() {
         return None;
     }
-    let (scene, mut around, mut legs) = (canvas.scene, Rect::NOTHING, 0);
-    for context in scene.document.plan().all_legs() {
-        if scene.is_selected(&Selection::Leg(context.leg.id.clone())) {
-            legs += 1;
-            let places = transform::places(scene.document.plan(), context.leg);
-            places.into_iter().for_each(|at| around.extend_with(canvas.view.place(at)));
-        }
-    }
-    (legs > 1 && around.is_finite()).then(|| around.expand(AROUND))
+    let set = canvas.scene.selected_set();
+    let mut around = Rect::NOTHING;
+    let places = transform::places_of(canvas.scene.document.plan(), &set);
+    places.into_iter().for_each(|at| around.extend_with(canvas.view.place(at)));
+    (set.len() > 1 && around.is_finite()).then(|| around.expand(AROUND))
 }
 
-/// The legs that have a place in a part of the screen, those of emergency plans too.
-pub fn legs_within(area: Rect, canvas: &Canvas<'_>) -> Vec<Id> {
+/// What is selected in a part of the screen: the legs that have a place there, those of emergency plans too, the fixes there that
+/// none of these uses, and the zones that are there as a whole.
+pub fn within(area: Rect, canvas: &Canvas<'_>) -> Vec<Selection> {
     let plan = canvas.scene.document.plan();
-    let within =
-        |leg| transform::places(plan, leg).into_iter().any(|at| area.contains(canvas.view.place(at)));
+    let is_there = |at: LatLon| area.contains(canvas.view.place(at));
     let contexts = plan.all_legs();
-    let found = contexts.iter().filter(|context| within(context.leg));
-    found.map(|context| context.leg.id.clone()).collect()
+    let legs: Vec<&Leg> = contexts
+        .iter()
+        .map(|context| context.leg)
+        .filter(|leg| transform::places(plan, leg).into_iter().any(is_there))
+        .collect();
+    let uses = |fix: &Id| legs.iter().any(|leg| matches!(leg.place(), Some(Place::Fix(id)) if id == fix));
+    let fixes = plan.fixes.iter().filter(|fix| is_there(fix.position) && !uses(&fix.id));
+    let zones = plan.zones.iter().filter(|zone| {
+        let places = transform::places_of(plan, std::slice::from_ref(&zone.id));
+        !places.is_empty() && places.into_iter().all(is_there)
+    });
+    let ids = legs.iter().map(|leg| Selection::Leg(leg.id.clone()));
+    let fixes = fixes.map(|fix| Selection::Fix(fix.id.clone()));
+    ids.chain(fixes).chain(zones.map(|zone| Selection::Zone(zone.id.clone()))).collect()
 }

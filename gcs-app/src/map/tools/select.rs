@@ -2,7 +2,7 @@
 //! between corners, and in the middle of legs, become new ones when they are dragged. A drag is one undo step.
 
 use super::bands;
-use super::group::{Group, legs_within};
+use super::group::{Group, within};
 use super::handles::{draw, draw_labels, label, near, value};
 use super::pen::{Mark, way};
 use super::pick::{line_under, lines_near, selection};
@@ -149,7 +149,7 @@ impl Tool for Select {
         // hover forgets it until its owner is the selected one
         self.corner = corner.filter(|what| canvas.scene.is_selected(&selection(plan, what))).cloned();
         queue.view(match picked {
-            Some(Selection::Leg(leg)) if pointer.adds => ViewCommand::Toggle(leg),
+            Some(what) if pointer.adds && what.is_in_sets() => ViewCommand::Toggle(what),
             _ if pointer.adds => return,
             picked => ViewCommand::Select(picked),
         });
@@ -186,11 +186,8 @@ impl Tool for Select {
     }
 
     fn sweep(&mut self, area: Rect, canvas: &Canvas<'_>, queue: &mut Queue) {
-        for leg in legs_within(area, canvas) {
-            if !canvas.scene.is_selected(&Selection::Leg(leg.clone())) {
-                queue.view(ViewCommand::Toggle(leg));
-            }
-        }
+        let new = within(area, canvas).into_iter().filter(|what| !canvas.scene.is_selected(what));
+        new.for_each(|what| queue.view(ViewCommand::Toggle(what)));
     }
 
     fn release(&mut self, queue: &mut Queue) {
@@ -300,7 +297,7 @@ impl Select {
 fn why_not(pointer: Pointer, handle: Option<&Handle>, canvas: &Canvas<'_>) -> Option<String> {
     let Some(handle) = handle else {
         let grabs = pointer.grip.is_some() && !pointer.clicks;
-        return grabs.then(|| guard::of_legs(canvas.scene, &canvas.scene.selected_legs())).flatten();
+        return grabs.then(|| guard::of_legs(canvas.scene, &canvas.scene.selected_set())).flatten();
     };
     let changes = !pointer.clicks || handle.what.is_choice();
     changes.then(|| guard::of_handle(canvas.scene, &handle.what)).flatten()

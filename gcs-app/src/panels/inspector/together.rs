@@ -20,6 +20,17 @@ pub fn head(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
     raise(ui, scene, legs, queue);
 }
 
+/// Of legs, fixes, zones and runways.
+pub fn mixed(ui: &mut Ui, plan: &FlightPlan, set: &[Id], queue: &mut Queue) {
+    let p = theme::of(ui);
+    ui.label(RichText::new(format!("{} together", set.len())).size(15.0).strong());
+    let names: Vec<&str> = set.iter().map(|id| plan.label(id)).collect();
+    ui.add(egui::Label::new(RichText::new(names.join(", ")).color(p.weak)).wrap());
+    if ui.button("Delete them").clicked() {
+        queue.edit(create::delete_set(plan, set));
+    }
+}
+
 /// Below them.
 pub fn foot(ui: &mut Ui, plan: &FlightPlan, legs: &[Id], queue: &mut Queue) {
     ui.add_space(2.0);

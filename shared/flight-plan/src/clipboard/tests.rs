@@ -1,6 +1,7 @@
 use super::*;
 use crate::create::tests::made;
 use crate::template::Template;
+use crate::transform::places;
 use crate::{Act, LegAction, Trigger, check};
 use aircraft::Profile;
 use proptest::prelude::*;
@@ -102,6 +103,26 @@ fn hostile_text_is_refused_in_words() {
         assert!(refused.contains(expected), "{refused}");
     }
     assert!(copy(&plan, &["nothing".into()]).is_none());
+}
+
+#[test]
+fn zones_and_fixes_that_no_leg_names_are_pasted_under_new_names() {
+    let mut plan = made(Template::Patrol);
+    let at = LatLon::new(46.1, 8.1);
+    let fix = crate::create::fix(&plan, at);
+    plan.fixes.push(fix.clone());
+    let shape = crate::ZoneShape::Circle { centre: at, radius_m: 200.0 };
+    let zone = crate::create::zone(&plan, crate::ZoneKind::KeepOut, shape);
+    plan.zones.push(zone.clone());
+    let text = copy(&plan, &[zone.id.clone(), fix.id.clone()]).unwrap();
+    let to = LatLon::new(46.2, 8.3);
+    let pasted = paste(&plan, &text, &spot(&plan), Some(to)).unwrap();
+    assert!(pasted.legs.is_empty());
+    let [Thing::Fix(new_fix), Thing::Zone(new_zone)] = pasted.things.as_slice() else { panic!("{pasted:?}") };
+    assert!(new_fix.id != fix.id && new_zone.id != zone.id);
+    let after = pasted.edit.apply(&plan).unwrap();
+    assert_eq!((after.fixes.len(), after.zones.len()), (plan.fixes.len() + 1, plan.zones.len() + 1));
+    assert!(after.fix(&new_fix.id).unwrap().position.distance_m(to) < 5.0);
 }
 
 #[test]

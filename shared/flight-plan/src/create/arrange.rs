@@ -3,6 +3,7 @@
 use super::branch::merge;
 use super::kind::LegChoice;
 use super::leg::{Drawn, leg};
+use super::thing::remove;
 use crate::{Branch, Call, Edit, FlightPlan, Id, Leg, LegKind, Place, Procedure, Spot, Thing, Value};
 use aircraft::Profile;
 use std::sync::Arc;
@@ -11,6 +12,23 @@ use std::sync::Arc;
 pub fn delete_legs(plan: &FlightPlan, legs: &[Id]) -> Edit {
     let outer = crate::clipboard::outermost(plan, legs).into_iter();
     Edit::All(outer.map(|leg| Edit::DeleteLeg { leg: leg.clone() }).collect())
+}
+
+/// Takes legs, fixes, zones and runways out; legs that stay keep the place of a fix.
+pub fn delete_set(plan: &FlightPlan, set: &[Id]) -> Edit {
+    let (legs, things): (Vec<Id>, Vec<Id>) = set.iter().cloned().partition(|id| plan.any_leg(id).is_some());
+    let mut edits = vec![delete_legs(plan, &legs)];
+    // the legs that go must not come back with the place of a fix
+    let without = edits.first().and_then(|edit| edit.apply(plan).ok());
+    let mut rest = without.unwrap_or_else(|| plan.clone());
+    for thing in things {
+        let edit = remove(&rest, &thing);
+        if let Ok(without) = edit.apply(&rest) {
+            rest = without;
+            edits.push(edit);
+        }
+    }
+    Edit::All(edits)
 }
 
 /// A copy of a leg behind it.

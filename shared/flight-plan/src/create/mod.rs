@@ -13,7 +13,9 @@ mod rearrange;
 mod thing;
 mod trial;
 
-pub use arrange::{delete_legs, duplicate, fork_around, loop_around, procedure_of, shift, unloop};
+pub use arrange::{
+    delete_legs, delete_set, duplicate, fork_around, loop_around, procedure_of, shift, unloop,
+};
 pub use bind::{Numeric, bind, bound_to, named_variable, put_at, unbind, variable_of_fix, variable_of_leg};
 pub use binding::{Binding, bindings};
 pub use branch::{Way, begin_way, delete_leg, insert};

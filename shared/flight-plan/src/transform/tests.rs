@@ -90,3 +90,32 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_set_moves_with_its_fixes_zones_and_runways() {
+    let mut plan = made(Template::Patrol);
+    let fix = crate::create::fix(&plan, PIVOT.destination(90.0, 500.0));
+    plan.fixes.push(fix.clone());
+    let shape = ZoneShape::Circle { centre: PIVOT.destination(0.0, 800.0), radius_m: 200.0 };
+    let zone = crate::create::zone(&plan, crate::ZoneKind::KeepOut, shape);
+    plan.zones.push(zone.clone());
+    let runway = plan.runways[0].clone();
+    let set = [fix.id.clone(), zone.id.clone(), runway.id.clone()];
+    let motion =
+        Motion { turn_deg: 90.0, scale: 2.0, ..Motion::shift(PIVOT, PIVOT.destination(180.0, 3000.0)) };
+    let after = motion.edit(&plan, &set).apply(&plan).unwrap();
+    assert!(after.fix(&fix.id).unwrap().position.distance_m(motion.place(fix.position)) < 0.01);
+    let ZoneShape::Circle { centre, radius_m } = after.zone(&zone.id).unwrap().shape else {
+        panic!("no circle")
+    };
+    assert!(centre.distance_m(motion.place(PIVOT.destination(0.0, 800.0))) < 0.01);
+    assert_eq!(radius_m, 400.0);
+    let moved = after.runway(&runway.id).unwrap();
+    assert!(moved.threshold.distance_m(motion.place(runway.threshold)) < 0.01);
+    assert_eq!(
+        (moved.heading_deg, moved.length_m),
+        (normalise_360(runway.heading_deg + 90.0), runway.length_m)
+    );
+    assert_eq!(after.stages, plan.stages, "nothing else moves");
+    assert_eq!(places_of(&plan, &set).len(), 7, "a fix, four places of a rim, two ends");
+}
