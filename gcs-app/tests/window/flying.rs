@@ -335,7 +335,7 @@ fn iteration_and_active_leg_are_shown() {
 fn an_edit_in_flight_is_a_draft_until_it_is_pushed() {
     let (mut window, _) = flying();
     assert!(window.shows("active"));
-    let at = window.centre("Fix A");
+    let at = window.centre("Fix C");
     window.drag(at, egui::vec2(40.0, 0.0));
     window.until_analysed();
     assert!(window.shows("edited ≠ aboard"));
