@@ -56,7 +56,7 @@ fn through_zones(
         when,
         home_m,
     };
-    for (zone, breach, _) in view.zones.breaches(start, end, view.terrain) {
+    for (_, (zone, breach, _)) in view.zones.breaches(&[(start, end)], view.terrain) {
         if !seen.insert(zone.id.clone()) {
             continue;
         }

@@ -5,7 +5,7 @@ use super::stay_in::StayIn;
 use aircraft::Profile;
 use aircraft::power::demanded_power_w;
 use flight_plan::{AltitudeReference, Id, Program, Value, Zone, ZoneKind, ZoneShape, ZoneTime};
-use geometry::zone::{Band, Breach, Rule, Shape, Stretch, Zone as Ground, ZoneError};
+use geometry::zone::{Band, Breach, Neighbourhood, Rule, Shape, Stretch, Zone as Ground, ZoneError};
 use geometry::{LatLon, PathElement};
 use terrain::Terrain;
 
@@ -61,6 +61,9 @@ pub(super) enum When {
     From(f64),
 }
 
+/// A zone, how it is broken the most, and whether only perhaps.
+pub(super) type Broken<'z> = (&'z Prepared, Breach, bool);
+
 impl Zones {
     pub fn of(program: &Program, profile: &Profile, conditions: Conditions) -> Self {
         let power_w = demanded_power_w(profile, profile.cruise_airspeed_mps, 0.0, 1.0);
@@ -98,33 +101,53 @@ impl Zones {
 
     /// A zone to stay in that has times, if none of the others is always active.
     pub fn timed_keep_in(&self) -> Option<&Id> {
-        let mut keep_in = self.zones.iter().filter(|zone| zone.kind == ZoneKind::KeepIn);
-        let first = keep_in.clone().next()?;
+        let mut keep_in = self.to(ZoneKind::KeepIn).peekable();
+        let first = *keep_in.peek()?;
         keep_in.all(|zone| !zone.active.is_empty()).then_some(&first.id)
     }
 
     /// A zone to stay in is active there and then, or may be.
     pub fn confines(&self, at: At) -> bool {
-        self.active(ZoneKind::KeepIn, at).next().is_some()
+        self.active(self.to(ZoneKind::KeepIn), at).next().is_some()
     }
 
-    /// Where a straight piece of track breaks zones: each zone to keep out of, and the nearest of those to stay in; true: it
-    /// may be that the zone is not active then.
-    pub fn breaches(&self, from: At, to: At, terrain: &dyn Terrain) -> Vec<(&Prepared, Breach, bool)> {
-        let keep_out = self.active(ZoneKind::KeepOut, from);
-        let piece = Piece::new(from, to, terrain);
-        let intrusion = |(zone, perhaps)| Some((zone, Prepared::intrusion(zone, &piece)?, perhaps));
-        let mut found: Vec<_> = keep_out.filter_map(intrusion).collect();
-        let keep_in: Vec<(&Prepared, bool)> = self.active(ZoneKind::KeepIn, from).collect();
-        found.extend(StayIn { margin_m: self.margin_m, terrain }.left(&keep_in, from, to));
+    /// Where pieces of track break zones, by the number of the piece: each zone to keep out of, and the nearest of those to stay in;
+    /// true: it may be that the zone is not active then. Quick if the pieces are near to each other.
+    pub fn breaches(&self, track: &[(At, At)], terrain: &dyn Terrain) -> Vec<(usize, Broken<'_>)> {
+        let pieces: Vec<Piece> = track.iter().map(|(from, to)| Piece::new(*from, *to, terrain)).collect();
+        let Some(place) = Neighbourhood::of(pieces.iter().map(|piece| &piece.amsl)) else {
+            return Vec::new();
+        };
+        let is_near = |zone: &&Prepared| zone.outline.may_be_near_any(&place);
+        let keep_out: Vec<&Prepared> = self.to(ZoneKind::KeepOut).filter(is_near).collect();
+        let keep_in: Vec<&Prepared> = self.to(ZoneKind::KeepIn).collect();
+        let keep_in_near: Vec<&Prepared> = keep_in.iter().copied().filter(is_near).collect();
+        let mut found = Vec::new();
+        for (number, (&(from, to), piece)) in track.iter().zip(&pieces).enumerate() {
+            let entered = self.active(keep_out.iter().copied(), from);
+            let intrusion = |(zone, perhaps)| Some((zone, Prepared::intrusion(zone, piece)?, perhaps));
+            found.extend(entered.filter_map(intrusion).map(|broken| (number, broken)));
+            if !self.active(keep_in_near.iter().copied(), from).any(|(zone, _)| zone.holds(piece)) {
+                let all: Vec<(&Prepared, bool)> = self.active(keep_in.iter().copied(), from).collect();
+                let left = StayIn { margin_m: self.margin_m, terrain }.left(&all, from, to);
+                found.extend(left.map(|broken| (number, broken)));
+            }
+        }
         found
     }
 
-    /// The zones of a kind that are active, or may be; true: it may be that they are not.
-    fn active(&self, kind: ZoneKind, at: At) -> impl Iterator<Item = (&Prepared, bool)> {
+    fn to(&self, kind: ZoneKind) -> impl Iterator<Item = &Prepared> {
+        self.zones.iter().filter(move |zone| zone.kind == kind)
+    }
+
+    /// Those of some zones that are active, or may be; true: it may be that they are not.
+    fn active<'z>(
+        &self,
+        zones: impl Iterator<Item = &'z Prepared>,
+        at: At,
+    ) -> impl Iterator<Item = (&'z Prepared, bool)> {
         let of_this_home = move |zone: &&Prepared| zone.home_m.is_none_or(|home_m| home_m == at.home_m);
-        let zones = self.zones.iter().filter(move |zone| zone.kind == kind).filter(of_this_home);
-        zones.filter_map(move |zone| {
+        zones.filter(of_this_home).filter_map(move |zone| {
             let Some(start) = self.start_unix_s.filter(|_| !zone.active.is_empty()) else {
                 return Some((zone, false));
             };

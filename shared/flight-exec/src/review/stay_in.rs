@@ -156,7 +156,7 @@ mod tests {
             when: When::At(0.0),
             home_m: 300.0,
         };
-        !zones.breaches(at(from), at(to), &Flat(100.0)).is_empty()
+        !zones.breaches(&[(at(from), at(to))], &Flat(100.0)).is_empty()
     }
 
     /// Each zone has a frame of its own, in which the common edge of 39 km is drawn: what is between the two is no gap.
@@ -216,7 +216,7 @@ mod tests {
             when: When::At(0.0),
             home_m: 300.0,
         };
-        let far_away = all.breaches(at(36.6, -84.595), at(36.6, -84.596), &Flat(100.0));
-        assert_eq!(far_away.first().map(|(zone, ..)| zone.id.to_string()), Some("z0".to_owned()));
+        let far_away = all.breaches(&[(at(36.6, -84.595), at(36.6, -84.596))], &Flat(100.0));
+        assert_eq!(far_away.first().map(|(_, (zone, ..))| zone.id.to_string()), Some("z0".to_owned()));
     }
 }

@@ -17,6 +17,8 @@ use std::ops::Range;
 
 /// None of the zones to stay in is active.
 const UNCONFINED: &str = "keep-in-not-active";
+/// So many pieces of a track are held against zones together: a kilometre or so, as far as zones are large.
+const AT_ONCE: usize = 64;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     for (zone, error) in &view.zones.refused {
@@ -103,14 +105,14 @@ struct Findings<'a> {
 
 impl<'a> Findings<'a> {
     fn take(&mut self, view: &'a View, track: impl Iterator<Item = (&'a Id, At)>) {
-        let mut before: Option<(&Id, At)> = None;
-        for (leg, to) in track {
-            if let Some((leg, from)) = before {
-                for (zone, breach, perhaps) in view.zones.breaches(from, to, view.terrain) {
-                    self.add(Found { leg, zone, breach, perhaps });
-                }
+        let track: Vec<(&Id, At)> = track.collect();
+        let (legs, pieces): (Vec<&Id>, Vec<(At, At)>) =
+            track.iter().zip(track.iter().skip(1)).map(|((leg, from), (_, to))| (*leg, (*from, *to))).unzip();
+        for (legs, pieces) in legs.chunks(AT_ONCE).zip(pieces.chunks(AT_ONCE)) {
+            for (number, (zone, breach, perhaps)) in view.zones.breaches(pieces, view.terrain) {
+                let Some(&leg) = legs.get(number) else { continue };
+                self.add(Found { leg, zone, breach, perhaps });
             }
-            before = Some((leg, to));
         }
     }
 

@@ -43,6 +43,19 @@ impl Ball {
         Self { middle_m, radius_m: half_m + (MIN_CURVATURE_M - below_m) + ROUNDING_M }
     }
 
+    /// All of some balls; `None`: there are none. What is not a number may be anywhere.
+    pub fn around_all(mut balls: impl Iterator<Item = Self>) -> Option<Self> {
+        let mut whole = balls.next()?;
+        for ball in balls {
+            let reach_m = squared_distance_m2(whole.middle_m, ball.middle_m).sqrt() + ball.radius_m;
+            if reach_m.is_nan() {
+                return Some(Self { middle_m: [f64::NAN; 3], radius_m: 0.0 });
+            }
+            whole.radius_m = whole.radius_m.max(reach_m + ROUNDING_M);
+        }
+        Some(whole)
+    }
+
     /// Larger by a distance, metres.
     pub fn grown(self, by_m: f64) -> Self {
         Self { radius_m: self.radius_m + by_m, ..self }

@@ -149,6 +149,17 @@ impl Worst {
     }
 }
 
+/// A ball with some stretches in it.
+#[derive(Debug, Clone, Copy)]
+pub struct Neighbourhood(Ball);
+
+impl Neighbourhood {
+    /// `None`: there are no stretches.
+    pub fn of<'a>(stretches: impl Iterator<Item = &'a Stretch>) -> Option<Self> {
+        Ball::around_all(stretches.map(|stretch| stretch.ball)).map(Self)
+    }
+}
+
 impl Stretch {
     /// A path element, with the altitude at its start and at its end, metres.
     pub fn new(element: PathElement, (start_altitude_m, end_altitude_m): (f64, f64)) -> Self {
@@ -229,10 +240,17 @@ impl Zone {
     /// Whether a stretch may be in the zone, or nearer than the margin: quick, and no more than a first look.
     #[inline]
     pub fn may_be_near(&self, stretch: &Stretch) -> bool {
-        self.ball.meets(&stretch.ball)
+        self.may_be_near_any(&Neighbourhood(stretch.ball))
+    }
+
+    /// Whether one of some stretches may be in the zone, or nearer than the margin: one look for all of them.
+    #[inline]
+    pub fn may_be_near_any(&self, stretches: &Neighbourhood) -> bool {
+        let Neighbourhood(ball) = stretches;
+        self.ball.meets(ball)
             && match &self.ground {
                 Ground::Circle(_) => true,
-                Ground::Outline(outline) => outline.may_be_near(stretch, self.margin_m),
+                Ground::Outline(outline) => outline.may_be_near(ball, self.margin_m),
             }
     }
 

@@ -64,9 +64,9 @@ impl Outline {
         Ball::new(self.frame.origin(), self.radius_m)
     }
 
-    /// Whether a stretch may be nearer than a margin.
-    pub fn may_be_near(&self, stretch: &Stretch, margin_m: f64) -> bool {
-        self.plate.may_be_near(&stretch.ball, margin_m)
+    /// Whether something in a ball may be nearer than a margin.
+    pub fn may_be_near(&self, ball: &Ball, margin_m: f64) -> bool {
+        self.plate.may_be_near(ball, margin_m)
     }
 
     /// The deepest point inside, or nearer to it than a margin.

@@ -237,11 +237,37 @@ proptest! {
         let outer = vec![side(start, -1.0), side(start, 1.0), side(end, 1.0), side(end, -1.0)];
         let zone = Zone::new(&Shape::Polygon { outer, holes: vec![] }, LOW, Rule::KeepOut, 30.0).unwrap();
         let from = side(start.destination(heading_deg, share * length_m), aside);
-        let stretch = line(from, from.destination(course_deg, way_m), (60.0, 60.0));
+        let to = from.destination(course_deg, way_m);
+        let stretch = line(from, to, (60.0, 60.0));
         let Ground::Outline(outline) = &zone.ground else { panic!("a circle") };
         if outline.deepest(&stretch.element, zone.margin_m).is_some() {
             prop_assert!(zone.may_be_near(&stretch) && zone.breach(&stretch).is_some());
+            // among others, wherever they are
+            let before = line(to.destination(course_deg, 3.0 * way_m), to, (60.0, 60.0));
+            for stretches in [[before, stretch], [stretch, before]] {
+                let all = Neighbourhood::of(stretches.iter()).unwrap();
+                prop_assert!(zone.may_be_near_any(&all));
+            }
         }
+    }
+}
+
+/// Two pieces of one path are near a zone or far from it together, and what is no number may be anywhere.
+#[test]
+fn one_look_is_enough_for_pieces_of_one_path() {
+    let zone = Zone::new(&Shape::Circle { centre: HERE, radius_m: 500.0 }, LOW, Rule::KeepOut, 30.0).unwrap();
+    let piece = |from_m: f64, to_m: f64| {
+        line(HERE.destination(90.0, from_m), HERE.destination(90.0, to_m), (60.0, 60.0))
+    };
+    let is_near =
+        |pieces: &[Stretch]| Neighbourhood::of(pieces.iter()).is_some_and(|all| zone.may_be_near_any(&all));
+    assert!(is_near(&[piece(3000.0, 1000.0), piece(1000.0, 525.0)]));
+    assert!(!is_near(&[piece(3000.0, 2500.0), piece(2500.0, 2000.0)]));
+    assert!(!is_near(&[]));
+    for pieces in
+        [[piece(3000.0, 2500.0), piece(f64::NAN, 0.0)], [piece(f64::NAN, 0.0), piece(3000.0, 2500.0)]]
+    {
+        assert!(is_near(&pieces));
     }
 }
 
