@@ -7,8 +7,8 @@ use crate::checks::{Checked, Expressions, IncrementalCache, checked, checked_aga
 use crate::expression::{Env, EvalError, Expression};
 use crate::ids::Ids;
 use crate::{
-    Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Leg, Place, Places, Problem, Reading, Stage,
-    Value, xml,
+    Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Leg, LegContext, Place, Places, Problem,
+    Reading, Stage, Value, xml,
 };
 use aircraft::Profile;
 use geometry::LatLon;
@@ -181,6 +181,13 @@ impl Program {
         self.chain(&self.path(id)?).last().copied()
     }
 
+    /// A leg of the plan as it is written, with what is around it; none that only a call makes. Quick in any plan: it is found by
+    /// its place.
+    pub fn written(&self, id: &Id) -> Option<LegContext<'_>> {
+        // a call is replaced where it stands, so what is written has its place in both
+        self.plan.leg_at(&self.path(id)?).filter(|context| context.leg.id == *id)
+    }
+
     /// The emergency plan of a leg (or stage) for a cause.
     ///
     /// The most specific association wins: the leg's own, the enclosing loops' from the inside out, the stage's, the
@@ -293,6 +300,8 @@ mod tests {
         for context in program.plan.all_legs() {
             let path = program.path(&context.leg.id).unwrap();
             assert_eq!(program.leg(&context.leg.id), Some(context.leg));
+            assert_eq!(program.written(&context.leg.id).as_ref(), Some(&context));
+            assert_eq!(program.plan.leg(&context.leg.id).as_ref(), Some(&context));
             assert_eq!(program.stage(&path), Some(context.stage));
             assert_eq!(program.list(&path), Some(context.siblings));
             let around: Vec<_> = context.loops.iter().copied().chain([context.leg]).collect();
@@ -301,6 +310,7 @@ mod tests {
         let stage = program.path(&"watch".into()).unwrap();
         assert_eq!((stage.stage, stage.indices.len(), program.chain(&stage).len()), (3, 0, 0));
         assert_eq!(program.leg(&"watch".into()), None);
+        assert!(program.written(&"watch".into()).is_none() && program.plan.leg(&"watch".into()).is_none());
     }
 
     /// Leg, stage, plan; at each of them the cause before the fallback.

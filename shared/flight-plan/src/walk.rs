@@ -240,7 +240,29 @@ impl FlightPlan {
 
     /// A leg by its identifier, with what is around it.
     pub fn leg(&self, id: &Id) -> Option<LegContext<'_>> {
-        self.all_legs().into_iter().find(|c| c.leg.id == *id)
+        self.all_stages().find_map(|(section, stage)| {
+            let mut loops = Vec::new();
+            let (siblings, index) = find(&stage.legs, id, &mut loops)?;
+            Some(LegContext { leg: siblings.get(index)?, stage, section, loops, siblings, index })
+        })
+    }
+
+    /// The leg (not the stage) at a place, with what is around it.
+    pub(crate) fn leg_at(&self, path: &crate::LegPath) -> Option<LegContext<'_>> {
+        let plan = path.emergency_plan.map(|index| self.emergency_plans.get(index));
+        let (section, stages) = match plan {
+            None => (Section::Main, &self.stages),
+            Some(plan) => (Section::Emergency(plan?), &plan?.stages),
+        };
+        let stage = stages.get(path.stage)?;
+        let (&index, outer) = path.indices.split_last()?;
+        let (mut loops, mut siblings) = (Vec::with_capacity(outer.len()), stage.legs.as_slice());
+        for &index in outer {
+            let around: &Leg = siblings.get(index)?;
+            loops.push(around);
+            siblings = around.body();
+        }
+        Some(LegContext { leg: siblings.get(index)?, stage, section, loops, siblings, index })
     }
 
     /// A leg of a procedure by its identifier there, with the procedure.
@@ -342,6 +364,22 @@ impl FlightPlan {
 
 fn leg_in<'a>(legs: &'a [Arc<Leg>], id: &Id) -> Option<&'a Leg> {
     legs.iter().find_map(|leg| if leg.id == *id { Some(leg.as_ref()) } else { leg_in(leg.body(), id) })
+}
+
+/// The list that a leg is in and its index there; what is around it is left in `loops`, outermost first.
+fn find<'a>(legs: &'a [Arc<Leg>], id: &Id, loops: &mut Vec<&'a Leg>) -> Option<(&'a [Arc<Leg>], usize)> {
+    for (index, leg) in legs.iter().enumerate() {
+        if leg.id == *id {
+            return Some((legs, index));
+        }
+        loops.push(leg);
+        let inside = find(leg.body(), id, loops);
+        if inside.is_some() {
+            return inside;
+        }
+        loops.pop();
+    }
+    None
 }
 
 fn collect<'a>(

@@ -208,7 +208,7 @@ impl View<'_> {
     /// Another altitude for a leg that the plan has as it is written (not only by a call): `by_m` above the one that leads to
     /// `wanted_amsl_m` now, counted from what that one counts from.
     fn relevelled(&self, leg: &Id, wanted_amsl_m: f64, by_m: f64) -> Option<Edit> {
-        let (metres, reference) = match self.program.plan.leg(leg)?.altitude() {
+        let (metres, reference) = match self.program.written(leg)?.altitude() {
             Some(written) => (self.number(&written.metres)?, written.reference),
             None => (wanted_amsl_m, AltitudeReference::Amsl),
         };

@@ -116,7 +116,7 @@ impl Late {
             "{advice}: at {:.5}, {:.5} a track begins, and the aircraft, which comes from one that is {:.0} m aside, is still {:.0} m beside it",
             begins.lat_deg, begins.lon_deg, self.track.aside_m, self.beside_m
         );
-        let fix = view.program.plan.leg(leg).and_then(|written| {
+        let fix = view.program.written(leg).and_then(|written| {
             let mut with = written.leg.clone();
             let LegKind::Scan(scan) = &mut with.kind else { return None };
             scan.overshoot_m = Value::Constant(overshoot_m);

@@ -128,7 +128,7 @@ impl Turn {
             self.fits_m
         );
         let problem = if self.circle { Problem::error } else { Problem::warning };
-        let flies = slower_mps >= view.profile.min_airspeed_mps && view.program.plan.leg(leg).is_some();
+        let flies = slower_mps >= view.profile.min_airspeed_mps && view.program.written(leg).is_some();
         let speed_mps = Some(Value::Constant(slower_mps));
         let fix = flies.then(|| Edit::SetSpeed { of: leg.clone(), speed_mps });
         Some(problem("turn-too-tight", message).of(leg).perhaps_fixed_by(fix))

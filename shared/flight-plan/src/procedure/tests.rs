@@ -272,7 +272,9 @@ fn a_program_flies_the_legs_and_keeps_the_plan_as_written() {
     assert_eq!(program.hash().as_ref(), crate::hash(&read(&document).plan));
     let path = program.path(&"trip.b".into()).unwrap();
     assert_eq!(program.chain(&path).iter().map(|l| l.id.as_str()).collect::<Vec<_>>(), ["trip", "trip.b"]);
-    assert!(matches!(program.plan.leg(&"trip".into()).unwrap().leg.kind, LegKind::Call(_)));
+    assert!(matches!(program.written(&"trip".into()).unwrap().leg.kind, LegKind::Call(_)));
+    assert_eq!(program.written(&"trip.b".into()), None, "only the call makes it");
+    assert_eq!(program.written(&"side1".into()), program.plan.leg(&"side1".into()));
 }
 
 #[test]
