@@ -11,12 +11,22 @@ VEHICLE = "legwork/peer"
 HOME = "36.3190,-84.1730,349,52"
 
 
-def opened(config):
-    """A session, or None while the hub is not there."""
+def opened(endpoint):
+    """A session of a client, or None while the hub is not there."""
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", json.dumps([endpoint]))
+    config.insert_json5("scouting/multicast/enabled", "false")
     try:
         return zenoh.open(config)
     except zenoh.ZError:
         return None
+
+
+def simulated(start):
+    """A simulator in lockstep, as fast as it can; gives where it listens."""
+    simulator = start("legwork-sim", "--tcp", "127.0.0.1:0", "--lockstep", "--speed", "0", "--home", HOME)
+    return "tcp:127.0.0.1:" + simulator.wait_for(r"listening on tcp 127\.0\.0\.1:(\d+)")[1]
 
 
 @pytest.fixture
@@ -28,17 +38,11 @@ def endpoint():
 @pytest.fixture
 def agent(start, tmp_path, endpoint):
     """Simulator and agent, as their users start them; gives an open Zenoh session."""
-    simulator = start("legwork-sim", "--tcp", "127.0.0.1:0", "--lockstep", "--speed", "0", "--home", HOME)
-    port = simulator.wait_for(r"listening on tcp 127\.0\.0\.1:(\d+)")[1]
     start(
         "onboard-agent", "run", "--vehicle", "peer", "--listen", endpoint, "--simulated",
-        "--autopilot", f"tcp:127.0.0.1:{port}", "--state-dir", tmp_path / "state",
+        "--autopilot", simulated(start), "--state-dir", tmp_path / "state",
     )
-    config = zenoh.Config()
-    config.insert_json5("mode", '"client"')
-    config.insert_json5("connect/endpoints", json.dumps([endpoint]))
-    config.insert_json5("scouting/multicast/enabled", "false")
-    session = until(lambda: opened(config), 30, "the hub listens")
+    session = until(lambda: opened(endpoint), 30, "the hub listens")
     yield session
     session.close()
 
