@@ -105,6 +105,31 @@ fn a_condition_that_nothing_makes_true_is_open_ended() {
     }
 }
 
+/// Before the threshold on the runway's line; from 700 m on the landing flies straight in.
+#[test]
+fn a_gate_from_which_the_landing_flies_back_is_told() {
+    let threshold = LatLon::new(36.31, -84.19);
+    let gate = |before_m: f64| {
+        let at = threshold.destination(270.0, before_m);
+        let legs = format!(
+            r#"<TF id="c" fix="C"/><DF id="far" lat="36.31" lon="-84.21"/><TF id="gate" lat="{}" lon="{}" altitude="460" altitudeReference="amsl"/>"#,
+            at.lat_deg, at.lon_deg
+        );
+        let problems = found(&document("", &legs));
+        problems.into_iter().find(|p| p.code == "gate-too-near")
+    };
+    for fits_m in [700.0, 710.0, 1500.0] {
+        assert_eq!(gate(fits_m), None, "{fits_m}");
+    }
+    let told = gate(600.0).unwrap();
+    assert_eq!((told.is_error(), told.subject), (false, Some("gate".into())));
+    let said = told.message.strip_prefix(
+        "end `gate` at least 700 m before `R`: from here the landing flies back to the beginning of its approach first, ",
+    );
+    assert!(said.is_some_and(|way| way.ends_with(" km instead of 0.6 km")), "{}", told.message);
+    assert!(gate(690.0).is_some());
+}
+
 fn hold(fix: &str, until: &str) -> String {
     let hold = format!(
         r#"<HM id="hold" fix="{fix}" course="90" turn="left" length="700" until="{until}" maxLaps="2"/><TF id="on" fix="A"/>"#

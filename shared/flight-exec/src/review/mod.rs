@@ -29,6 +29,7 @@ mod extremes;
 mod flights;
 mod flown;
 mod foresight;
+mod gates;
 mod glide;
 mod held;
 mod landings;
@@ -116,7 +117,7 @@ struct View<'a> {
 type Rule = fn(&View, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 18] = [
+const RULES: [Rule; 19] = [
     refused::check,
     unseen::check,
     wind::check,
@@ -131,6 +132,7 @@ const RULES: [Rule; 18] = [
     waypoints::check,
     endurance::check,
     held::check,
+    gates::check,
     landings::check,
     emergency_routes::check,
     powered::check,

@@ -10,7 +10,7 @@ use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 
 /// Off the runway's heading by more than this a path is not on the final approach, which then gets a point to line up at first, degrees.
-const ALIGNED_DEG: f64 = 30.0;
+pub const ALIGNED_DEG: f64 = 30.0;
 
 /// The point at which a take-off is over: on the runway's line, as far as the climb takes at the profile's climb rate.
 ///
@@ -43,7 +43,9 @@ pub fn land(stage: &Stage, path: &PathState, world: &World) -> Result<Vec<Point>
     let mut points = Vec::new();
     let gate = on_final(runway, final_m, world);
     let is_aligned = |from: LatLon| {
-        normalise_180(from.bearing_deg(gate.position) - runway.heading_deg).abs() <= ALIGNED_DEG
+        // where the final begins there is no direction to it any more
+        distance_m(from, gate.position) < SAME_PLACE_M
+            || normalise_180(from.bearing_deg(gate.position) - runway.heading_deg).abs() <= ALIGNED_DEG
     };
     let mut from = path.last.position;
     let threshold_m = |at| distance_m(at, runway.threshold);
