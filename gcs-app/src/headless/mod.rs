@@ -17,6 +17,7 @@ mod preview;
 mod progress;
 mod select;
 mod source;
+mod tiles;
 pub mod wind;
 
 pub use source::{Loaded, Source};

@@ -8,6 +8,7 @@ use flight_plan::suggest::did_you_mean;
 use flight_plan::{Cause, FlightPlan, Id, LegKind, Variable, VariableValue};
 use geometry::LatLon;
 use interchange::Step;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Decisions given on the command line.
@@ -109,8 +110,11 @@ impl Selection {
 
     /// Legs of a flight that could not be laid out are told, each with its reason; true if the flight may be written without them.
     pub fn goes_without(&self, left_out: &[(&Id, &str)], file: &Path) -> bool {
-        for (leg, reason) in left_out {
-            complain!("{}: {leg} is left out: {reason}", file.display());
+        let mut by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        left_out.iter().for_each(|(leg, reason)| by_reason.entry(reason).or_default().push(leg.as_str()));
+        for (reason, legs) in by_reason {
+            let are = if legs.len() == 1 { "is" } else { "are" };
+            complain!("{}: {} {are} left out: {reason}", file.display(), legs.join(", "));
         }
         let allowed = left_out.is_empty() || self.leave_out_legs;
         if !allowed {

@@ -2,7 +2,7 @@
 
 use super::foreign::Foreign;
 use super::output::DASH;
-use crate::assets;
+use super::tiles;
 use aircraft::Profile;
 use anyhow::Context;
 use flight_exec::{Conditions, review, review_extremes};
@@ -13,10 +13,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
-use terrain::{Terrain, Tile, Tiles};
-
-/// Greatest elevation tile there is, bytes (1″), and a little more, so that a longer file is seen as such.
-const MAX_TILE_BYTES: u64 = 26_000_000;
+use terrain::Terrain;
 
 /// Where a plan and its surroundings come from.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -24,8 +21,9 @@ pub struct Source {
     /// The plan: ours (XML), or one of another program; `-` reads standard input.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// Elevation tiles (SRTM .hgt, named after their corner) instead of the bundled one.
-    #[arg(long, value_name = "HGT")]
+    /// Elevation tiles instead of the bundled one: an SRTM .hgt, named after its corner, or a folder of them; may be given several
+    /// times.
+    #[arg(long, value_name = "HGT|DIR")]
     pub terrain: Vec<PathBuf>,
     /// Aircraft instead of the one the plan names: one of ours by name (foam-wing, trainer, long-range-wing, fast-wing,
     /// vtol-wing), or a performance profile (JSON).
@@ -93,7 +91,7 @@ impl Source {
             converted: false,
             is_empty: false,
             profile,
-            terrain: self.load_terrain()?,
+            terrain: tiles::load(&self.terrain)?,
             checked: OnceLock::new(),
         })
     }
@@ -101,19 +99,6 @@ impl Source {
     /// The aircraft that is given by the name of one of ours.
     fn named_aircraft(&self) -> Option<&str> {
         self.aircraft.as_deref().and_then(Path::to_str).filter(|name| Profile::by_name(name).is_ok())
-    }
-
-    fn load_terrain(&self) -> anyhow::Result<Arc<dyn Terrain>> {
-        if self.terrain.is_empty() {
-            return Ok(assets::demo_terrain());
-        }
-        let mut tiles = Tiles::new();
-        for path in &self.terrain {
-            let name = path.file_name().and_then(|n| n.to_str()).unwrap_or_default();
-            let bytes = read_at_most(path, MAX_TILE_BYTES)?;
-            tiles.add(Tile::from_hgt(name, &bytes).with_context(|| path.display().to_string())?);
-        }
-        Ok(Arc::new(tiles))
     }
 }
 
@@ -242,7 +227,7 @@ fn profile_from(path: &Path) -> anyhow::Result<Profile> {
 }
 
 /// The first `limit` bytes at most, of a file or of standard input.
-fn read_at_most(path: &Path, limit: u64) -> anyhow::Result<Vec<u8>> {
+pub(super) fn read_at_most(path: &Path, limit: u64) -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = match path.as_os_str() == DASH {
         true => std::io::stdin().lock().take(limit).read_to_end(&mut bytes),

@@ -3,6 +3,8 @@
 
 mod open;
 
+pub use open::tiles_in;
+
 use crate::jobs::Jobs;
 use crate::tiles::{About, Folder, Health, Reader, Template};
 use geometry::LatLon;

@@ -97,12 +97,20 @@ fn tile(path: &Path) -> Result<Tile, String> {
     Tile::from_hgt(&name, &bytes).map_err(|error| error.to_string())
 }
 
+/// The elevation tiles in a folder, by their names.
+///
+/// # Errors
+/// It can't be read.
+pub fn tiles_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let paths = std::fs::read_dir(folder)?.take(MOST_ENTRIES).filter_map(|entry| Some(entry.ok()?.path()));
+    let mut tiles: Vec<PathBuf> = paths.filter(|path| is_hgt(path)).collect();
+    tiles.sort();
+    Ok(tiles)
+}
+
 /// The elevation tiles in a folder, as many as there is memory for.
 fn folder(path: &Path, progress: &Progress) -> Result<Content, String> {
-    let entries = std::fs::read_dir(path).map_err(|error| format!("it can't be read ({error})"))?;
-    let paths = entries.take(MOST_ENTRIES).filter_map(|entry| Some(entry.ok()?.path()));
-    let mut paths: Vec<PathBuf> = paths.filter(|path| is_hgt(path)).collect();
-    paths.sort();
+    let paths = tiles_in(path).map_err(|error| format!("it can't be read ({error})"))?;
     let (mut tiles, mut left_out, mut bytes) = (Vec::new(), 0, 0);
     for (done, path) in paths.iter().enumerate() {
         progress.set(done as u64, paths.len() as u64);

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: &[&str] = &[
     "api",
     "value",
+    "layout::elevations",
     "layout::path",
     "layout::world",
     "layout::expand",

@@ -206,7 +206,34 @@ fn elevations_that_are_missing_are_named_by_their_files() {
     assert!(message.starts_with("load the elevations N36W084.hgt, N36W085.hgt (around "), "{message}");
     let above = document("", r#"<TF id="c" fix="C" altitude="200" altitudeReference="agl"/>"#);
     let problems = found_over(&above, Arc::new(Tiles::new()), Conditions::default());
-    assert!(with_code(&problems, "unknown-terrain").message.contains(" N36W085.hgt of "), "{problems:?}");
+    let said = "load the elevation tile N36W085.hgt (`--terrain N36W085.hgt`, `terrain` in agent.toml, or drop it onto the window): ";
+    assert!(with_code(&problems, "unknown-terrain").message.contains(said), "{problems:?}");
+}
+
+#[test]
+fn legs_that_miss_one_tile_are_told_once() {
+    let low = |id: &str, lat: f64| {
+        format!(r#"<TF id="{id}" lat="{lat}" lon="-84.16" altitude="200" altitudeReference="agl"/>"#)
+    };
+    let legs =
+        [("c", 36.31), ("d", 36.32), ("e", 36.33), ("f", 37.05)].map(|(id, lat)| low(id, lat)).concat();
+    let problems = found_over(&document("", &legs), Arc::new(Tiles::new()), Conditions::default());
+    let told: Vec<_> = problems.iter().filter(|p| p.code == "unknown-terrain").collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told[0].message.ends_with("; so it is with `c` and 2 more legs"), "{}", told[0]);
+    assert!(told[1].message.ends_with("nothing is known of the ground above which it counts"), "{}", told[1]);
+}
+
+#[test]
+fn where_srtm_ends_another_model_is_asked_for() {
+    let north = document("", r#"<TF id="c" fix="C" altitude="200" altitudeReference="agl"/>"#);
+    let north = north.replace(r#"lat="36."#, r#"lat="82."#);
+    let problems = found_over(&north, Arc::new(Tiles::new()), Conditions::default());
+    let other = "of an elevation model other than SRTM, which ends at 60° N and 56° S";
+    for code in ["unknown-terrain", "not-reviewed"] {
+        let message = &with_code(&problems, code).message;
+        assert!(message.contains("N82W085.hgt") && message.contains(other), "{message}");
+    }
 }
 
 /// From one side of the pole to the other: that it is far, takes hours and can't be glided from follows.

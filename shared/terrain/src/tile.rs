@@ -134,6 +134,11 @@ pub fn file_name(of: LatLon) -> Option<String> {
     Some(format!("{ns}{:02}{ew}{:03}.hgt", south.abs(), west.abs()))
 }
 
+/// The Shuttle Radar Topography Mission measured it: from 56° S to 60° N. (USGS, *SRTM Topo*, "Documentation".)
+pub fn is_within_srtm(position: LatLon) -> bool {
+    (-56.0..=60.0).contains(&position.lat_deg)
+}
+
 /// `N36W085` (any case, any extension) as degrees of the south-west corner.
 fn corner(name: &str) -> Option<(i32, i32)> {
     let stem = name.split('.').next()?.as_bytes();

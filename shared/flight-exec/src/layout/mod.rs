@@ -4,6 +4,7 @@
 //! [`path`] and [`world`], [`expand`] (one leg), [`cursor`] (from leg to leg), [`stretch`] (waypoint after waypoint).
 
 pub mod cursor;
+pub(crate) mod elevations;
 pub mod expand;
 pub mod path;
 pub mod stretch;

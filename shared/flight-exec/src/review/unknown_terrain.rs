@@ -2,15 +2,39 @@
 //! `not-reviewed`, once: nothing is known of the ground below a part of the path, so that it was not reviewed how near it is.
 
 use super::View;
+use crate::layout::elevations::{beyond_srtm, how_to_load};
 use flight_plan::{Id, Problem};
 use geometry::LatLon;
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let mut reported: HashSet<&Id> = HashSet::new();
     let legs = view.flights.without_ground.iter().filter(|(leg, _)| reported.insert(leg));
-    problems.extend(legs.map(|(leg, what)| Problem::error("unknown-terrain", what.clone()).of(leg)));
+    problems.extend(by_tile(legs));
     problems.extend(unseen_ground(view));
+}
+
+/// One problem for all legs that miss the same tile, at the first of them.
+fn by_tile<'a>(legs: impl Iterator<Item = &'a (Id, String)>) -> Vec<Problem> {
+    let mut missing: Vec<(&Id, &str, usize)> = Vec::new();
+    let mut known: HashMap<&str, usize> = HashMap::new();
+    for (leg, what) in legs {
+        let what = what.as_str();
+        let index = *known.entry(what).or_insert(missing.len());
+        match missing.get_mut(index) {
+            Some((_, _, more)) => *more += 1,
+            None => missing.push((leg, what, 0)),
+        }
+    }
+    let problem = |(leg, what, more): (&Id, &str, usize)| {
+        let message = match more {
+            0 => what.to_owned(),
+            1 => format!("{what}; so it is with `{leg}` and 1 more leg"),
+            _ => format!("{what}; so it is with `{leg}` and {more} more legs"),
+        };
+        Problem::error("unknown-terrain", message).of(leg)
+    };
+    missing.into_iter().map(problem).collect()
 }
 
 /// Tiles that are named; more are counted.
@@ -37,10 +61,12 @@ fn unseen_ground(view: &View) -> Option<Problem> {
     }
     let (leg, at) = first?;
     let message = format!(
-        "load the elevations {} (around {:.2}, {:.2}), or look at the ground yourself: below {} of {} legs, this one first, nothing is known of it, and how near they come to it was not reviewed",
+        "load the elevations {} (around {:.2}, {:.2}{}; {}), or look at the ground yourself: below {} of {} legs, this one first, nothing is known of it, and how near they come to it was not reviewed",
         tiles.names(),
         at.lat_deg,
         at.lon_deg,
+        beyond_srtm(at).map_or_else(String::new, |model| format!(", of {model}")),
+        how_to_load("FILE"),
         unknown.len(),
         flown.len()
     );

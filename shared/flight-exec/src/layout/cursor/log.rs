@@ -1,5 +1,6 @@
 //! What happens between two waypoints without being one.
 
+use crate::layout::elevations;
 use crate::value::Choice;
 use flight_plan::{EvalError, Id};
 use geometry::LatLon;
@@ -54,10 +55,9 @@ pub enum LayoutError {
 impl LayoutError {
     /// Nothing is known of the ground at a position from which a leg's altitude counts.
     pub(super) fn unknown_ground(leg: Id, at: LatLon) -> Self {
-        let LatLon { lat_deg, lon_deg } = at;
-        let tile = terrain::tile::file_name(at).map_or_else(String::new, |name| format!(" {name}"));
         let reason = format!(
-            "write this leg's altitude `amsl`, or load the elevation tile{tile} of {lat_deg:.2}, {lon_deg:.2}: nothing is known of the ground above which it counts"
+            "write this leg's altitude `amsl`, or load {}: nothing is known of the ground above which it counts",
+            elevations::wanted_at(at)
         );
         Self::Ground { leg, reason }
     }
