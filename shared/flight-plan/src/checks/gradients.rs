@@ -15,8 +15,8 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
     let (climb, descent) =
         if flown_backwards(step) { (climb.min(descent), climb.min(descent)) } else { (climb, descent) };
     if rate_mps > climb || -rate_mps > descent {
-        let (what, limit) = if rate_mps > 0.0 { ("climb", climb) } else { ("descent", descent) };
-        let at_least = if step.start.is_none() { "at least " } else { "" };
+        let (what, limit) = if rate_mps > 0.0 { ("climb", climb) } else { ("descend", descent) };
+        let (at_least, at_most) = if step.start.is_none() { ("at least ", "at most ") } else { ("", "") };
         let (takes, does) = told_apart(rate_mps.abs(), limit);
         let possible_m = length_m / step.speed_mps * limit;
         let ends = step.entry_altitude_amsl_m().map_or_else(String::new, |from_m| {
@@ -26,7 +26,7 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
             format!(", end it at {reached_m:.0} m AMSL")
         });
         let message = format!(
-            "lengthen this leg to {:.0} m{ends} or hold to {what} before it (HA): it takes {at_least}{takes} m/s, the aircraft does {does} m/s",
+            "lengthen this leg from {at_most}{length_m:.0} m to {:.0} m{ends} or hold to {what} before it (HA): it takes {at_least}{takes} m/s, the aircraft does {does} m/s",
             (gain_m.abs() / limit * step.speed_mps).ceil()
         );
         let problem = Problem::error("too-steep", message).of(&step.leg.id);
@@ -88,6 +88,12 @@ mod tests {
     }
 
     #[test]
+    fn a_descent_is_made_by_descending() {
+        let message = message_of(&with(60.0), "too-steep");
+        assert!(message.contains(" or hold to descend before it (HA): "), "{message}");
+    }
+
+    #[test]
     fn what_is_too_steep_is_told_with_what_would_do() {
         for (altitude_m, takes) in [(935.0, "4.04"), (931.5, "4.003")] {
             let message = message_of(&with(altitude_m), "too-steep");
@@ -98,7 +104,7 @@ mod tests {
             check_legs(&[(&with(reached), &[])]);
             check_legs(&[(&with(reached + 1.0), &["too-steep"])]);
             let length: f64 = advice
-                .strip_prefix("lengthen this leg to ")
+                .strip_prefix("lengthen this leg from 2695 m to ")
                 .unwrap()
                 .split(' ')
                 .next()
