@@ -236,6 +236,21 @@ fn where_srtm_ends_another_model_is_asked_for() {
     }
 }
 
+/// An emergency plan without a holding, entered from 1500 m.
+#[test]
+fn an_emergency_that_comes_to_its_landing_too_high_names_where_it_came_from() {
+    let climb = r#"<HA id="up" fix="B" course="90" turn="left" length="900" altitude="1500" altitudeReference="amsl"/><TF id="high" fix="C" altitude="1500" altitudeReference="amsl"/><HA id="down" fix="A" course="90" turn="right" length="900" altitude="450" altitudeReference="amsl"/>"#;
+    let direct = r#"<DF id="ed" lat="36.31" lon="-84.20""#;
+    let plan = document("", climb).replace(r#"<DF id="ed" fix="A""#, direct);
+    let problems = found(&plan);
+    let problem = with_code(&problems, "gateway-refuses");
+    assert_eq!(problem.subject, Some("el".into()));
+    let said = problem.message.strip_prefix("put an `HA` before the landing of `home`, which comes there ");
+    let said = said.unwrap_or_else(|| panic!("{problem}"));
+    assert!(said.contains(" m too high when it is entered from `"), "{problem}");
+    assert!(said.contains("` at 1500 m AMSL: the gateway would refuse a waypoint of it: "), "{problem}");
+}
+
 /// From one side of the pole to the other: that it is far, takes hours and can't be glided from follows.
 #[test]
 fn of_a_path_past_a_pole_only_that_is_told() {

@@ -285,9 +285,10 @@ impl Flights {
         let program = given.program;
         let emergency_coverage = EmergencyCoverage::of(program);
         for (index, plan) in program.flown().emergency_plans.iter().enumerate().take(MAX_EMERGENCY_PLANS) {
-            for (home, worst) in self.worst_for(program, plan, index, &emergency_coverage) {
+            for (home, leg, worst) in self.worst_for(program, plan, index, &emergency_coverage) {
                 let beginning = Beginning::at(&worst, used_j);
-                self.fly_emergency(given, index, (beginning, home, worst.time_s));
+                let flown = self.fly_emergency(given, index, (beginning, home, worst.time_s));
+                self.emergencies.push(Flown { entered_from: leg, ..flown });
                 let alarm = Command::Emergency { cause: Cause::Operator, plan: Some(plan.id.clone()) };
                 let flown = || given.preview(beginning, vec![alarm]);
                 self.landings.entry(index).or_insert_with(flown);
@@ -301,7 +302,7 @@ impl Flights {
         given: &Circumstances,
         index: usize,
         (beginning, home, from_s): (Beginning, Option<Id>, f64),
-    ) {
+    ) -> Flown {
         let mut start_point = beginning.start_point(Some(index), &given.tireless);
         start_point.cursor.home = home;
         let (counts, decisions) = (
@@ -312,24 +313,25 @@ impl Flights {
         self.refused.extend(layout.refused.iter().cloned());
         self.without_ground.extend(layout.without_ground.iter().cloned());
         let aircraft = beginning.aircraft(&given.tireless);
-        self.emergencies.push(fly(aircraft, layout, given.wind, Some(index), from_s));
+        fly(aircraft, layout, given.wind, Some(index), from_s)
     }
 
     /// The point that is farthest from where an emergency plan leads, of those where it is in force; of all, if it is
-    /// so nowhere (an operator may still choose it). One for each home that the flights have there, with that.
+    /// so nowhere (an operator may still choose it). One for each home that the flights have there, with that and the leg that is flown
+    /// there.
     fn worst_for(
         &self,
         program: &Program,
         plan: &EmergencyPlan,
         index: usize,
         emergency_coverage: &EmergencyCoverage,
-    ) -> Vec<(Option<Id>, Point)> {
+    ) -> Vec<(Option<Id>, Option<Id>, Point)> {
         let Some(runway) = program.plan.runway(&plan.runway).map(|r| r.threshold) else { return Vec::new() };
         let all = || self.main.iter().flat_map(|flown| flown.points.iter().map(move |p| (flown, *p)));
         let farthest = |points: &mut dyn Iterator<Item = (&Flown, Point)>| {
             let far = |p: &Point| crate::layout::path::distance_m(p.position, runway);
             let worst = points.max_by(|(_, a), (_, b)| far(a).total_cmp(&far(b)));
-            worst.map(|(flown, point)| (flown.home.clone(), point))
+            worst.map(|(flown, point)| (flown.home.clone(), flown.leg(&point).cloned(), point))
         };
         let applies = |(flown, p): &(&Flown, Point)| {
             flown.leg(p).is_some_and(|leg| emergency_coverage.plans(leg).any(|i| i == index))

@@ -40,6 +40,8 @@ pub(super) struct Flown {
     pub reached: Vec<Point>,
     /// `None`: the main plan; else which emergency plan.
     pub emergency: Option<usize>,
+    /// Of an emergency plan: the leg from which it is entered here.
+    pub entered_from: Option<Id>,
     /// The runway that it took off from (see [`Layout::home`]), and how high that is, metres AMSL.
     pub home: Option<Id>,
     pub home_m: f64,
@@ -108,7 +110,19 @@ pub(super) fn fly(
 ) -> Flown {
     let Layout { waypoints, hurried_from, kept, home, home_m, .. } = layout;
     let (points, reached) = (Vec::new(), Vec::new());
-    let flown = Flown { waypoints, points, reached, emergency, home, home_m, start_s, kept, hurried_from };
+    let entered_from = None;
+    let flown = Flown {
+        waypoints,
+        points,
+        reached,
+        emergency,
+        entered_from,
+        home,
+        home_m,
+        start_s,
+        kept,
+        hurried_from,
+    };
     let guidance = Guidance::new(aircraft.profile().clone());
     Flight { aircraft, guidance, wind, steps: 0, steered_s: 0.0, flown }.flown()
 }

@@ -1,13 +1,18 @@
 //! `gateway-refuses`: a waypoint of the path that the gateway would not take; `near-pole`: one near a pole, or a way past it.
 
 use super::View;
+use super::flown::Flown;
 use super::plausibility::{Context, faults, from_here};
 use super::remedy::{room_to_climb, room_to_turn};
-use flight_plan::{LegKind, Problem};
+use crate::api::Waypoint;
+use crate::layout::path::distance_m;
+use flight_plan::{LegKind, Problem, StageKind};
 use geometry::geodesy;
 
 /// Nearer to a pole than anything is flown.
 const NEAR_POLE: &str = "near-pole";
+/// Too steep.
+const GRADIENT: &str = "gradient";
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let context = Context {
@@ -28,16 +33,36 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
                     problems.push(Problem::error(NEAR_POLE, message).of(&waypoint.leg));
                     continue;
                 }
-                let kind = view.program.leg(&waypoint.leg).map(|leg| &leg.kind);
-                let message = format!(
-                    "{}: the gateway would refuse a waypoint of it: {}",
-                    advice(fault.code, kind),
-                    fault.sentence
-                );
+                let advice = match before_landing(view, flown, (at(1), waypoint)) {
+                    Some(advice) if fault.code == GRADIENT => advice,
+                    _ => advice(fault.code, view.program.leg(&waypoint.leg).map(|leg| &leg.kind)),
+                };
+                let message =
+                    format!("{advice}: the gateway would refuse a waypoint of it: {}", fault.sentence);
                 problems.push(Problem::error("gateway-refuses", message).of(&waypoint.leg));
             }
         }
     }
+}
+
+/// What to do about a landing that is come to too high or too low. It has no length and no altitude of its own to be changed.
+fn before_landing(view: &View, flown: &Flown, (from, to): (Option<&Waypoint>, &Waypoint)) -> Option<String> {
+    let from = from.filter(|_| view.stage_kind(&to.leg) == Some(StageKind::Land))?;
+    let speed_mps = to.airspeed_mps.max(1.0);
+    let possible_m = view.profile.max_descent_mps * distance_m(from.position, to.position) / speed_mps;
+    let high_m = from.altitude_amsl_m - to.altitude_amsl_m - possible_m;
+    if high_m <= 0.0 {
+        return Some("put an `HA` before this landing, which is come to too low".into());
+    }
+    let entered = flown.entered_from.as_ref().zip(flown.points.first());
+    let plan = flown.emergency.and_then(|index| view.program.plan.emergency_plans.get(index));
+    Some(match (plan, entered) {
+        (Some(plan), Some((leg, at))) => format!(
+            "put an `HA` before the landing of `{}`, which comes there {high_m:.0} m too high when it is entered from `{leg}` at {:.0} m AMSL",
+            plan.id, at.altitude_amsl_m
+        ),
+        _ => format!("put an `HA` before this landing, which is come to {high_m:.0} m too high"),
+    })
 }
 
 /// On a path that leads past a pole nothing else is worth saying: its lengths and times are those of no flight.
@@ -56,7 +81,7 @@ fn advice(code: &str, kind: Option<&LegKind>) -> String {
         "below-terrain" => "raise this leg",
         "speed" => "give this leg another speed",
         "loiter-radius" => "widen the circles of this leg",
-        "gradient" => return room_to_climb(kind),
+        GRADIENT => return room_to_climb(kind),
         "turn" => return format!("{}, or fly it slower", room_to_turn(kind)),
         _ => "correct the places and numbers of this leg",
     };

@@ -77,8 +77,9 @@ fn duplicates(choice: &EmergencyChoice, of: Option<&Id>, problems: &mut Vec<Prob
         if seen.insert(cause) {
             continue;
         }
-        let message =
-            format!("only the first emergency plan for a cause counts: remove `{plan}` or the one before it");
+        let message = format!(
+            "only the first emergency plan for a cause counts: remove `{plan}` or the one before it here, and name the other one on another leg"
+        );
         let problem = Problem::warning("duplicate-cause", message);
         let problem = of.map_or(problem.clone(), |of| problem.of(of));
         let first = choice.by_cause.iter().find(|(c, _)| c == cause).map(|(_, plan)| plan.clone());
