@@ -180,6 +180,32 @@ fn what_holds_outside_of_the_times_of_a_zone_to_stay_in_is_told() {
     assert!(found(&zones(wider)).iter().all(|p| p.code != "keep-in-not-active"), "one is always active");
 }
 
+/// From 06:00 to 06:04 on the first of June and of July.
+#[test]
+fn a_zone_whose_last_period_is_over_is_told() {
+    let period = |month: u32| {
+        format!(r#"<active from="2026-0{month}-01T06:00:00Z" until="2026-0{month}-01T06:04:00Z"/>"#)
+    };
+    let curfew = format!(
+        r#"<zones><keepOut id="curfew" lat="36.40" lon="-84.18" radius="300">{}{}</keepOut></zones>"#,
+        period(6),
+        period(7)
+    );
+    let document = document(&curfew, r#"<TF id="c" fix="C"/>"#);
+    let told = |start_unix_s: Option<i64>| {
+        let conditions = Conditions { start_unix_s, ..Conditions::default() };
+        let problems = found_over(&document, Arc::new(Flat(300.0)), conditions);
+        problems.into_iter().find(|p| p.code == "zone-expired")
+    };
+    let june = 1_780_293_600;
+    for start in [None, Some(june), Some(june + 3600)] {
+        assert_eq!(told(start), None, "{start:?}");
+    }
+    let problem = told(Some(june + 60 * 86_400)).unwrap();
+    assert_eq!((problem.is_error(), problem.subject), (false, Some("curfew".into())));
+    assert!(problem.message.contains("every period of `curfew` is over at the start"), "{}", problem.message);
+}
+
 #[test]
 fn a_low_reserve_says_what_is_left_what_is_asked_for_and_where_it_goes() {
     let mut conditions = Conditions::default();

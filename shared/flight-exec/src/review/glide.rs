@@ -110,7 +110,7 @@ fn out_of_reach(
         return Problem::warning("glide-out-of-reach", message).of(&from.leg);
     };
     let message = format!(
-        "be ready to land elsewhere after an engine failure, for which no emergency plan is named: on {:.0} % of the flight the runway of `{plan}` is out of glide, at worst from {from}, where one {what}, or name a nearer plan for the cause `engine`",
+        "be ready to land elsewhere after an engine failure, for which no emergency plan is named: on {:.0} % of the flight the runway of `{plan}` is out of glide, at worst from {from}, where a glide {what}, or name a nearer plan for the cause `engine`",
         (100.0 * share).ceil()
     );
     Problem::warning("glide-out-of-reach", message).of(plan)

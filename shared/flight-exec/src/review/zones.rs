@@ -1,6 +1,6 @@
 //! `keep-out`: the path, turns and holdings included, goes into a zone to keep out of; `keep-in`: it leaves those to stay in;
 //! `bad-zone`: one that no path can be held against; `keep-in-not-active`: nothing confines the flight at a time, because all
-//! zones to stay in have times, and none of them is active then.
+//! zones to stay in have times, and none of them is active then; `zone-expired`: one to keep out of never forbids anything again.
 //!
 //! The plan as it stands is reviewed with its real times. A flight that was cut short, or an emergency, may be later: it is reported as a
 //! warning if it meets a zone only then.
@@ -10,7 +10,7 @@ use super::flown::Flown;
 use super::prepared::{At, Prepared, When};
 use crate::api::Branching;
 use crate::rehearse::Preview;
-use flight_plan::{Id, Problem, ZoneKind};
+use flight_plan::{Id, Problem, Zone, ZoneKind};
 use geometry::zone::Breach;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -25,6 +25,7 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
         let message = format!("change this zone, no path can be held against it: {error}");
         problems.push(Problem::error("bad-zone", message).of(zone));
     }
+    problems.extend(expired(view));
     if view.zones.is_empty() {
         return;
     }
@@ -35,6 +36,22 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     view.flights.all().for_each(|flown| found.take(view, bounded_track(flown)));
     problems.extend(found.problems(view));
     problems.extend(unconfined(view));
+}
+
+/// Zones to keep out of whose periods are all over when the flight starts; one that is under way may have outlasted them.
+fn expired(view: &View) -> impl Iterator<Item = Problem> {
+    let start_unix_s = view.conditions.start_unix_s.filter(|_| !view.flights.under_way);
+    let is_over = move |zone: &&Zone| {
+        let over = |start: i64| zone.active.iter().all(|period| period.until_unix_s <= start);
+        zone.kind == ZoneKind::KeepOut && !zone.active.is_empty() && start_unix_s.is_some_and(over)
+    };
+    view.program.plan.zones.iter().filter(is_over).map(|zone| {
+        let message = format!(
+            "give `{0}` another period, or remove it: every period of `{0}` is over at the start, and it forbids nothing any more",
+            zone.id
+        );
+        Problem::warning("zone-expired", message).of(&zone.id).with_zone(&zone.id)
+    })
 }
 
 /// The flight as planned comes to where none of its zones to stay in is active, or may do so.

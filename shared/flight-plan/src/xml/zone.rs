@@ -95,7 +95,7 @@ impl<'a> Document<'a> {
     fn active(&mut self, element: &Element<'a>) -> Option<ZoneTime> {
         self.require(element, "from");
         self.require(element, "until");
-        let wanted = "a time in UTC, as in 2026-06-01T06:00:00Z";
+        let wanted = "a time in UTC with its date, one period a day, as in 2026-06-01T06:00:00Z";
         let from_unix_s = self.parsed(element, "from", wanted, time);
         let until_unix_s = self.parsed(element, "until", wanted, time);
         Some(ZoneTime { from_unix_s: from_unix_s?, until_unix_s: until_unix_s? })
