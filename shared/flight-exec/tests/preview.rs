@@ -260,4 +260,8 @@ fn another_flight_begins_with_the_energy_and_after_the_time_that_its_landing_sta
     assert!((flown.battery_left - (0.9 - second_j / full_j)).abs() < 1e-3, "{}", flown.battery_left);
     assert!((flown.energy_j - once.energy_j - second_j).abs() < 1e-3 * flown.energy_j);
     assert!(flown.landed && flown.track.windows(2).all(|t| t[1].time_s >= t[0].time_s));
+    let unloaded = fly(&two_flights(r#"turnaroundEnergy="kept""#), &Scenario::default()).unwrap();
+    let [stop] = unloaded.stops.as_slice() else { panic!("{:?}", unloaded.stops) };
+    assert_eq!(stop.battery_after, stop.battery_left);
+    assert!((unloaded.battery_left - (stop.battery_left - second_j / full_j)).abs() < 1e-3);
 }

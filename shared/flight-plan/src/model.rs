@@ -238,10 +238,45 @@ pub struct Stage {
 /// What is expected to happen on the ground between two flights.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Turnaround {
-    /// Share of the energy that the next flight begins with, 0..1; `None`: all of it.
-    pub energy: Option<f64>,
+    /// The energy that the next flight begins with; `None`: all of it.
+    pub energy: Option<TurnaroundEnergy>,
     /// How long it takes, seconds; `None`: no time.
     pub time_s: Option<f64>,
+}
+
+impl Turnaround {
+    /// Share of the energy that the next flight begins with, 0..1, if `left` is there after the landing.
+    pub fn energy_after(&self, left: f64) -> f64 {
+        match self.energy {
+            None => 1.0,
+            Some(TurnaroundEnergy::Share(share)) => share.clamp(0.0, 1.0),
+            Some(TurnaroundEnergy::Kept) => left,
+        }
+    }
+}
+
+/// The energy that the flight behind a landing begins with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TurnaroundEnergy {
+    /// A share of what the aircraft holds, 0..1: it is charged, fuelled, or gets another battery.
+    Share(f64),
+    /// What the flight before left.
+    Kept,
+}
+
+impl TurnaroundEnergy {
+    /// [`Self::Kept`] in a document.
+    pub(crate) const KEPT: &'static str = "kept";
+}
+
+impl std::fmt::Display for TurnaroundEnergy {
+    /// As in a document.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Share(share) => write!(f, "{share}"),
+            Self::Kept => f.write_str(Self::KEPT),
+        }
+    }
 }
 
 /// An alternative that ends on a runway.

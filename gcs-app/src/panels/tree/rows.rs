@@ -4,7 +4,7 @@ use super::make::Group;
 use crate::command::Selection;
 use flight_plan::{
     Alternates, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Pattern, Stage, StageKind, Turnaround,
-    ZoneKind,
+    TurnaroundEnergy, ZoneKind,
 };
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -258,7 +258,10 @@ fn within(outer: &Arc<Alternates>, choice: &EmergencyChoice, of: &Id) -> Arc<Alt
 /// What is expected on the ground behind a landing.
 fn turnaround(Turnaround { energy, time_s }: &Turnaround) -> String {
     let time = time_s.map(|seconds| format!("stands {}", crate::units::duration(seconds)));
-    let energy = energy.map(|share| format!("then {:.0} % energy", share * 100.0));
+    let energy = energy.map(|energy| match energy {
+        TurnaroundEnergy::Share(share) => format!("then {:.0} % energy", share * 100.0),
+        TurnaroundEnergy::Kept => "then the energy that is left".into(),
+    });
     time.into_iter().chain(energy).collect::<Vec<_>>().join(", ")
 }
 

@@ -107,12 +107,14 @@ impl Circumstances<'_> {
         executor
     }
 
-    /// The flight that begins at a cursor: where, and how long the aircraft stands before it, seconds.
-    fn next_flight(&self, mut cursor: Cursor) -> Option<(Beginning, StartPoint, f64)> {
+    /// The flight that begins at a cursor, behind one that used so much energy, joules: where, and how long the aircraft stands before
+    /// it, seconds.
+    fn next_flight(&self, mut cursor: Cursor, used_j: f64) -> Option<(Beginning, StartPoint, f64)> {
         let stages = self.program.stages(None);
         let before = stages.get(cursor.stage.checked_sub(1)?)?.turnaround;
         let runway = self.program.plan.runway(stages.get(cursor.stage)?.runway.as_ref()?)?;
-        let used_j = (1.0 - before.energy.unwrap_or(1.0)) * self.profile.energy_j;
+        let full_j = self.profile.energy_j;
+        let used_j = (1.0 - before.energy_after(1.0 - used_j / full_j)) * full_j;
         let beginning = Beginning { used_j, ..Beginning::on(runway) };
         let path = beginning.path(&self.tireless);
         let (distance_m, time_s) = (cursor.path.distance_m, cursor.path.time_s);
@@ -237,9 +239,11 @@ impl Flights {
                 // who starts it may do so later
                 layout.hurried_from = Some(0);
             }
-            let next = layout.next.take().and_then(|cursor| given.next_flight(cursor));
+            let next = layout.next.take();
             let flown = fly(beginning.aircraft(&given.tireless), layout, given.wind, None, start_s);
-            let landed_s = start_s + flown.points.last().map_or(0.0, |point| point.time_s);
+            let (flown_s, used_j) = flown.points.last().map_or((0.0, 0.0), |last| (last.time_s, last.used_j));
+            let landed_s = start_s + flown_s;
+            let next = next.and_then(|cursor| given.next_flight(cursor, used_j));
             self.main.push(flown);
             ahead =
                 next.map(|(begin, start_point, on_ground_s)| (begin, start_point, landed_s + on_ground_s));

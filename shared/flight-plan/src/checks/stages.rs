@@ -4,7 +4,9 @@
 //! or no flight follows; `stage-with-legs`: the autopilot performs take-off and landing, legs there would not be flown.
 
 use super::Inspection;
-use crate::{Altitude, AltitudeReference, Edit, Id, Problem, Stage, StageKind, Turnaround, Value};
+use crate::{
+    Altitude, AltitudeReference, Edit, Id, Problem, Stage, StageKind, Turnaround, TurnaroundEnergy, Value,
+};
 
 /// Climb-out altitude where a take-off has none, metres above its runway.
 const CLIMB_OUT_M: f64 = 100.0;
@@ -47,9 +49,10 @@ fn no_landing(stages: &[Stage]) -> Option<Problem> {
 /// `used`: another flight follows.
 fn turnaround(stage: &Stage, used: bool, problems: &mut Vec<Problem>) {
     let Turnaround { energy, time_s } = stage.turnaround;
-    let energy_is_bad = energy.is_some_and(|share| !(share > 0.0 && share <= 1.0));
+    let energy_is_bad =
+        matches!(energy, Some(TurnaroundEnergy::Share(share)) if !(share > 0.0 && share <= 1.0));
     if energy_is_bad || time_s.is_some_and(|seconds| !(0.0..=MOST_ON_GROUND_S).contains(&seconds)) {
-        let message = "write `turnaroundEnergy` as a share above 0 and up to 1, and `turnaroundTime` as seconds, at most a day";
+        let message = "write `turnaroundEnergy` as a share above 0 and up to 1, or `kept`, and `turnaroundTime` as seconds, at most a day";
         problems.push(Problem::error("bad-turnaround", message).of(&stage.id));
     } else if !used && stage.turnaround != Turnaround::default() {
         let message =
@@ -170,6 +173,7 @@ mod tests {
             (&stages(""), &["stage-order"]),
             (&stages(&format!("{}{}", way("y"), to("u"))), &["stage-order", "stage-order"]),
             (&turnaround(r#"turnaroundEnergy="0.9" turnaroundTime="600""#), &[]),
+            (&turnaround(r#"turnaroundEnergy="kept""#), &[]),
             (&turnaround(r#"turnaroundEnergy="1.5""#), &["bad-turnaround"]),
             (&turnaround(r#"turnaroundTime="-1""#), &["bad-turnaround"]),
             (&format!("{}{}{}", to("t"), WAY, land("l", r#"turnaroundTime="60""#)), &["unused-turnaround"]),

@@ -317,9 +317,20 @@ const STAGE: Description = thing(
             BY_CAUSES,
         ],
         &[
-            P(number("turnaroundEnergy", "Energy after", Quantity::Share, 0.05, "1")
-                .help("Of a landing before another flight: the share of the energy that the next flight begins with.")
-                .without("all of it")),
+            Row::OneOf(OneOf {
+                label: "Energy after",
+                help: "Of a landing before another flight: what the next flight begins with.",
+                ways: &[
+                    Way { label: "what is left", fixed: &[("turnaroundEnergy", "kept")], rows: &[] },
+                    Way {
+                        label: "a share",
+                        fixed: &[],
+                        rows: &[P(number("turnaroundEnergy", "Share", Quantity::Share, 0.05, "1")
+                            .help("Of the energy that the aircraft holds."))],
+                    },
+                    Way { label: "all of it", fixed: &[], rows: &[] },
+                ],
+            }),
             P(number("turnaroundTime", "Time on the ground", Quantity::Time, 0.0, "600")
                 .help("Of a landing before another flight: how long it is expected to stand until it is started again.")
                 .without("none")),

@@ -4,11 +4,11 @@ pub(super) mod part;
 mod variable;
 
 use super::cursor::{Cursor, Element, MAX_BYTES, shown};
-use super::values::position;
+use super::values::{number, position};
 use super::{NAMESPACE, attributes};
 use crate::{
     Altitude, AltitudeReference, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Location,
-    Parameter, Problem, Procedure, Runway, Stage, StageKind, Turnaround, Zone,
+    Parameter, Problem, Procedure, Runway, Stage, StageKind, Turnaround, TurnaroundEnergy, Zone,
 };
 use geometry::LatLon;
 use simdutf8::compat::Utf8Error;
@@ -328,7 +328,7 @@ impl<'a> Document<'a> {
             altitude: self.altitude(&element),
             speed_mps: self.value(&element, "speed"),
             turnaround: Turnaround {
-                energy: self.number(&element, "turnaroundEnergy"),
+                energy: self.turnaround_energy(&element),
                 time_s: self.number(&element, "turnaroundTime"),
             },
             legs: Vec::new(),
@@ -336,6 +336,13 @@ impl<'a> Document<'a> {
         self.legs(&element, &mut stage.legs, &mut stage.emergency);
         self.cursor.finish(&element);
         stage
+    }
+
+    fn turnaround_energy(&mut self, element: &Element<'a>) -> Option<TurnaroundEnergy> {
+        self.parsed(element, "turnaroundEnergy", "a finite number, or kept", |text| match text {
+            TurnaroundEnergy::KEPT => Some(TurnaroundEnergy::Kept),
+            share => number(share).map(TurnaroundEnergy::Share),
+        })
     }
 
     /// The `emergency` attribute: the fallback for every cause.

@@ -343,7 +343,8 @@ fn leg() -> BoxedStrategy<Leg> {
 fn stage() -> BoxedStrategy<Stage> {
     use StageKind::{Approach, Arrival, Departure, EnRoute, Land, Mission, TakeOff};
     let kind = proptest::sample::select(vec![TakeOff, Departure, EnRoute, Mission, Arrival, Approach, Land]);
-    let turnaround = (of(number()), of(number())).prop_map(|(energy, time_s)| Turnaround { energy, time_s });
+    let energy = prop_oneof![Just(TurnaroundEnergy::Kept), number().prop_map(TurnaroundEnergy::Share)];
+    let turnaround = (of(energy), of(number())).prop_map(|(energy, time_s)| Turnaround { energy, time_s });
     (id(), text(), kind, emergency(), of(id()), of(altitude()), of(value()), turnaround, vec(leg(), 0..5))
         .prop_map(|(id, name, kind, emergency, runway, altitude, speed_mps, turnaround, legs)| Stage {
             id,

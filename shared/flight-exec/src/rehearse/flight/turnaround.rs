@@ -12,7 +12,7 @@ const MOST_S: f64 = 86_400.0;
 impl Flight<'_> {
     /// What is done on the ground takes its time and brings the energy; then the next flight is started where it takes off.
     pub(super) fn turn_around(&mut self) -> Result<(), PreviewError> {
-        let Some((landed, Turnaround { energy, time_s }, runway)) = self.stands_after() else {
+        let Some((landed, turnaround, runway)) = self.stands_after() else {
             self.at.ended = true;
             return Ok(());
         };
@@ -20,9 +20,9 @@ impl Flight<'_> {
         self.close_waypoint();
         self.close_passage();
         let (from_s, battery_left) = (self.at.time_s(), self.at.aircraft.battery().share());
-        self.pass(self.at.now_us + microseconds(time_s.unwrap_or(0.0).clamp(0.0, MOST_S)));
+        self.pass(self.at.now_us + microseconds(turnaround.time_s.unwrap_or(0.0).clamp(0.0, MOST_S)));
         self.at.began_us = self.at.now_us;
-        let battery_after = energy.unwrap_or(1.0).clamp(0.0, 1.0);
+        let battery_after = turnaround.energy_after(battery_left);
         let used_in_all_j = self.at.used_in_all_j();
         self.at.aircraft = standing(&runway, &self.at.aircraft.profile().clone());
         self.at.aircraft.set_battery_share(battery_after);
