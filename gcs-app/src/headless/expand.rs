@@ -2,6 +2,7 @@
 
 use super::output::{DASH, Output, or_stdout};
 use super::select::Selection;
+use super::source::Loaded;
 use super::wind::Air;
 use super::{Source, check, forecast, foreign};
 use crate::export::{self, Unflown};
@@ -119,11 +120,11 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
             Ok(Err(ExitCode::from(1)))
         }
         Ok((program, preview)) => Ok(Ok(Flown { program, preview, notes: loaded.notes })),
-        Err(unflown) => Ok(Err(print_unflown(&source.file, &unflown))),
+        Err(unflown) => Ok(Err(print_unflown(&source.file, &loaded, &unflown))),
     }
 }
 
-fn print_unflown(file: &Path, unflown: &Unflown) -> ExitCode {
+fn print_unflown(file: &Path, loaded: &Loaded, unflown: &Unflown) -> ExitCode {
     let shown = file.display();
     match unflown {
         Unflown::Errors(problems) => return check::print_errors(file, problems),
@@ -131,7 +132,12 @@ fn print_unflown(file: &Path, unflown: &Unflown) -> ExitCode {
             complain!("{shown}: the path must not be flown; --anyway writes it all the same");
             return check::print_errors(file, problems);
         }
-        Unflown::Endless(error) => complain!("{shown}: {}", forecast::why(error)),
+        Unflown::Endless(error) => {
+            let compiled = loaded.compile();
+            let why =
+                compiled.map_or_else(|_| error.to_string(), |(program, _)| forecast::why(&program, error));
+            complain!("{shown}: {why}");
+        }
         Unflown::Refused { seconds, reason } => complain!("{shown}: refused after {seconds:.0} s: {reason}"),
     }
     ExitCode::from(1)

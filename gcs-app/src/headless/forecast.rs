@@ -6,8 +6,11 @@ use super::wind::Air;
 use crate::report::{Happening, Record, Track, TrackPoint, assemble, flights};
 use aircraft::{Profile, Wind};
 use flight_exec::Event;
-use flight_exec::rehearse::{Advance, Options, Preview, PreviewError, Scenario, Start, preview_with};
-use flight_plan::{FlightPlan, Id, Program};
+use flight_exec::rehearse::{
+    Advance, Options, Preview, PreviewError, Scenario, Start, preview_as_far_as_possible, preview_with,
+};
+use flight_exec::review::{ending_conditions, open_end};
+use flight_plan::{FlightPlan, Id, Program, Variable, VariableValue};
 use std::collections::HashMap;
 use std::sync::Arc;
 use terrain::Terrain;
@@ -31,6 +34,23 @@ pub fn fly(
     air: Air,
     scenario: &Scenario,
 ) -> Result<Preview, PreviewError> {
+    match fly_as_far_as_possible(program, profile, terrain, air, scenario)? {
+        (preview, None) => Ok(preview),
+        (_, Some(error)) => Err(error),
+    }
+}
+
+/// As [`fly`]; a flight that ends too early is there up to its end, with the reason.
+///
+/// # Errors
+/// It can't be begun.
+pub fn fly_as_far_as_possible(
+    program: &Arc<Program>,
+    profile: &Profile,
+    terrain: &Arc<dyn Terrain>,
+    air: Air,
+    scenario: &Scenario,
+) -> Result<(Preview, Option<PreviewError>), PreviewError> {
     let legs: HashMap<Id, u64> = program
         .flown()
         .all_legs()
@@ -40,14 +60,32 @@ pub fn fly(
         .collect();
     let bar = progress::bar(PROGRESS);
     bar.set_length(legs.len() as u64);
+    let (options, start) = (options(), start(program, terrain.as_ref(), air.begin));
     progress::shown(&bar, || {
-        fly_reporting(program, profile, terrain, air, scenario, &mut |advance| {
-            let leg = advance.place.as_ref().map(|p| &p.leg);
-            bar.set_position(leg.and_then(|l| legs.get(l)).copied().unwrap_or(0));
-            bar.set_message(format!("{:.0} min, {}", advance.time_s / 60.0, leg.map_or("", |l| l.as_str())));
-            true
-        })
+        preview_as_far_as_possible(
+            program,
+            profile,
+            terrain,
+            air.wind,
+            start,
+            scenario,
+            &options,
+            &mut |advance| {
+                let leg = advance.place.as_ref().map(|p| &p.leg);
+                bar.set_position(leg.and_then(|l| legs.get(l)).copied().unwrap_or(0));
+                bar.set_message(format!(
+                    "{:.0} min, {}",
+                    advance.time_s / 60.0,
+                    leg.map_or("", |l| l.as_str())
+                ));
+                true
+            },
+        )
     })
+}
+
+fn options() -> Options {
+    Options { track_every_s: TRACK_EVERY_S, ..Options::default() }
 }
 
 /// Flies a program; `report` is told how far it is, and gives false when the flight is no longer wanted.
@@ -62,20 +100,49 @@ pub fn fly_reporting(
     scenario: &Scenario,
     report: &mut dyn FnMut(&Advance) -> bool,
 ) -> Result<Preview, PreviewError> {
-    let options = Options { track_every_s: TRACK_EVERY_S, ..Options::default() };
-    let start = start(program, terrain.as_ref(), air.begin);
+    let (options, start) = (options(), start(program, terrain.as_ref(), air.begin));
     preview_with(program, profile, terrain, air.wind, start, scenario, &options, report)
 }
 
 /// Why a flight ahead of time came to no end; who gives the commands can choose for the plan.
-pub fn why(error: &PreviewError) -> String {
+pub fn why(program: &Program, error: &PreviewError) -> String {
     match error {
         PreviewError::Waiting { .. } => format!("{error}, or choose a branch with --decide LEG=BRANCH"),
         PreviewError::NoStart => {
             "the plan has neither a take-off nor a place to begin at: say where in flight it begins with --begin LAT,LON,ALT,COURSE"
                 .into()
         }
-        _ => error.to_string(),
+        _ => without_end(program, error).unwrap_or_else(|| error.to_string()),
+    }
+}
+
+/// What a flight goes round in until its energy is used up or the preview is long enough, and how it is ended here.
+pub fn without_end(program: &Program, error: &PreviewError) -> Option<String> {
+    let (PreviewError::OutOfEnergy { seconds, leg } | PreviewError::TooLong { seconds, leg }) = error else {
+        return None;
+    };
+    let open = open_end(program, leg)?;
+    let (by, option) = match (open.as_fork(), ending_conditions(open).first()) {
+        (Some(fork), _) => {
+            let other = fork.branches.iter().find(|branch| Some(&branch.id) != fork.default)?;
+            ("a decision".into(), format!("--decide {}={}", open.id, other.id))
+        }
+        (None, Some(until)) => (format!("`{until}`"), set_to_end(program, until)),
+        (None, None) => ("a command".into(), "a `maxLaps`, `count` or `until` of its own".into()),
+    };
+    let minutes = seconds / 60.0;
+    Some(format!(
+        "`{}` is ended only by {by}, and goes on for {minutes:.0} min here: preview with {option}",
+        open.id
+    ))
+}
+
+/// How a condition becomes true: a variable by its value.
+fn set_to_end(program: &Program, until: &str) -> String {
+    let is_flag = |v: &&Variable| v.name.as_str() == until && matches!(v.initial, VariableValue::Bool(_));
+    match program.plan.variables.iter().find(is_flag) {
+        Some(flag) => format!("--set {}=true", flag.name),
+        None => "--set NAME=VALUE of what that reads".into(),
     }
 }
 
@@ -161,8 +228,45 @@ mod tests {
         let (program, profile) = loaded.compile().unwrap();
         let calm = Air::default();
         let error = fly(&program, profile, &loaded.terrain, calm, &Scenario::default()).unwrap_err();
-        assert!(why(&error).contains("--decide"), "{}", why(&error));
+        let said = why(&program, &error);
+        assert!(said.contains("--decide"), "{said}");
         assert!(!error.to_string().contains("scenario"), "{error}");
+    }
+
+    #[test]
+    fn a_hold_that_only_a_variable_ends_is_flown_until_then_and_says_which() {
+        let named = r#"<variable name="radius" "#;
+        let cleared = format!(r#"<variable name="cleared" type="bool" initial="false"/>{named}"#);
+        let hold = |legs: &str| {
+            let bad =
+                include_str!("../../../assets/plans/bad/path/hold-left-at-once.xml").replace(named, &cleared);
+            let (before, rest) = bad.split_once("<HM ").unwrap();
+            format!("{before}{legs}{}", rest.split_once("/>").unwrap().1)
+        };
+        let hm = r#"<HM id="hold" fix="C" course="52" turn="right" length="500" "#;
+        for (legs, said) in [
+            (format!(r#"{hm} until="cleared"/>"#), "`hold` is ended only by `cleared`"),
+            (format!(r#"{hm} until="battery &lt; radius * -1.0"/>"#), "--set NAME=VALUE"),
+            (format!("{hm}/>"), "`hold` is ended only by a command"),
+            (
+                format!(
+                    r#"<intersection id="ask" default="wait"><branch id="wait"/><branch id="go" next="on"/></intersection>
+                       {hm} maxLaps="1" next="ask"/><TF id="on" fix="D"/>"#
+                ),
+                "preview with --decide ask=go",
+            ),
+        ] {
+            let (_file, source) = source(hold(&legs).as_bytes());
+            let loaded = source.load().unwrap();
+            let (program, profile) = loaded.compile().unwrap_or_else(|problems| panic!("{problems:?}"));
+            let tired = Profile { energy_j: 0.1 * profile.energy_j, ..profile.clone() };
+            let (calm, scenario) = (Air::default(), Scenario::default());
+            let flown = fly_as_far_as_possible(&program, &tired, &loaded.terrain, calm, &scenario);
+            let (preview, error) = flown.unwrap();
+            assert!(preview.legs.iter().any(|passage| passage.place.leg.as_str() == "hold"));
+            let why = why(&program, &error.unwrap());
+            assert!(why.contains(said), "{why}");
+        }
     }
 
     #[test]

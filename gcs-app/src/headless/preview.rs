@@ -56,10 +56,17 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     // a diagram shows the geometry even if it breaks a rule
     let looks = target.diagram.is_none() && !selection.anyway;
     let forbidden = if looks { loaded.forbidden(air.conditions()) } else { Vec::new() };
-    let preview = match forecast::fly(&program, profile, &loaded.terrain, air, &scenario) {
-        Ok(preview) => preview,
-        Err(error) => {
-            complain!("{}: {}", source.file.display(), forecast::why(&error));
+    let flown = forecast::fly_as_far_as_possible(&program, profile, &loaded.terrain, air, &scenario);
+    let (preview, cut_short) = match flown {
+        Ok((preview, None)) => (preview, None),
+        // the flight is as the plan says up to there, and nothing forbids it
+        Ok((preview, Some(error)))
+            if forbidden.is_empty() && forecast::without_end(&program, &error).is_some() =>
+        {
+            (preview, Some(error))
+        }
+        Ok((_, Some(error))) | Err(error) => {
+            complain!("{}: {}", source.file.display(), forecast::why(&program, &error));
             return Ok(ExitCode::from(1));
         }
     };
@@ -81,10 +88,10 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
             report::write(&record, &target.out, &Progress::default())?;
         }
     }
-    match target.json {
-        true => say::document(&document(&source.file, &preview, pictures)),
-        false => say!("{}", line(&source.file, &preview, pictures)),
-    }?;
+    print(&source.file, target, &preview, glide.as_deref())?;
+    if let Some(error) = cut_short {
+        complain!("{}: shown as far as it goes: {}", source.file.display(), forecast::why(&program, &error));
+    }
     Ok(check::print_errors(&source.file, &forbidden))
 }
 

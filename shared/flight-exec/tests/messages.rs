@@ -105,6 +105,28 @@ fn a_condition_that_nothing_makes_true_is_open_ended() {
     }
 }
 
+/// As a holding that only the operator ends.
+#[test]
+fn a_default_that_leads_back_to_its_intersection_is_open_ended() {
+    let asked = |when: &str| {
+        let variables = r#"<variables><variable name="cleared" type="bool" initial="false"/></variables>"#;
+        let legs = format!(
+            r#"<intersection id="ask" default="wait"><branch id="go" next="on" {when}/><branch id="wait"/></intersection>
+               <HM id="hold" fix="B" course="90" turn="left" length="9000" maxLaps="1" next="ask"/><TF id="on" fix="C"/>"#
+        );
+        found(&document(variables, &legs))
+    };
+    for when in ["", r#"when="cleared""#] {
+        let problems = asked(when);
+        let problem = with_code(&problems, "open-ended");
+        assert_eq!((problem.is_error(), &problem.subject), (false, &Some("ask".into())), "{problem}");
+        assert!(problem.message.starts_with("give a branch of `ask` that leads on a condition"), "{problem}");
+        assert!(problems.iter().all(|p| p.code != "energy"), "{problems:?}");
+    }
+    assert!(asked(r#"when="battery &lt; 0.01""#).iter().any(|p| p.code == "energy"));
+    assert!(asked(r#"when="battery &lt; 0.5""#).iter().all(|p| !["energy", "open-ended"].contains(&p.code)));
+}
+
 /// Before the threshold on the runway's line; from 700 m on the landing flies straight in.
 #[test]
 fn a_gate_from_which_the_landing_flies_back_is_told() {
@@ -275,6 +297,29 @@ fn an_emergency_that_comes_to_its_landing_too_high_names_where_it_came_from() {
     let said = said.unwrap_or_else(|| panic!("{problem}"));
     assert!(said.contains(" m too high when it is entered from `"), "{problem}");
     assert!(said.contains("` at 1500 m AMSL: the gateway would refuse a waypoint of it: "), "{problem}");
+}
+
+/// North of C it rises by 30 cm a metre.
+struct Slope;
+
+impl Terrain for Slope {
+    fn elevation_m(&self, p: LatLon) -> Option<f64> {
+        Some(300.0 + ((p.lat_deg - 36.33) * 111_000.0 * 0.3).max(0.0))
+    }
+}
+
+/// Its northern corners are hundreds of metres higher than its fix, to which it never comes down.
+#[test]
+fn a_holding_that_never_reaches_its_altitude_is_told_so() {
+    let hold = r#"<HA id="down" fix="C" course="180" turn="right" length="3000" altitude="200" altitudeReference="agl"/><TF id="on" fix="B" altitude="900" altitudeReference="amsl"/>"#;
+    let legs = format!(r#"<TF id="c" fix="C" altitude="900" altitudeReference="amsl"/>{hold}"#);
+    let problems = found_over(&document("", &legs), Arc::new(Slope), Conditions::default());
+    let problem = with_code(&problems, "energy");
+    assert_eq!(problem.subject, Some("down".into()));
+    assert!(
+        problem.message.starts_with("write the altitude of `down` `amsl`: it never reaches it"),
+        "{problem}"
+    );
 }
 
 /// From one side of the pole to the other: that it is far, takes hours and can't be glided from follows.

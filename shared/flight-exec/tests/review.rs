@@ -805,6 +805,13 @@ fn a_later_flight_is_held_against_zones_and_its_own_energy() {
         found.into_iter().filter(|(code, _)| matches!(*code, "energy" | "low-reserve")).collect()
     };
     assert_eq!(energy("", Conditions::default()), []);
+    let assumed = |turnaround: &str| {
+        let found = over_flat_ground(&two_flights("", turnaround), Conditions::default());
+        found.into_iter().filter(|(code, _)| *code == "energy-assumed").collect::<Vec<_>>()
+    };
+    assert_eq!(assumed(""), on("energy-assumed", "l"));
+    assert_eq!(assumed(r#"turnaroundEnergy="1""#), []);
+    assert_eq!(assumed(r#"turnaroundEnergy="kept""#), []);
     assert_eq!(energy(r#"turnaroundEnergy="0.01""#, Conditions::default())[0].0, "energy");
     let mut wary = Conditions::default();
     wary.margins.energy_share = 0.999;

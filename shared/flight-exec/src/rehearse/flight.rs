@@ -134,10 +134,24 @@ impl<'a> Flight<'a> {
         (self.result, error)
     }
 
-    pub(super) fn flown(mut self, progress: Progress) -> Result<Preview, PreviewError> {
-        while self.on_to_the_next_leg(progress)? {}
+    pub(super) fn flown(self, progress: Progress) -> Result<Preview, PreviewError> {
+        match self.flown_on(progress) {
+            (flown, None) => Ok(flown),
+            (_, Some(error)) => Err(error),
+        }
+    }
+
+    /// As [`Self::flown`]; a flight that ends too early is there up to its end, with the reason.
+    pub(super) fn flown_on(mut self, progress: Progress) -> (Preview, Option<PreviewError>) {
+        let error = loop {
+            match self.on_to_the_next_leg(progress) {
+                Ok(true) => {}
+                Ok(false) => break None,
+                Err(error) => break Some(error),
+            }
+        };
         self.close();
-        Ok(self.result)
+        (self.result, error)
     }
 
     fn is_over(&self) -> bool {

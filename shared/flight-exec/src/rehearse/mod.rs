@@ -259,6 +259,28 @@ pub fn preview_with(
     Flight::new(program, profile, terrain, start, given, false)?.flown(progress)
 }
 
+/// As [`preview_with`]; a flight that ends too early is there up to its end, with the reason.
+///
+/// # Errors
+/// The flight can't start.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the circumstances of a flight: each is known to another part of the caller"
+)]
+pub fn preview_as_far_as_possible(
+    program: &Arc<Program>,
+    profile: &Profile,
+    terrain: &Arc<dyn Terrain>,
+    winds: impl Into<Winds>,
+    start: Start,
+    scenario: &Scenario,
+    options: &Options,
+    progress: &mut dyn FnMut(&Advance) -> bool,
+) -> Result<(Preview, Option<PreviewError>), PreviewError> {
+    let given = Circumstances { winds: winds.into(), scenario, options };
+    Ok(Flight::new(program, profile, terrain, start, given, false)?.flown_on(progress))
+}
+
 /// As [`preview_on`]; one that ends too early is there up to its end, with the reason. `None`: nothing is being flown.
 pub(crate) fn preview_on_as_far_as_possible(
     flight: Executor,

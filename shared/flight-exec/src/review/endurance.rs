@@ -1,22 +1,32 @@
 //! `energy`: the energy does not last to the plan's end; `low-reserve`: it does, but hardly anything is left; `open-ended`: it
-//! does not, where only a person or a service ends a loop or a holding, or a condition that nothing makes true before; `not-startable`, `endless-flight`: the flight
+//! does not, where only a person or a service ends a loop, a holding or the way round by an intersection, or a condition that nothing makes
+//! true before; `energy-assumed`: nothing is written of the energy of the next flight; `not-startable`, `endless-flight`: the flight
 //! ahead of time does not begin or end.
 
 use super::View;
 use super::flights::Choice;
-use crate::rehearse::{LegPassage, Preview, PreviewError};
+use super::flown::Flown;
+use super::open_end::{ending_conditions, open_end};
+use crate::rehearse::{LegPassage, Preview, PreviewError, Stop};
 use flight_plan::legible::told_apart;
-use flight_plan::{Env, FlightState, Id, Leg, LegKind, Problem};
+use flight_plan::{Env, FlightState, Id, LegKind, Problem};
 use std::collections::HashMap;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     problems.extend(match &view.flights.planned {
         Ok(planned) => low_reserve(view, planned),
-        Err(PreviewError::OutOfEnergy { seconds, leg }) => Some(out_of_energy(view, *seconds, leg)),
-        Err(error) => without_end(error),
+        Err(error) => never_high_enough(view, error).or_else(|| ended_too_early(view, error)),
     });
+    problems.extend(view.flights.planned.iter().flat_map(|planned| assumed(view, planned)));
     let others = view.flights.chosen.iter();
     problems.extend(others.filter_map(|(choices, flight)| chosen(view, choices, flight)));
+}
+
+fn ended_too_early(view: &View, error: &PreviewError) -> Option<Problem> {
+    match error {
+        PreviewError::OutOfEnergy { seconds, leg } => Some(out_of_energy(view, *seconds, leg)),
+        error => without_end(error),
+    }
 }
 
 /// What is wrong with a flight that does not begin or end.
@@ -43,6 +53,26 @@ fn chosen(view: &View, choices: &[Choice], flight: &Result<Preview, PreviewError
     let choices: Vec<_> = choices.iter().map(|c| format!("`{}` at `{}`", c.branch, c.leg)).collect();
     problem.message = format!("with {}: {}", choices.join(", "), problem.message);
     Some(problem)
+}
+
+/// Landings behind which another flight begins with more than is left, and nobody says that.
+fn assumed(view: &View, planned: &Preview) -> Vec<Problem> {
+    let is_told = |stop: &&Stop| {
+        let stage = view.program.plan.stage(&stop.stage);
+        stop.battery_after <= stop.battery_left
+            || stage.is_some_and(|stage| stage.turnaround.energy.is_some())
+    };
+    let stops = planned.stops.iter().zip(1..).filter(|(stop, _)| !is_told(stop));
+    let problem = |(stop, flight): (&Stop, usize)| {
+        let message = format!(
+            "write `turnaroundEnergy` here, 1 for a full battery or `kept` for what is left: flight {} is taken to begin with {:.0} %, flight {flight} lands with {:.0} %",
+            flight + 1,
+            stop.battery_after * 100.0,
+            stop.battery_left * 100.0
+        );
+        Problem::warning("energy-assumed", message).of(&stop.stage)
+    };
+    stops.map(problem).collect()
 }
 
 /// Of its flights the first that lands with too little.
@@ -88,45 +118,52 @@ fn spent(legs: &[LegPassage], full_j: f64) -> String {
     if told.is_empty() { String::new() } else { format!("; most goes to {}", told.join(", ")) }
 }
 
+/// A holding to an altitude that it was still flying when its layout was given up, hours later.
+fn is_never_left(view: &View, leg: &Id) -> bool {
+    let is_last = |flown: &Flown| flown.waypoints.last().is_some_and(|last| last.waypoint.leg == *leg);
+    matches!(view.program.leg(leg).map(|leg| &leg.kind), Some(LegKind::Ha(_)))
+        && view.flights.main.iter().any(is_last)
+}
+
+/// A flight that is longer than any, in such a holding.
+fn never_high_enough(view: &View, error: &PreviewError) -> Option<Problem> {
+    let (PreviewError::TooLong { seconds, leg } | PreviewError::OutOfEnergy { seconds, leg }) = error else {
+        return None;
+    };
+    let message = format!(
+        "write the altitude of `{leg}` `amsl`: it never reaches it, because above the ground each corner of the racetrack has another one, and goes on for {:.0} min",
+        seconds / 60.0
+    );
+    is_never_left(view, leg).then(|| Problem::error("energy", message).of(leg))
+}
+
 fn out_of_energy(view: &View, seconds: f64, leg: &Id) -> Problem {
     let minutes = seconds / 60.0;
-    let open = view.program.path(leg).map(|path| view.program.chain(&path)).unwrap_or_default();
-    let ends = |l: &&&Leg| {
-        matches!(l.kind, LegKind::Iterative { count: None, .. } | LegKind::Hm { max_laps: None, .. })
-    };
-    let Some(endless) = open.iter().find(ends) else {
+    let Some(endless) = open_end(view.program, leg) else {
         let message = format!("shorten the plan: the energy is used up after {minutes:.0} min, on this leg");
         return Problem::error("energy", message).of(leg);
     };
     let id = &endless.id;
-    match until(&endless.kind).map(|until| (until, holds_when_empty(view, until, seconds))) {
-        Some((until, true)) => {
-            let message = format!(
-                "let `{id}` end earlier: `{until}` becomes true too late, the energy is used up after {minutes:.0} min; it is read only at the end of each pass or lap, so that the energy for one more and for the way home has to be left then"
-            );
-            Problem::error("energy", message).of(id)
-        }
-        Some((until, false)) => {
-            let message = format!(
-                "give `{id}` a count too, or a condition on the battery: `{until}` does not become true by itself before the energy is used up after {minutes:.0} min"
-            );
-            Problem::warning("open-ended", message).of(id)
-        }
-        None => {
-            let message = format!(
-                "give `{id}` a count, or a condition on the battery: only a person or a service ends it, and the energy is used up after {minutes:.0} min"
-            );
-            Problem::warning("open-ended", message).of(id)
-        }
+    let conditions = ending_conditions(endless);
+    if let Some(until) = conditions.iter().find(|until| holds_when_empty(view, until, seconds)) {
+        let message = format!(
+            "let `{id}` end earlier: `{until}` becomes true too late, the energy is used up after {minutes:.0} min; it is read only at the end of each pass or lap, so that the energy for one more and for the way home has to be left then"
+        );
+        return Problem::error("energy", message).of(id);
     }
-}
-
-/// The condition that ends a loop or a holding.
-fn until(kind: &LegKind) -> Option<&str> {
-    match kind {
-        LegKind::Iterative { until, .. } | LegKind::Hm { until, .. } => until.as_deref(),
-        _ => None,
-    }
+    let is_fork = endless.as_fork().is_some();
+    let message = match (conditions.first(), is_fork) {
+        (Some(until), false) => format!(
+            "give `{id}` a count too, or a condition on the battery: `{until}` does not become true by itself before the energy is used up after {minutes:.0} min"
+        ),
+        (None, false) => format!(
+            "give `{id}` a count, or a condition on the battery: only a person or a service ends it, and the energy is used up after {minutes:.0} min"
+        ),
+        (_, true) => format!(
+            "give a branch of `{id}` that leads on a condition on the battery (`when`): its default leads back here until somebody decides, and the energy is used up after {minutes:.0} min"
+        ),
+    };
+    Problem::warning("open-ended", message).of(id)
 }
 
 /// With nothing left a condition on the energy or the time holds at last; one that nobody and nothing brings about does not.

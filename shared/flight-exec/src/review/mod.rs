@@ -34,6 +34,7 @@ mod glide;
 mod held;
 mod landings;
 mod layout;
+mod open_end;
 pub mod plausibility;
 mod powered;
 mod prepared;
@@ -61,6 +62,7 @@ use flight_plan::{
 };
 use flights::Flights;
 pub use foresight::foresee;
+pub use open_end::{ending_conditions, open_end};
 use prepared::Zones;
 use std::collections::HashSet;
 use std::sync::Arc;

@@ -6,6 +6,8 @@ use super::remedy::changed;
 use super::step::Step;
 use crate::suggest::{meant, question};
 use crate::{Branch, DecideBefore, Edit, Id, Leg, LegKind, Problem};
+use std::collections::HashSet;
+use std::sync::Arc;
 
 pub(super) fn check(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = &step.leg;
@@ -20,7 +22,6 @@ pub(super) fn check(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
             let problem = Problem::error("unknown-branch", message).of(&leg.id);
             problems.push(problem.perhaps_fixed_by(near.map(|near| set_default(&leg.id, &near.into()))));
         }
-        None if branches.len() > 1 => problems.push(undecided(leg, branches)),
         _ => {}
     }
     let (DecideBefore::Time(ahead) | DecideBefore::Distance(ahead)) = decide_before;
@@ -30,10 +31,31 @@ pub(super) fn check(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     }
 }
 
-fn undecided(leg: &Leg, branches: &[Branch]) -> Problem {
-    let message = "name a default branch: without one the aircraft holds here and asks";
-    let first = branches.first().map(|b| set_default(&leg.id, &b.id));
-    Problem::warning("no-default", message).of(&leg.id).perhaps_fixed_by(first)
+/// Those without a default: what it may be is seen from the legs that the branches lead to.
+pub(super) fn undecided(view: &Inspection, problems: &mut Vec<Problem>) {
+    for list in &view.lists {
+        let mut holdings: Option<HashSet<&Id>> = None;
+        for (index, leg) in list.iter().enumerate() {
+            let Some(fork) = leg.as_fork().filter(|fork| fork.default.is_none() && fork.branches.len() > 1)
+            else {
+                continue;
+            };
+            let holdings =
+                holdings.get_or_insert_with(|| list.iter().filter(holds).map(|leg| &leg.id).collect());
+            let behind = list.get(index + 1).map(|leg| &leg.id);
+            let waits =
+                |branch: &&Branch| branch.next.as_ref().or(behind).is_some_and(|to| holdings.contains(to));
+            let default = fork.branches.iter().find(waits).or(fork.branches.first());
+            let message = "name a default branch: without one the aircraft holds here and asks";
+            let fix = default.map(|branch| set_default(&leg.id, &branch.id));
+            problems.push(Problem::warning("no-default", message).of(&leg.id).perhaps_fixed_by(fix));
+        }
+    }
+}
+
+/// Nothing is begun by it that somebody should have decided.
+fn holds(leg: &&Arc<Leg>) -> bool {
+    matches!(leg.kind, LegKind::Hf(_) | LegKind::Ha(_) | LegKind::Hm { .. } | LegKind::Orbit { .. })
 }
 
 fn set_default(leg: &Id, branch: &Id) -> Edit {
@@ -49,7 +71,8 @@ fn at_the_intersection(kind: &mut LegKind) -> Option<()> {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, fixed_legs};
+    use crate::checks::testing::{check_legs, fixed_legs, plan_with};
+    use crate::{Edit, check, read};
 
     #[test]
     fn defaults_and_deadlines() {
@@ -70,5 +93,27 @@ mod tests {
             (&with(""), "no-default"),
             (&with(r#"default="left" decideBefore="-1s""#), "bad-deadline"),
         ]);
+    }
+
+    /// Whoever takes the remedy does not begin the approach by it.
+    #[test]
+    fn the_default_that_is_offered_waits_if_a_branch_does() {
+        let offered = |second: &str| {
+            let legs = format!(
+                r#"<IF id="a" fix="A"/><TF id="b" fix="B"/>
+                <intersection id="ask"><branch id="go" next="c"/><branch id="wait" {second}/></intersection>
+                <HM id="hold" fix="B" turn="right" length="500" maxLaps="1" next="ask"/><TF id="c" fix="C"/><TF id="d" fix="A"/>"#
+            );
+            let plan = read(plan_with(&legs)).plan;
+            let problems = check(&plan, &aircraft::Profile::default(), &terrain::Flat(300.0));
+            let problem = problems.into_iter().find(|p| p.code == "no-default").unwrap();
+            match problem.fix.as_deref() {
+                Some(Edit::SetDefault { branch: Some(branch), .. }) => branch.to_string(),
+                other => panic!("{other:?}"),
+            }
+        };
+        assert_eq!(offered(r#"next="hold""#), "wait");
+        assert_eq!(offered(""), "wait");
+        assert_eq!(offered(r#"next="d""#), "go");
     }
 }

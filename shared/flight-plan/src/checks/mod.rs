@@ -76,7 +76,7 @@ enum Rule {
 }
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 42] = {
+const RULES: [Rule; 43] = {
     use Rule::{Leg, Plan};
     [
         Plan(empty::check),
@@ -96,6 +96,7 @@ const RULES: [Rule; 42] = {
         Plan(stages::check),
         Plan(order::check),
         Leg(iteratives::check),
+        Plan(intersections::undecided),
         Leg(intersections::check),
         Leg(tracks::check),
         Leg(returns::check),
