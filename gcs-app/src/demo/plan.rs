@@ -152,6 +152,7 @@ impl Prepared {
             places: assemble::places(&self.program.plan),
             zones: self.program.plan.zones.clone(),
             areas: assemble::areas(&self.program, &flown, &recorded.events),
+            routes: assemble::routes(&self.program, &flown),
             energy: flights::reported(&flown, &recorded.battery, self.profile.energy_j),
             flown,
             happenings: recorded.events.iter().map(|(t, e)| assemble::happening(*t, e)).collect(),

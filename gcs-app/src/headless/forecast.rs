@@ -203,6 +203,7 @@ pub fn record(loaded: &Loaded, program: &Program, preview: &Preview, wind: &Wind
         places: assemble::places(&program.plan),
         zones: program.plan.zones.clone(),
         areas: assemble::areas(program, &planned, &preview.events),
+        routes: assemble::routes(program, &planned),
         planned,
         energy: flights::previewed(preview),
         flown: Track::default(),

@@ -7,8 +7,8 @@ use super::{Source, check, forecast, foreign};
 use crate::jobs::Progress;
 use crate::report;
 use crate::say;
-use flight_exec::rehearse::{Preview, Stop};
-use flight_plan::Id;
+use flight_exec::rehearse::{Glide, Preview, Stop, glide_instead};
+use flight_plan::{Cause, Id};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -77,14 +77,19 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     if !selection.goes_without(&forecast::left_out(&preview), &source.file) {
         return Ok(ExitCode::from(1));
     }
-    let pictures = target.diagram.as_ref().unwrap_or(&target.out);
+    let glide = match selection.cause {
+        Some(Cause::Engine) => glide_instead(&program, profile, loaded.terrain.as_ref(), air.wind, &preview),
+        _ => None,
+    };
+    let glide = glide.map(|(runway, glide)| gliding(&runway, &glide));
     match &target.diagram {
         Some(picture) => {
             let stage = target.stage.as_deref().map(Id::new);
             target.overwriting.write(picture, &report::diagram::png(&program, &preview, stage.as_ref())?)?;
         }
         None => {
-            let record = forecast::record(&loaded, &program, &preview, &air.wind);
+            let mut record = forecast::record(&loaded, &program, &preview, &air.wind);
+            record.notes.extend(glide.clone());
             report::write(&record, &target.out, &Progress::default())?;
         }
     }
@@ -95,17 +100,46 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     Ok(check::print_errors(&source.file, &forbidden))
 }
 
-fn line(file: &Path, preview: &Preview, out: &Path) -> String {
+/// The outcome on standard output.
+fn print(file: &Path, target: &Target, preview: &Preview, glide: Option<&str>) -> std::io::Result<()> {
+    if target.json {
+        let pictures = target.diagram.as_ref().unwrap_or(&target.out);
+        return say::document(&document(file, preview, pictures, glide));
+    }
+    say!("{}", line(file, preview, target))?;
+    match glide {
+        Some(glide) => say!("{}: {glide}", file.display()),
+        None => Ok(()),
+    }
+}
+
+fn line(file: &Path, preview: &Preview, target: &Target) -> String {
+    let pictures = match &target.diagram {
+        Some(picture) => format!("picture in {}", picture.display()),
+        None => format!("pictures in {}", target.out.display()),
+    };
     format!(
-        "{}: {:.0} min, {:.1} km, {} waypoints, {}{:.0} % of the energy left; pictures in {}",
+        "{}: {:.0} min, {:.1} km, {} waypoints, {}{:.0} % of the energy left; {pictures}",
         file.display(),
         preview.time_s / 60.0,
         preview.distance_m / 1000.0,
         preview.waypoints.len(),
         stops(preview),
-        preview.battery_left * 100.0,
-        out.display()
+        preview.battery_left * 100.0
     )
+}
+
+/// How a glide ends that begins where the emergency plan is flown with an engine here.
+fn gliding(runway: &Id, glide: &Glide) -> String {
+    let way = if glide.along_plan { "along the plan" } else { "straight" };
+    let margin_m = glide.margin_m;
+    let end = match glide.hill {
+        Some(hill) => format!("runs into a hill at {:.5}, {:.5}", hill.lat_deg, hill.lon_deg),
+        None if !margin_m.is_finite() => "does not get there against the wind".into(),
+        None if margin_m < 0.0 => format!("ends before it, {:.0} m of height are lacking", -margin_m),
+        None => format!("arrives {margin_m:.0} m above it after {:.1} min", glide.time_s / 60.0),
+    };
+    format!("without engine, the glide {way} to {runway} {end}")
 }
 
 /// Where it lands before the end, and with how much energy.
@@ -117,7 +151,7 @@ fn stops(preview: &Preview) -> String {
     preview.stops.iter().map(stop).collect()
 }
 
-fn document(file: &Path, preview: &Preview, out: &Path) -> serde_json::Value {
+fn document(file: &Path, preview: &Preview, out: &Path, glide: Option<&str>) -> serde_json::Value {
     serde_json::json!({
         "file": file.display().to_string(),
         "out": out.display().to_string(),
@@ -128,6 +162,7 @@ fn document(file: &Path, preview: &Preview, out: &Path) -> serde_json::Value {
         "landed": preview.landed,
         "legs": preview.legs,
         "stops": preview.stops,
+        "glide": glide,
     })
 }
 
@@ -135,11 +170,27 @@ fn document(file: &Path, preview: &Preview, out: &Path) -> serde_json::Value {
 mod tests {
     use super::*;
     use clap::Parser;
+    use geometry::LatLon;
 
     #[derive(Debug, Parser)]
     struct Line {
         #[command(flatten)]
         target: Target,
+    }
+
+    #[test]
+    fn a_glide_is_told_with_how_it_ends() {
+        let glide = |margin_m: f64, hill: Option<LatLon>| {
+            let glide = Glide { along_plan: true, path: Vec::new(), time_s: 186.0, margin_m, hill };
+            gliding(&"R05".into(), &glide)
+        };
+        assert_eq!(
+            glide(120.0, None),
+            "without engine, the glide along the plan to R05 arrives 120 m above it after 3.1 min"
+        );
+        assert!(glide(-30.0, None).ends_with("ends before it, 30 m of height are lacking"));
+        assert!(glide(f64::NEG_INFINITY, None).ends_with("against the wind"));
+        assert!(glide(1.0, Some(LatLon::new(36.0, -84.0))).ends_with("a hill at 36.00000, -84.00000"));
     }
 
     #[test]

@@ -24,8 +24,12 @@ pub struct Selection {
     /// Fly this emergency plan.
     #[arg(long, value_name = "PLAN")]
     pub emergency: Option<String>,
-    /// The leg on which the emergency is raised (in a call: CALL.LEG); default: the first leg.
-    #[arg(long, value_name = "LEG", requires = "emergency")]
+    /// Raise an emergency for this cause: engine, energy, gps, link, traffic, payload or operator; without --emergency the plan that
+    /// the leg names for it is flown. After an engine failure the preview says where a glide ends.
+    #[arg(long, value_name = "CAUSE", value_parser = cause)]
+    pub cause: Option<Cause>,
+    /// The leg on which the emergency is raised (in a call: CALL.LEG), and how many seconds later; default: the first leg.
+    #[arg(long, value_name = "LEG[+SECONDS]")]
     pub at: Option<String>,
     /// Even if the path breaks a rule: terrain, zones, energy or an emergency plan out of reach.
     #[arg(long)]
@@ -39,6 +43,11 @@ pub struct Selection {
 fn pair(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE")?;
     Ok((name.trim().to_owned(), value.trim().to_owned()))
+}
+
+fn cause(text: &str) -> Result<Cause, String> {
+    let known = serde_json::from_value(text.into());
+    known.map_err(|_| "write engine, energy, gps, link, traffic, payload or operator".to_owned())
 }
 
 impl Selection {
@@ -76,36 +85,54 @@ impl Selection {
             let then = vec![Act::Command(Command::Decide { leg, branch })];
             triggers.push(Trigger { at: When::After { seconds: 0.0 }, then });
         }
-        if let Some(name) = &self.emergency {
-            let emergency = plan.emergency_plans.iter().find(|e| e.id.as_str() == name);
-            let Some(emergency) = emergency else {
-                let names: Vec<_> = plan.emergency_plans.iter().map(|e| e.id.to_string()).collect();
-                let meant = did_you_mean(name, names.iter().map(String::as_str));
-                bail!("there is no emergency plan `{name}`: there are {}{meant}", names.join(", "));
-            };
-            let leg = self.raised_at(plan)?;
-            let command = Command::Emergency { cause: Cause::Operator, plan: Some(emergency.id.clone()) };
-            let at = When::Entering { leg, iteration: None };
-            triggers.push(Trigger { at, then: vec![Act::Command(command)] });
+        if self.is_emergency() {
+            let (cause, plan_id) = (self.cause.unwrap_or(Cause::Operator), self.emergency_plan(plan)?);
+            let then = vec![Act::Command(Command::Emergency { cause, plan: plan_id })];
+            triggers.push(Trigger { at: self.raised_at(plan)?, then });
+        } else if let Some(at) = &self.at {
+            bail!("say with --emergency PLAN or --cause CAUSE what happens at `{at}`");
         }
         Ok(Scenario { triggers })
     }
 
-    fn raised_at(&self, plan: &FlightPlan) -> anyhow::Result<Id> {
-        match &self.at {
-            Some(name) => Ok(known_leg(plan, name)?),
-            None => {
-                let first = plan.stages.iter().flat_map(|s| &s.legs).next();
-                first.map(|l| l.first_flown().id.clone()).ok_or_else(|| anyhow!("the main plan has no leg"))
-            }
-        }
+    fn is_emergency(&self) -> bool {
+        self.emergency.is_some() || self.cause.is_some()
+    }
+
+    /// The one that is named; `None`: that of the leg.
+    fn emergency_plan(&self, plan: &FlightPlan) -> anyhow::Result<Option<Id>> {
+        let Some(name) = &self.emergency else { return Ok(None) };
+        let found = plan.emergency_plans.iter().find(|e| e.id.as_str() == name);
+        found.map(|emergency| Some(emergency.id.clone())).ok_or_else(|| {
+            let names: Vec<_> = plan.emergency_plans.iter().map(|e| e.id.to_string()).collect();
+            let meant = did_you_mean(name, names.iter().map(String::as_str));
+            anyhow!("there is no emergency plan `{name}`: there are {}{meant}", names.join(", "))
+        })
+    }
+
+    fn raised_at(&self, plan: &FlightPlan) -> anyhow::Result<When> {
+        let Some(at) = &self.at else {
+            let first = plan.stages.iter().flat_map(|s| &s.legs).next();
+            let first = first.ok_or_else(|| anyhow!("the main plan has no leg"))?;
+            return Ok(When::Entering { leg: first.first_flown().id.clone(), iteration: None });
+        };
+        // no identifier has a plus in it
+        let Some((name, later)) = at.split_once('+') else {
+            return Ok(When::Entering { leg: known_leg(plan, at)?, iteration: None });
+        };
+        let seconds = later.trim().parse().ok().filter(|s: &f64| s.is_finite() && *s >= 0.0);
+        let seconds = seconds.ok_or_else(|| anyhow!("write --at LEG+SECONDS, as in --at {name}+30"))?;
+        Ok(When::Since { leg: known_leg(plan, name.trim())?, seconds })
     }
 
     /// A passage belongs to the way selected.
     pub fn takes(&self, passage: Option<usize>, preview: &Preview) -> bool {
-        let Some(name) = &self.emergency else { return true };
+        if !self.is_emergency() {
+            return true;
+        }
         let leg = passage.and_then(|p| preview.legs.get(p));
-        leg.is_some_and(|l| matches!(&l.place.plan, Branching::Emergency(id) if id.as_str() == name))
+        let is_it = |id: &Id| self.emergency.as_ref().is_none_or(|name| id.as_str() == name);
+        leg.is_some_and(|l| matches!(&l.place.plan, Branching::Emergency(id) if is_it(id)))
     }
 
     /// Legs of a flight that could not be laid out are told, each with its reason; true if the flight may be written without them.
@@ -298,5 +325,24 @@ mod tests {
         }
         assert_eq!(decide("ask=close").scenario(&plan).unwrap().triggers.len(), 1);
         assert_eq!(emergency("return", None).scenario(&plan).unwrap().triggers.len(), 1);
+    }
+
+    #[test]
+    fn an_emergency_has_a_cause_and_a_moment() {
+        let plan = flight_plan::read(FIRE_WATCH).plan;
+        let at =
+            |cause: Option<Cause>, at: &str| Selection { cause, at: Some(at.into()), ..Selection::default() };
+        let scenario = at(Some(Cause::Engine), "sweep+30").scenario(&plan).unwrap();
+        let [trigger] = scenario.triggers.as_slice() else { panic!("{scenario:?}") };
+        assert_eq!(trigger.at, When::Since { leg: "sweep".into(), seconds: 30.0 });
+        assert!(matches!(
+            trigger.then.as_slice(),
+            [Act::Command(Command::Emergency { cause: Cause::Engine, plan: None })]
+        ));
+        let refused = |selection: Selection| selection.scenario(&plan).unwrap_err().to_string();
+        assert!(refused(at(Some(Cause::Engine), "sweep+soon")).contains("--at sweep+30"));
+        assert!(refused(at(None, "sweep")).contains("--cause CAUSE"));
+        assert_eq!(cause("engine"), Ok(Cause::Engine));
+        assert!(cause("boredom").unwrap_err().starts_with("write engine"));
     }
 }

@@ -3,11 +3,12 @@
 use super::record::{Area, Happening, PassageKey, Place, PlaceKind, Track, TrackPoint};
 use flight_exec::{Event, IterationPlace, Phase, PlacePointer};
 use flight_plan::{
-    Altitude, AltitudeReference, Env, FlightPlan, FlightState, Id, LegKind, Pattern, Program, Spacing,
+    Altitude, AltitudeReference, Env, FlightPlan, FlightState, Id, Leg, LegKind, Pattern, Program, Spacing,
     StageKind, Value, VariableValue, Variables,
 };
 use geometry::LatLon;
 use geometry::scan::camera_spacing_m;
+use std::collections::HashSet;
 
 /// Corners of the polygon that stands for a circle.
 const CIRCLE_CORNERS: u32 = 120;
@@ -110,6 +111,34 @@ pub fn areas(program: &Program, track: &Track, events: &[(f64, Event)]) -> Vec<A
             Some(Area { label, outline, holes, spacing_m, passage: passage.key.clone() })
         })
         .collect()
+}
+
+/// The lines that the legs of a track fly along (each once), and the outlines that they fly around, at the variables' initial values.
+pub fn routes(program: &Program, track: &Track) -> Vec<Vec<LatLon>> {
+    let variables = Variables::initial(&program.plan);
+    let env = Env { variables: &variables, flight: FlightState::at_start(program.plan.home()) };
+    let mut seen: HashSet<&str> = HashSet::new();
+    let flown = track.passages().iter().map(|passage| passage.key.leg.as_str());
+    let legs = flown.filter(|leg| seen.insert(leg)).filter_map(|leg| program.leg(&Id::new(leg)));
+    legs.filter_map(|leg| match &leg.kind {
+        LegKind::Pattern(Pattern::Contour { area, inward: false, .. }) => {
+            let mut ring = corners(program, area, &env)?;
+            ring.extend(ring.first().copied());
+            Some(ring)
+        }
+        _ => route(program, leg, &env),
+    })
+    .collect()
+}
+
+/// The line that a leg flies along; `None`: it has none, or its values can't be computed.
+pub(super) fn route(program: &Program, leg: &Leg, env: &Env) -> Option<Vec<LatLon>> {
+    match &leg.kind {
+        LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. }) => {
+            route.iter().map(|place| program.eval_place(place, env).ok()).collect()
+        }
+        _ => None,
+    }
 }
 
 /// The variables' values just before a time, seconds.

@@ -70,6 +70,9 @@ fn draw_flight(canvas: &mut Canvas, record: &Record, view: &View, labels: &mut L
     for area in &record.areas {
         draw_area(canvas, view, area);
     }
+    for route in &record.routes {
+        canvas.line(&view.pixels(route), Pen::dashed(AREA, 2.4, [10.0, 6.0]));
+    }
     draw_tracks(canvas, record, view);
     draw_places(canvas, view, labels, &record.places, PAPER);
 }

@@ -198,6 +198,8 @@ pub struct Record {
     pub zones: Vec<Zone>,
     /// Scanned areas.
     pub areas: Vec<Area>,
+    /// Lines that legs fly along, and outlines that they fly around.
+    pub routes: Vec<Vec<LatLon>>,
     /// What each flight of the plan took, in order; empty: not known.
     pub energy: Vec<Energy>,
     /// What happened, in order.
@@ -246,6 +248,7 @@ pub(crate) mod tests {
                 spacing_m: 150.0,
                 passage: key("sweep", "patrol 1"),
             }],
+            routes: Vec::new(),
             energy: Vec::new(),
             happenings: vec![
                 Happening {

@@ -52,12 +52,7 @@ impl Diagram<'_> {
         match &leg.kind {
             LegKind::Scan(scan) => self.area(&scan.area, env),
             LegKind::Pattern(Pattern::Contour { area, .. }) => self.area(area, env),
-            LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. }) => {
-                let route: Option<Vec<LatLon>> =
-                    route.iter().map(|p| self.program.eval_place(p, env).ok()).collect();
-                Some(Thing { rings: vec![route?], is_route: true })
-            }
-            _ => None,
+            _ => Some(Thing { rings: vec![assemble::route(self.program, leg, env)?], is_route: true }),
         }
     }
 

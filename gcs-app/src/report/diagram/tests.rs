@@ -26,6 +26,19 @@ fn what_is_flown_backwards_has_its_own_colour_and_legend() {
     assert_eq!(of_stage, png(&program, &preview, Some(&Id::new("demo"))).unwrap(), "always the same bytes");
 }
 
+/// The map of a preview draws them, too: how far the path is from its line is seen there.
+#[test]
+fn what_is_flown_along_or_around_is_a_route() {
+    let routes = |name: &str| {
+        let (program, preview) = fragment(name);
+        assemble::routes(&program, &forecast::track(&preview, &[program.flown()]))
+    };
+    let line = routes("track-line.xml");
+    assert!(line.len() == 1 && line[0].len() > 2 && line[0].first() != line[0].last(), "{line:?}");
+    assert_eq!(routes("corridor.xml").len(), 1);
+    assert!(routes("scan.xml").is_empty());
+}
+
 #[test]
 fn a_stage_that_is_not_flown_is_refused() {
     let (program, preview) = fragment("iterative-reverse.xml");

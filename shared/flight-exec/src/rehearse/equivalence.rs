@@ -35,6 +35,7 @@ fn left_us(due: &Due, now_us: u64) -> [u64; 2] {
 }
 
 fn same_place(one: &Moment, other: &Moment) -> bool {
-    let Moment { time_s: _, place, waypoints } = one;
+    // times are held against each other by what is due
+    let Moment { time_s: _, in_leg_s: _, place, waypoints } = one;
     (place, waypoints) == (&other.place, &other.waypoints)
 }

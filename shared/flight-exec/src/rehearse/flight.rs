@@ -210,7 +210,9 @@ impl<'a> Flight<'a> {
 
     fn pass(&mut self, now_us: u64) {
         self.at.now_us = now_us;
-        self.at.moment.time_s = self.at.time_s();
+        let now_s = self.at.time_s();
+        self.at.moment.time_s = now_s;
+        self.at.moment.in_leg_s = self.at.passage.as_ref().map_or(0.0, |passage| now_s - passage.start_s);
     }
 
     /// The aircraft is at its waypoint, or was within the last step.
@@ -352,6 +354,7 @@ impl<'a> Flight<'a> {
         self.close_passage();
         self.at.entered = true;
         self.at.moment.place = Some(place.clone());
+        self.at.moment.in_leg_s = 0.0;
         self.at.moment.waypoints = 0;
         self.at.passage = Some(LegPassage {
             place,

@@ -16,7 +16,7 @@ mod what_if;
 
 pub use glide::GlidePoint;
 pub(crate) use glide::{GlideStart, glide, names_engine, route, turn_rad};
-pub use rehearsal::{Diversion, Glide, Kept, Powered, Reach, Rehearsal};
+pub use rehearsal::{Diversion, Glide, Kept, Powered, Reach, Rehearsal, glide_instead};
 pub use scenario::{Act, Scenario, Trigger, When};
 pub use start::Start;
 pub use what_if::WhatIf;

@@ -30,6 +30,13 @@ pub enum When {
         /// Pass of the innermost loop, from 1.
         iteration: Option<u64>,
     },
+    /// So many seconds after entering a leg, while it is flown.
+    Since {
+        /// The leg.
+        leg: Id,
+        /// Seconds.
+        seconds: f64,
+    },
     /// So many seconds after the start.
     After {
         /// Seconds.
@@ -72,6 +79,8 @@ pub enum Act {
 pub(super) struct Moment {
     pub time_s: f64,
     pub place: Option<PlacePointer>,
+    /// Since this passage was entered, seconds.
+    pub in_leg_s: f64,
     /// Waypoints of this passage flown.
     pub waypoints: u64,
 }
@@ -80,6 +89,7 @@ impl When {
     pub(super) fn is_now(&self, moment: &Moment) -> bool {
         match self {
             When::After { seconds } => moment.time_s >= *seconds,
+            When::Since { leg, seconds } => moment.is_on(leg, None) && moment.in_leg_s >= *seconds,
             When::Entering { leg, iteration } => moment.is_on(leg, *iteration),
             When::Waypoints { leg, iteration, count } => {
                 moment.is_on(leg, *iteration) && moment.waypoints >= *count

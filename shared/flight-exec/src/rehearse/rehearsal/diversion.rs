@@ -6,11 +6,14 @@
 use super::super::flight::{Circumstances, Flight};
 use super::super::scenario::{Act, Trigger, When};
 use super::super::situation::Situation;
-use super::super::{GlidePoint, GlideStart, Preview, PreviewError, TrackPoint, glide, names_engine, route};
+use super::super::{
+    GlidePoint, GlideStart, LegPassage, Preview, PreviewError, TrackPoint, glide, names_engine, route,
+};
 use super::{Flown, Rehearsal};
-use crate::api::Command;
+use crate::api::{Branching, Command};
 use crate::layout::path::distance_and_course;
-use flight_plan::{Cause, EmergencyPlan, Id, Runway, StageKind, Variables};
+use aircraft::{Profile, Winds};
+use flight_plan::{Cause, EmergencyPlan, Id, Program, Runway, StageKind, Variables};
 use geometry::{LatLon, PathElement};
 use terrain::Terrain;
 
@@ -149,9 +152,7 @@ impl<'a> Here<'a> {
 
     fn answer(&self, cause: Cause) -> Option<Answer<'a>> {
         let program = &self.flown.program;
-        let id = program.emergency_choice(&self.leg, cause)?.plan_for(cause)?;
-        let plan = program.flown().emergency_plans.iter().find(|plan| plan.id == *id)?;
-        Some((plan, program.plan.runway(&plan.runway)?))
+        answer(program, program.emergency_choice(&self.leg, cause)?.plan_for(cause)?)
     }
 
     /// As it is flown with an engine, or why it is not.
@@ -167,11 +168,52 @@ impl<'a> Here<'a> {
     fn glide(&self, (plan, runway): Answer) -> Glide {
         let (program, rehearsal) = (&self.flown.program, self.rehearsal);
         let named = names_engine(program, &self.leg);
-        let variables = Variables::initial(program.flown());
-        let way = if named { route(program, plan, runway, &variables) } else { vec![runway.threshold] };
-        let points = glide(&rehearsal.profile, rehearsal.winds, self.start, &way, runway.heading_deg);
-        Glide::of(named, points, runway, rehearsal.terrain.as_ref())
+        let (winds, terrain) = (rehearsal.winds, rehearsal.terrain.as_ref());
+        glide_home(program, (&rehearsal.profile, winds, terrain), self.start, (plan, runway), named)
     }
+}
+
+/// The glide from where a flight begins an emergency plan (for the first time), along that plan, or straight to its runway if it is not
+/// named for an engine failure there; and the runway. `None`: it begins none.
+pub fn glide_instead(
+    program: &Program,
+    profile: &Profile,
+    terrain: &dyn Terrain,
+    winds: impl Into<Winds>,
+    flown: &Preview,
+) -> Option<(Id, Glide)> {
+    let of_emergency = |passage: &&LegPassage| matches!(passage.place.plan, Branching::Emergency(_));
+    let begun = flown.legs.iter().find(of_emergency)?;
+    let Branching::Emergency(plan) = &begun.place.plan else { return None };
+    let (plan, runway) = answer(program, plan)?;
+    let (start, leg) = origin(flown, begun.start_s - JUST_BEFORE_S)?;
+    let choice =
+        program.emergency_choice(&leg, Cause::Engine).and_then(|choice| choice.plan_for(Cause::Engine));
+    let named = names_engine(program, &leg) && choice == Some(&plan.id);
+    let glide = glide_home(program, (profile, winds.into(), terrain), start, (plan, runway), named);
+    Some((runway.id.clone(), glide))
+}
+
+/// A point of the track that is not on the emergency plan yet.
+const JUST_BEFORE_S: f64 = 1.0;
+
+fn answer<'p>(program: &'p Program, plan: &Id) -> Option<Answer<'p>> {
+    let plan = program.flown().emergency_plans.iter().find(|other| other.id == *plan)?;
+    Some((plan, program.plan.runway(&plan.runway)?))
+}
+
+/// `named`: the plan is named for an engine failure, and all of it is glided along.
+fn glide_home(
+    program: &Program,
+    (profile, winds, terrain): (&Profile, Winds, &dyn Terrain),
+    start: GlideStart,
+    (plan, runway): Answer,
+    named: bool,
+) -> Glide {
+    let variables = Variables::initial(program.flown());
+    let way = if named { route(program, plan, runway, &variables) } else { vec![runway.threshold] };
+    let points = glide(profile, winds, start, &way, runway.heading_deg);
+    Glide::of(named, points, runway, terrain)
 }
 
 impl Flown {
