@@ -152,6 +152,17 @@ fn a_gate_from_which_the_landing_flies_back_is_told() {
     assert!(gate(690.0).is_some());
 }
 
+/// A pass takes some 25 minutes.
+#[test]
+fn a_loop_that_ends_at_a_time_says_how_late_that_may_be() {
+    let problems = found(&rounds("time > 600.0"));
+    let problem = with_code(&problems, "long-passes");
+    assert_eq!((problem.is_error(), &problem.subject), (false, &Some("rounds".into())));
+    assert!(problem.message.starts_with("shorten the passes of `rounds`"), "{problem}");
+    assert!(problem.message.ends_with(" min") && !problem.message.contains("up to 0 min"), "{problem}");
+    assert!(found(&rounds("battery < 0.7")).iter().all(|p| p.code != "long-passes"));
+}
+
 fn hold(fix: &str, until: &str) -> String {
     let hold = format!(
         r#"<HM id="hold" fix="{fix}" course="90" turn="left" length="700" until="{until}" maxLaps="2"/><TF id="on" fix="A"/>"#

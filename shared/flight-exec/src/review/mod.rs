@@ -35,6 +35,7 @@ mod held;
 mod landings;
 mod layout;
 mod open_end;
+mod passes;
 pub mod plausibility;
 mod powered;
 mod prepared;
@@ -119,7 +120,7 @@ struct View<'a> {
 type Rule = fn(&View, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 19] = [
+const RULES: [Rule; 20] = [
     refused::check,
     unseen::check,
     wind::check,
@@ -134,6 +135,7 @@ const RULES: [Rule; 19] = [
     waypoints::check,
     endurance::check,
     held::check,
+    passes::check,
     gates::check,
     landings::check,
     emergency_routes::check,

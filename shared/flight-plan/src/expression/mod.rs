@@ -83,6 +83,11 @@ impl Expression {
         self.node.reads(|name| name != FlightName::Iteration)
     }
 
+    /// Its value depends on the time of the flight.
+    pub fn reads_time(&self) -> bool {
+        self.node.reads(|name| name == FlightName::Time)
+    }
+
     /// Its value is the same whenever it is asked for.
     pub fn is_constant(&self) -> bool {
         self.variables.is_empty() && !self.node.reads(|_| true)
