@@ -160,5 +160,7 @@ def test_a_name_that_is_given_is_held_to_the_writers_of_a_variable(agent):  # no
 
     assert answer("")["code"] == "anonymous"
     assert answer("from=peer")["code"] == "not-a-writer"
+    misspelt = answer("from=camera", name="fire_radios")
+    assert misspelt["reason"].endswith("did you mean `fire_radius`?"), misspelt
     # a name is only a claim: whoever says it may write (see the README)
     assert "code" not in answer("from=camera")

@@ -1,5 +1,7 @@
 //! What somebody meant who misspelt a name.
 
+use crate::{FlightPlan, Id};
+
 /// Most names that are compared with a misspelt one.
 const MAX_CANDIDATES: usize = 10_000;
 /// Longest name that is compared, bytes.
@@ -28,6 +30,13 @@ pub fn meant<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> Option<&
 /// The question behind a sentence about a name that nobody knows; nothing if no other one is near.
 pub fn did_you_mean<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> String {
     meant(wanted, known).map_or_else(String::new, question)
+}
+
+/// As [`did_you_mean`], about a leg or stage that a plan doesn't have: of those that fit.
+pub fn did_you_mean_leg(plan: &FlightPlan, wanted: &Id, fits: impl Fn(&Id) -> bool) -> String {
+    let legs = plan.all_legs();
+    let ids = plan.all_stages().map(|(_, stage)| &stage.id).chain(legs.iter().map(|context| &context.leg.id));
+    did_you_mean(wanted.as_str(), ids.filter(|id| fits(id)).map(Id::as_str))
 }
 
 /// Whether this one was meant.

@@ -1,5 +1,6 @@
 //! The plan's variables in flight: typed, bounded, written by services and people.
 
+use crate::suggest::did_you_mean;
 use crate::{FlightPlan, Id, Variable, VariableValue};
 use geometry::{LatLon, LocalFrame, Polygon};
 use serde::{Deserialize, Serialize};
@@ -14,8 +15,13 @@ pub struct Variables(BTreeMap<Id, VariableValue>);
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum VariableError {
     /// No such variable.
-    #[error("the plan has no variable `{0}`")]
-    Unknown(Id),
+    #[error("the plan has no variable `{name}`: name one that it has{meant}")]
+    Unknown {
+        /// What it was called.
+        name: Id,
+        /// Which one that may mean, as a question; empty: none is spelt nearly so.
+        meant: String,
+    },
     /// Another type.
     #[error("variable `{name}` is {wanted}: give it a value of that type")]
     WrongType {
@@ -142,7 +148,10 @@ impl Variables {
 
     /// Writes one, if the plan has it and it accepts the value.
     pub fn set(&mut self, plan: &FlightPlan, name: &Id, value: VariableValue) -> Result<(), VariableError> {
-        let unknown = || VariableError::Unknown(name.clone());
+        let unknown = || {
+            let known = plan.variables.iter().map(|variable| variable.name.as_str());
+            VariableError::Unknown { name: name.clone(), meant: did_you_mean(name.as_str(), known) }
+        };
         plan.variables.iter().find(|v| v.name == *name).ok_or_else(unknown)?.accepts(&value)?;
         self.0.insert(name.clone(), value);
         Ok(())

@@ -1,6 +1,7 @@
 //! What people and services ask for: each command is done or refused with a reason.
 
 use super::Executor;
+use super::proposal::too_far;
 use crate::api::{Action, Command, FARTHEST_M, Output, Phase, Refusal, Token};
 use crate::flight::{Flight, refusal};
 use crate::layout::cursor::control::is_call;
@@ -8,6 +9,7 @@ use crate::layout::cursor::{Cursor, Step};
 use crate::layout::path::{PathState, distance_m};
 use crate::layout::stretch::IssuedWaypoint;
 use crate::layout::world::World;
+use flight_plan::suggest::did_you_mean_leg;
 use flight_plan::{Id, Leg, LegKind, LegPath, Program, StageKind, VariableValue};
 
 impl Executor {
@@ -298,11 +300,13 @@ impl Executor {
     /// A cursor at the beginning of a leg of a section, its path starting at the aircraft.
     pub(super) fn cursor_at(&self, leg: &Id, section: Option<usize>) -> Result<Cursor, Refusal> {
         let program = self.flying_program()?;
-        let unknown = || {
-            let reason = format!("the plan being flown has no leg `{leg}`: name one of its legs");
-            refusal("unknown-leg", reason)
-        };
-        let target = program.path(leg).filter(|p| p.emergency_plan == section).ok_or_else(unknown)?;
+        let fits = |path: &LegPath| path.emergency_plan == section;
+        let target = program.path(leg).filter(fits).ok_or_else(|| {
+            let meant =
+                did_you_mean_leg(program.flown(), leg, |id| program.path(id).as_ref().is_some_and(fits));
+            let what = "the plan being flown has no leg";
+            refusal("unknown-leg", format!("{what} `{leg}`: name one of its legs{meant}"))
+        })?;
         self.check_not_a_take_off(&program, &target)?;
         self.check_in_this_flight(&program, &target)?;
         let now = self.place_reached();
@@ -322,8 +326,11 @@ impl Executor {
 
     fn set_count(&mut self, leg: Id, count: u64, out: &mut Vec<Output>) -> Result<(), Refusal> {
         let program = self.flying_program()?;
-        if program.leg(&leg).filter(|l| !is_call(l)).and_then(Leg::as_loop).is_none() {
-            return Err(refusal("unknown-leg", format!("`{leg}` is no iterative leg of the plan: name one")));
+        let loops = |id: &Id| program.leg(id).filter(|l| !is_call(l)).and_then(Leg::as_loop).is_some();
+        if !loops(&leg) {
+            let meant = did_you_mean_leg(program.flown(), &leg, loops);
+            let reason = format!("`{leg}` is no iterative leg of the plan: name one{meant}");
+            return Err(refusal("unknown-leg", reason));
         }
         if count == 0 {
             return Err(refusal("bad-count", "the least count is 1; skip the leg to leave it at once"));
@@ -389,12 +396,4 @@ impl Executor {
         self.life.clock.ask_for_refresh(self.setup.config.debounce_s);
         Ok(())
     }
-}
-
-/// Why a way is not begun.
-pub(super) fn too_far(far_m: f64) -> String {
-    let (far, most) = (far_m / 1e3, FARTHEST_M / 1e3);
-    format!(
-        "it begins {far:.0} km from the aircraft and the gateway takes at most {most:.0} km: enter at a nearer leg, or put one on the way"
-    )
 }

@@ -1,7 +1,6 @@
 //! A plan put forward: whether it may be committed, what it changes, and where the aircraft would go.
 
 use super::Executor;
-use super::commands::too_far;
 use crate::api::{Answer, Command, EntryReport, FARTHEST_M, ProposalReport, Refusal};
 use crate::flight::refusal;
 use flight_plan::diff::changes;
@@ -174,6 +173,14 @@ fn differences(old: &Program, new: &Program) -> ProposalReport {
         entry_needed: false,
         entries: Vec::new(),
     }
+}
+
+/// Why a way is not begun.
+pub(super) fn too_far(far_m: f64) -> String {
+    let (far, most) = (far_m / 1e3, FARTHEST_M / 1e3);
+    format!(
+        "it begins {far:.0} km from the aircraft and the gateway takes at most {most:.0} km: enter at a nearer leg, or put one on the way"
+    )
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use crate::flight::refusal;
 use crate::layout::cursor::{Cursor, CursorPhase};
 use crate::layout::translate::translated;
 use crate::layout::world::World;
+use flight_plan::suggest::did_you_mean_leg;
 use flight_plan::{Id, LegPath, Program};
 use std::sync::Arc;
 
@@ -156,7 +157,8 @@ impl Executor {
             return Err(refusal("entry-needed", reason));
         };
         let target = new.path(entry).ok_or_else(|| {
-            refusal("unknown-leg", format!("the new plan has no leg `{entry}`: name one of its legs"))
+            let meant = did_you_mean_leg(new.flown(), entry, |_| true);
+            refusal("unknown-leg", format!("the new plan has no leg `{entry}`: name one of its legs{meant}"))
         })?;
         self.check_taken_off()?;
         self.check_not_a_take_off(new, &target)?;

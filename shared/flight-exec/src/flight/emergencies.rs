@@ -2,6 +2,7 @@
 
 use super::refusal;
 use crate::api::Refusal;
+use flight_plan::suggest::did_you_mean;
 use flight_plan::{Cause, EmergencyPlan, Id, Program};
 use serde::{Deserialize, Serialize};
 
@@ -80,7 +81,9 @@ pub(crate) fn resolve(
         Some((index, id.clone()))
     };
     if let Some(id) = named {
-        let reason = || format!("the plan has no emergency plan `{id}`: name one that it has");
+        let known = || program.plan.emergency_plans.iter().map(|plan| plan.id.as_str());
+        let meant = || did_you_mean(id.as_str(), known());
+        let reason = || format!("the plan has no emergency plan `{id}`: name one that it has{}", meant());
         return index_of(id).map(Some).ok_or_else(|| refusal("unknown-plan", reason()));
     }
     Ok(in_force(program, leg, cause).and_then(|plan| index_of(&plan.id)))

@@ -8,6 +8,7 @@ use crate::api::{BranchOption, DecisionRequest, Event, Output, Refusal};
 use crate::layout::cursor::{Cursor, Step};
 use crate::layout::world::World;
 use crate::value::{By, Choice, Decision};
+use flight_plan::suggest::did_you_mean_leg;
 use flight_plan::{Branch, DecideBefore, Fork, Id, Leg, LegPath, Program};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
@@ -309,7 +310,9 @@ fn check_ahead(program: &Program, path: &PathAhead, leg: &Id) -> Result<(), Refu
 
 fn check_branch(program: &Program, leg: &Id, branch: &Id) -> Result<(), Refusal> {
     let Some(Fork { branches, .. }) = program.leg(leg).and_then(Leg::as_fork) else {
-        let reason = format!("`{leg}` is no intersection of the plan: name one that is");
+        let forks = |id: &Id| program.leg(id).and_then(Leg::as_fork).is_some();
+        let meant = did_you_mean_leg(program.flown(), leg, forks);
+        let reason = format!("`{leg}` is no intersection of the plan: name one that is{meant}");
         return Err(refusal("unknown-leg", reason));
     };
     if branches.iter().any(|b| b.id == *branch) {

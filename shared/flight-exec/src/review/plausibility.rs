@@ -149,8 +149,10 @@ fn above_terrain(c: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Faul
     let ground_m = c.terrain?.elevation_m(w.position)?;
     let (h, least_m) = (w.altitude_amsl_m, ground_m + TERRAIN_MARGIN_M);
     (h < least_m).then(|| {
-        let sentence =
-            format!("{h:.0} m AMSL is too low over ground of {ground_m:.0} m; fly at least {least_m:.0} m.");
+        let by_m = (least_m - h).ceil();
+        let sentence = format!(
+            "{h:.0} m AMSL is too low over ground of {ground_m:.0} m; raise its leg by {by_m:.0} m, or move it to lower ground."
+        );
         fault("below-terrain", sentence)
     })
 }
@@ -255,6 +257,20 @@ mod tests {
             let found = spoilt(spoil);
             assert!(found.contains(&code), "case {i}: {code} not in {found:?}");
         }
+    }
+
+    #[test]
+    fn a_waypoint_too_low_says_by_how_much_its_leg_has_to_be_raised() {
+        let low = Waypoint { altitude_amsl_m: GROUND_M + TERRAIN_MARGIN_M - 12.4, ..waypoint(0.0, 0.0) };
+        let profile = Profile::default();
+        let context = Context { profile: &profile, terrain: Some(&terrain::Flat(GROUND_M)), wind_mps: 5.0 };
+        let faults = faults(&context, None, None, &low);
+        let below = faults.iter().find(|fault| fault.code == "below-terrain").unwrap();
+        assert!(
+            below.sentence.ends_with("raise its leg by 13 m, or move it to lower ground."),
+            "{}",
+            below.sentence
+        );
     }
 
     #[test]

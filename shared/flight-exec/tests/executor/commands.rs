@@ -34,6 +34,32 @@ fn without_a_plan_everything_is_refused() {
 }
 
 #[test]
+fn a_misspelt_name_is_refused_with_the_one_that_was_meant() {
+    let fork = r#"<intersection id="question"><branch id="one" next="first-leg"/></intersection>"#;
+    let legs = format!(
+        r#"{LEGS}{}{fork}<TF id="first-leg" fix="A2"/>"#,
+        r#"<iterative id="circuit" form="forward" count="2"><TF id="round" fix="B2"/></iterative>"#
+    );
+    let mut rig = Rig::started(&legs);
+    rig.fly_to("a");
+    let mut reason = |command| rig.command(command).unwrap_err().reason;
+    let emergency = |plan: &str| Command::Emergency { cause: Cause::Engine, plan: Some(plan.into()) };
+    let cases = [
+        (Command::GoTo { leg: "frist-leg".into() }, "; did you mean `first-leg`?"),
+        (Command::SetCount { leg: "circut".into(), count: 3 }, "; did you mean `circuit`?"),
+        (Command::Decide { leg: "questoin".into(), branch: "one".into() }, "; did you mean `question`?"),
+        (emergency("othr"), "; did you mean `other`?"),
+        // near to nothing, and near to a leg that does not fit
+        (Command::GoTo { leg: "nowhere".into() }, "name one of its legs"),
+        (Command::SetCount { leg: "frist-leg".into(), count: 3 }, "name one"),
+    ];
+    for (command, end) in cases {
+        let reason = reason(command.clone());
+        assert!(reason.ends_with(end), "{command:?}: {reason}");
+    }
+}
+
+#[test]
 fn skip_and_go_to_cancel_everything_and_go_direct() {
     let mut rig = Rig::started(LEGS);
     rig.fly_to("b");
