@@ -11,7 +11,7 @@ use aircraft::Profile;
 use egui::{Painter, Stroke};
 use flight_exec::rehearse::{Options, Preview, Rehearsal, Start, WhatIf};
 use flight_plan::create::{self, Approach, is_tried};
-use flight_plan::{Altitude, AltitudeReference, FlightPlan, Leg, Program, Value, compile};
+use flight_plan::{Altitude, AltitudeReference, FlightPlan, Leg, Program, Spot, Value, compile};
 use geometry::LatLon;
 use std::sync::Arc;
 
@@ -111,7 +111,8 @@ fn fly(leg: &Leg, aim: &Aim, approach: Approach, scene: &Scene<'_>) -> Trial {
     let (plan, ground) = (scene.document.plan(), scene.layers.ground());
     let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
     let ground_amsl_m = ground.elevation_m(approach.from);
-    let level_amsl_m = level_amsl_m(plan, new_leg::level(plan, aim), ground_amsl_m.unwrap_or(0.0));
+    let level_amsl_m =
+        level_amsl_m(new_leg::level(plan, aim), home_amsl_m(plan, aim), ground_amsl_m.unwrap_or(0.0));
     let tried = create::trial(plan, approach, level_amsl_m, leg);
     let program = match compile(tried, &profile, ground.as_ref()) {
         Ok(program) => Arc::new(program),
@@ -165,14 +166,63 @@ fn part_of(leg: &Leg, preview: &Preview) -> Trial {
     Trial { line, cost: is_whole.then_some((length_m, time_s)), ..Trial::default() }
 }
 
+/// What `home` altitudes count from at a place of the plan, metres AMSL.
+fn home_amsl_m(plan: &FlightPlan, aim: &Aim) -> f64 {
+    let (Aim::Spot(Spot::Before(id) | Spot::After(id) | Spot::EndOf(id)) | Aim::Way { from: id, .. }) = aim;
+    let of_leg = plan.leg(id).map(|context| &context.stage.id);
+    let stage = plan.stages.iter().position(|stage| stage.id == *of_leg.unwrap_or(id));
+    let home = stage.map_or_else(|| plan.home(), |stage| plan.home_at(stage));
+    home.map_or(0.0, |runway| runway.elevation_amsl_m)
+}
+
 /// An altitude in force, as far as it is a number.
-fn level_amsl_m(plan: &FlightPlan, level: Option<&Altitude>, ground_amsl_m: f64) -> f64 {
+fn level_amsl_m(level: Option<&Altitude>, home_amsl_m: f64, ground_amsl_m: f64) -> f64 {
     match level {
         Some(Altitude { metres: Value::Constant(metres), reference }) => match reference {
             AltitudeReference::Amsl => *metres,
             AltitudeReference::Agl => ground_amsl_m + metres,
-            AltitudeReference::Home => plan.home().map_or(0.0, |home| home.elevation_amsl_m) + metres,
+            AltitudeReference::Home => home_amsl_m + metres,
         },
         _ => ground_amsl_m + HEIGHT_M,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn home_is_that_of_the_flight_in_which_the_leg_is_drawn() {
+        let runway = |id: &str, elevation: u32| {
+            format!(
+                r#"<runway id="{id}" lat="36.2" lon="-84.1" elevation="{elevation}" heading="90" length="500"/>"#
+            )
+        };
+        let flight = |number: u32| {
+            format!(
+                r#"<stage id="up{number}" type="take-off" runway="R{number}" altitude="90" altitudeReference="home"/>
+                <stage id="out{number}" type="mission" altitude="200" altitudeReference="home"><TF id="a{number}" lat="36.3" lon="-84.1"/></stage>
+                <stage id="down{number}" type="land" runway="R{number}"/>"#
+            )
+        };
+        let document = format!(
+            r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="x" aircraft="trainer"><runways>{}{}</runways><mainPlan>{}{}</mainPlan></flightPlan>"#,
+            runway("R1", 100),
+            runway("R2", 700),
+            flight(1),
+            flight(2)
+        );
+        let plan = flight_plan::read(&document).plan;
+        let home_m = |spot| home_amsl_m(&plan, &Aim::Spot(spot));
+        let homes = [
+            Spot::After("a1".into()),
+            Spot::EndOf("out1".into()),
+            Spot::Before("a2".into()),
+            Spot::EndOf("out2".into()),
+            Spot::After("elsewhere".into()),
+        ];
+        assert_eq!(homes.map(home_m), [100.0, 100.0, 700.0, 700.0, 100.0]);
+        let way = Aim::Way { from: "a2".into(), way: create::Way::New };
+        assert_eq!(home_amsl_m(&plan, &way), 700.0);
     }
 }
