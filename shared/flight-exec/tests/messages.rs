@@ -1,6 +1,9 @@
 //! What the review says of a path: the cause, and a remedy that exists.
 #![cfg(test)]
 
+#[path = "common/field.rs"]
+mod field;
+
 use aircraft::Profile;
 use flight_exec::{Conditions, review};
 use flight_plan::{Problem, compile_document};
@@ -10,25 +13,7 @@ use terrain::{Flat, Terrain, Tiles};
 
 /// Over flat ground at 300 m: from A to B at 500 m, then these legs, and a landing.
 fn document(before: &str, legs: &str) -> String {
-    format!(
-        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Test" aircraft="trainer">
-             <fixes>
-               <fix id="A" lat="36.30" lon="-84.20"/> <fix id="B" lat="36.30" lon="-84.16"/>
-               <fix id="C" lat="36.33" lon="-84.16"/> <fix id="FAR" lat="36.30" lon="-83.9265"/>
-             </fixes>
-             <runways><runway id="R" lat="36.31" lon="-84.19" elevation="300" heading="90" length="500"/></runways>
-             {before}
-             <mainPlan emergency="home">
-               <stage id="s" type="en-route" altitude="500" altitudeReference="amsl">
-                 <IF id="a" fix="A"/><TF id="b" fix="B"/>{legs}
-               </stage>
-               <stage id="l" type="land" runway="R"/>
-             </mainPlan>
-             <emergencyPlans><emergencyPlan id="home" runway="R">
-               <stage id="e" type="arrival"><DF id="ed" fix="A" altitude="450" altitudeReference="amsl"/></stage>
-               <stage id="el" type="land" runway="R"/></emergencyPlan></emergencyPlans>
-           </flightPlan>"#
-    )
+    field::document(r#"<fix id="FAR" lat="36.30" lon="-83.9265"/>"#, before, legs)
 }
 
 fn found_over(document: &str, ground: Arc<dyn Terrain>, conditions: Conditions) -> Vec<Problem> {

@@ -1,6 +1,9 @@
 //! The path as flown: the good plans have no problems on it, each faulty plan has the problem in its name.
 #![cfg(test)]
 
+#[path = "common/field.rs"]
+mod field;
+
 use aircraft::{Profile, Wind};
 use flight_exec::{Conditions, compile_and_review, review, review_extremes};
 use flight_plan::{
@@ -243,26 +246,9 @@ fn an_edit_counts_from_what_the_altitude_counted_from() {
 
 /// A rectangle of legs over flat ground at 300 m, with a runway inside; the zones are given.
 fn rectangle(zones: &str, legs: &str) -> Vec<u8> {
-    format!(
-        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="Test" aircraft="trainer">
-             <fixes>
-               <fix id="A" lat="36.30" lon="-84.20"/> <fix id="B" lat="36.30" lon="-84.16"/>
-               <fix id="C" lat="36.33" lon="-84.16"/> <fix id="D" lat="36.33" lon="-84.20"/>
-             </fixes>
-             <runways><runway id="R" lat="36.31" lon="-84.19" elevation="300" heading="90" length="500" priority="1"/></runways>
-             <zones>{zones}</zones>
-             <mainPlan emergency="home">
-               <stage id="s" type="en-route" altitude="500" altitudeReference="amsl">
-                 <IF id="a" fix="A"/><TF id="b" fix="B"/><TF id="c" fix="C"/><TF id="d" fix="D"/>{legs}
-               </stage>
-               <stage id="l" type="land" runway="R"/>
-             </mainPlan>
-             <emergencyPlans><emergencyPlan id="home" runway="R">
-               <stage id="e" type="arrival"><DF id="ed" fix="A" altitude="450" altitudeReference="amsl"/></stage>
-               <stage id="el" type="land" runway="R"/></emergencyPlan></emergencyPlans>
-           </flightPlan>"#
-    )
-    .into_bytes()
+    let legs = format!(r#"<TF id="c" fix="C"/><TF id="d" fix="D"/>{legs}"#);
+    field::document(r#"<fix id="D" lat="36.33" lon="-84.20"/>"#, &format!("<zones>{zones}</zones>"), &legs)
+        .into_bytes()
 }
 
 fn over_flat_ground(document: &[u8], conditions: Conditions) -> Vec<(&'static str, String)> {
