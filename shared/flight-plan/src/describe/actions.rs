@@ -1,21 +1,12 @@
 //! What is done on the way.
 
 use super::Row::Property as P;
-use super::parts::{property, text, value};
+use super::parts::{element, property, text, value};
 use super::{Children, Description, Kind, OneOf, Property, Quantity, Row, Sort, Way, parts};
 
 const NOTHING: &[&[Row]] = &[];
 
-const fn act(
-    element: &'static str,
-    label: &'static str,
-    help: &'static str,
-    groups: &'static [&'static [Row]],
-) -> Description {
-    Description { element, label, help, alike: &[], groups }
-}
-
-const PHOTO: Description = act(
+const PHOTO: Description = element(
     "photo",
     "Take photos",
     "One picture, or a series of them.",
@@ -23,10 +14,11 @@ const PHOTO: Description = act(
         .help("Distance over the ground between the pictures of a series.")
         .without("one picture"))]],
 );
-const PHOTO_STOP: Description = act("photoStop", "End the photos", "Ends the series of pictures.", NOTHING);
-const VIDEO_START: Description = act("videoStart", "Start the video", "Begins recording.", NOTHING);
-const VIDEO_STOP: Description = act("videoStop", "End the video", "Ends recording.", NOTHING);
-const SET: Description = act(
+const PHOTO_STOP: Description =
+    element("photoStop", "End the photos", "Ends the series of pictures.", NOTHING);
+const VIDEO_START: Description = element("videoStart", "Start the video", "Begins recording.", NOTHING);
+const VIDEO_STOP: Description = element("videoStop", "End the video", "Ends recording.", NOTHING);
+const SET: Description = element(
     "set",
     "Set a variable",
     "Writes a variable of the plan.",
@@ -35,7 +27,7 @@ const SET: Description = act(
         P(property("to", "To", "Its new value: an expression of its type.", Kind::Formula(crate::Use::Any))),
     ]],
 );
-const INVOKE: Description = act(
+const INVOKE: Description = element(
     "invoke",
     "Call a service",
     "Calls a service aboard; the flight does not wait for the answer.",
@@ -46,7 +38,7 @@ const INVOKE: Description = act(
         P(text("argument", "Argument", "JSON that goes with the request.")),
     ]],
 );
-const WAIT: Description = act(
+const WAIT: Description = element(
     "wait",
     "Wait",
     "Circles at the leg's end for a time; only at its end.",

@@ -3,7 +3,7 @@
 use super::Row::Property as P;
 use super::actions::ACTIONS;
 use super::parts::{
-    ALTITUDE, ANCHOR, BY_CAUSES, EMERGENCY, FLY_OVER, HEAD, SPEED, TO, TURN, property, text, value,
+    ALTITUDE, ANCHOR, BY_CAUSES, EMERGENCY, FLY_OVER, HEAD, SPEED, TO, TURN, element, property, text, value,
 };
 use super::{Children, Description, Kind, OneOf, Property, Quantity, Row, Sort, Way, Word};
 
@@ -16,15 +16,6 @@ pub(super) const TAIL: &[Row] = &[
     P(property("next", "Next", "The leg that follows, in the same list.", Kind::Reference(Sort::Leg))
         .without("the leg after it")),
 ];
-
-const fn leg(
-    element: &'static str,
-    label: &'static str,
-    help: &'static str,
-    groups: &'static [&'static [Row]],
-) -> Description {
-    Description { element, label, help, alike: &[], groups }
-}
 
 const COURSE: Row = P(value("course", "Course", Quantity::Angle, 0.0, "0")
     .help("The track's direction at the fix, degrees true."));
@@ -58,7 +49,7 @@ const UNTIL: Property =
     property("until", "Until", "It ends when this condition holds.", Kind::Condition).first("iteration >= 3");
 
 const FORMS: &[Word] = &[("forward", "round and round"), ("reverse", "forth and back")];
-const BRANCH: Description = leg(
+const BRANCH: Description = element(
     "branch",
     "Branch",
     "A way on from the intersection.",
@@ -77,7 +68,7 @@ const BRANCH: Description = leg(
         .first("battery < 0.3")),
     ]],
 );
-const ARGUMENT: Description = leg(
+const ARGUMENT: Description = element(
     "argument",
     "Argument",
     "The value of one of the procedure's parameters.",
@@ -98,14 +89,14 @@ const fn many(label: &'static str, help: &'static str, of: &'static [&'static De
 }
 
 pub(super) const ALL: &[Description] = &[
-    leg("IF", "Initial fix", "Where a path starts; flies nothing.", &[HEAD, &[TO, FLY_OVER], TAIL]),
-    leg(
+    element("IF", "Initial fix", "Where a path starts; flies nothing.", &[HEAD, &[TO, FLY_OVER], TAIL]),
+    element(
         "TF",
         "Track to fix",
         "The shortest track from the previous waypoint.",
         &[HEAD, &[TO, FLY_OVER], TAIL],
     ),
-    leg(
+    element(
         "DF",
         "Direct to fix",
         "Straight from where the aircraft is.",
@@ -119,7 +110,7 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     ),
-    leg(
+    element(
         "RF",
         "Arc to fix",
         "An arc of constant radius.",
@@ -134,26 +125,26 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     ),
-    leg(
+    element(
         "CF",
         "Course to fix",
         "A course into a fix, intercepted and tracked.",
         &[HEAD, &[TO, FLY_OVER, COURSE], TAIL],
     ),
-    leg(
+    element(
         "FA",
         "Fix to altitude",
         "A track from a fix until the leg's altitude is reached.",
         &[HEAD, &[TO, FLY_OVER, COURSE], TAIL],
     ),
-    leg("HF", "Hold once", "A racetrack, left at the first crossing of its fix.", &[HEAD, HOLDING, TAIL]),
-    leg(
+    element("HF", "Hold once", "A racetrack, left at the first crossing of its fix.", &[HEAD, HOLDING, TAIL]),
+    element(
         "HA",
         "Hold to altitude",
         "A racetrack, left at the first crossing at or beyond the leg's altitude.",
         &[HEAD, HOLDING, TAIL],
     ),
-    leg(
+    element(
         "HM",
         "Hold until released",
         "A racetrack, left when its condition holds, its laps are flown or somebody says so.",
@@ -169,7 +160,7 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     ),
-    leg(
+    element(
         "iterative",
         "Loop",
         "Flies the legs inside it again and again.",
@@ -187,7 +178,7 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     ),
-    leg(
+    element(
         "intersection",
         "Fork",
         "Ways part here, or come together.",
@@ -213,7 +204,7 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     ),
-    leg(
+    element(
         "call",
         "Call",
         "A procedure, flown here.",

@@ -9,6 +9,16 @@ pub(super) const fn text(attribute: &'static str, label: &'static str, help: &'s
     property(attribute, label, help, Kind::Text).without("none")
 }
 
+/// Of an element that has this name alone.
+pub(super) const fn element(
+    element: &'static str,
+    label: &'static str,
+    help: &'static str,
+    groups: &'static [&'static [Row]],
+) -> Description {
+    Description { element, label, help, alike: &[], groups }
+}
+
 /// Must be there; without a first value.
 pub(super) const fn property(
     attribute: &'static str,
@@ -123,13 +133,7 @@ pub(super) const ABEAM: &[Way] = &[
     Way { label: "abeam a formula", fixed: &[("on", "abeam")], rows: &[P(AT)] },
 ];
 
-pub(super) const CORNER: Description = Description {
-    element: "corner",
-    label: "Corner",
-    help: "A corner of an outline.",
-    alike: &[],
-    groups: &[&[POSITION]],
-};
+pub(super) const CORNER: Description = element("corner", "Corner", "A corner of an outline.", &[&[POSITION]]);
 pub(super) const CORNERS: Children = Children {
     label: "Corners",
     help: "The outline, not closed: the last corner is joined to the first.",
@@ -140,13 +144,8 @@ pub(super) const CORNERS: Children = Children {
 
 const RADIUS: Row =
     P(value("radius", "Radius", Quantity::Length, 1.0, "300").help("From its centre to its edge."));
-const HOLE: Description = Description {
-    element: "hole",
-    label: "Hole",
-    help: "A part of the area that does not belong to it.",
-    alike: &[],
-    groups: &[&[Row::Children(CORNERS)]],
-};
+const HOLE: Description =
+    element("hole", "Hole", "A part of the area that does not belong to it.", &[&[Row::Children(CORNERS)]]);
 const AREA: Description = Description {
     element: "area",
     label: "Area",
@@ -199,20 +198,14 @@ const AREA: Description = Description {
         ],
     })]],
 };
-const CENTRE: Description = Description {
-    element: "centre",
-    label: "Centre",
-    help: "What the pattern is about.",
-    alike: &[],
-    groups: &[&[place("Centre", "What the pattern is about.")]],
-};
-const POINT: Description = Description {
-    element: "point",
-    label: "Point",
-    help: "A point of the route.",
-    alike: &[],
-    groups: &[&[place("Point", "A point of the route.")]],
-};
+const CENTRE: Description = element(
+    "centre",
+    "Centre",
+    "What the pattern is about.",
+    &[&[place("Centre", "What the pattern is about.")]],
+);
+const POINT: Description =
+    element("point", "Point", "A point of the route.", &[&[place("Point", "A point of the route.")]]);
 const ROUTE: Description = Description {
     element: "route",
     label: "Route",

@@ -2,7 +2,7 @@
 
 use super::Row::Property as P;
 use super::legs::TAIL;
-use super::parts::{HEAD, THE_AREA, THE_CENTRE, THE_ROUTE, TURN, property, value};
+use super::parts::{HEAD, THE_AREA, THE_CENTRE, THE_ROUTE, TURN, element, property, value};
 use super::{Description, Kind, OneOf, Quantity, Row, Way, Word};
 
 const SPACING: Row = Row::OneOf(OneOf {
@@ -55,15 +55,6 @@ const ENTRIES: &[Word] = &[
     ("end-right", "end, right"),
 ];
 
-const fn pattern(
-    element: &'static str,
-    label: &'static str,
-    help: &'static str,
-    groups: &'static [&'static [Row]],
-) -> Description {
-    Description { element, label, help, alike: &[], groups }
-}
-
 pub(super) const ALL: &[Description] = &[
     Description {
         element: "scan",
@@ -100,7 +91,7 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     },
-    pattern(
+    element(
         "spiral",
         "Spiral",
         "Rounds from one radius to another.",
@@ -119,13 +110,13 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     ),
-    pattern(
+    element(
         "expandingSquare",
         "Expanding square",
         "Legs that become longer, with right-angled turns to one side.",
         &[HEAD, &[THE_CENTRE, SPACING, HEADING, RADIUS, P(TURN)], TAIL],
     ),
-    pattern(
+    element(
         "sector",
         "Sector search",
         "Spokes through a point, joined by chords.",
@@ -143,7 +134,7 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     ),
-    pattern(
+    element(
         "trackLine",
         "Track line",
         "Beside a route, half the spacing to its side.",
@@ -158,7 +149,7 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     ),
-    pattern(
+    element(
         "corridor",
         "Corridor",
         "Tracks along a route, as many as its width needs.",
@@ -172,7 +163,7 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     ),
-    pattern(
+    element(
         "contour",
         "Contour",
         "Loops along an area's edge, one inside the other.",
@@ -196,13 +187,13 @@ pub(super) const ALL: &[Description] = &[
             TAIL,
         ],
     ),
-    pattern(
+    element(
         "orbit",
         "Orbit",
         "A circle, flown a number of times.",
         &[HEAD, &[THE_CENTRE, RADIUS, TURNS, P(TURN)], TAIL],
     ),
-    pattern(
+    element(
         "figureEight",
         "Figure of eight",
         "Two circles that touch at the centre.",

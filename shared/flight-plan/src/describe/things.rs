@@ -2,20 +2,12 @@
 
 use super::Row::Property as P;
 use super::parts::{
-    ALTITUDE, BY_CAUSES, CORNERS, DATUMS, EMERGENCY, HEAD, ID, NAME, POSITION, SPEED, number, property, text,
+    ALTITUDE, BY_CAUSES, CORNERS, DATUMS, EMERGENCY, HEAD, ID, NAME, POSITION, SPEED, element, number,
+    property, text,
 };
 use super::{Children, Description, Kind, OneOf, Property, Quantity, Row, Sort, Way, Word};
 
-const fn thing(
-    element: &'static str,
-    label: &'static str,
-    help: &'static str,
-    groups: &'static [&'static [Row]],
-) -> Description {
-    Description { element, label, help, alike: &[], groups }
-}
-
-const PLAN: Description = thing(
+const PLAN: Description = element(
     "flightPlan",
     "Plan",
     "The whole plan.",
@@ -44,14 +36,14 @@ const fn plain(row: Row) -> Property {
     }
 }
 
-const FIX: Description = thing(
+const FIX: Description = element(
     "fix",
     "Fix",
     "A named position.",
     &[HEAD, &[POSITION, P(text("description", "Description", "For the reader."))]],
 );
 
-const RUNWAY: Description = thing(
+const RUNWAY: Description = element(
     "runway",
     "Runway",
     "A runway, seen in its landing direction.",
@@ -88,7 +80,7 @@ const fn initial(kind: Kind, first: &'static str) -> Row {
 const NUMBER: Kind =
     Kind::Number(super::Range { quantity: Quantity::Plain, least: f64::MIN, most: f64::MAX });
 
-const VARIABLE: Description = thing(
+const VARIABLE: Description = element(
     "variable",
     "Variable",
     "A value that people and services write in flight.",
@@ -146,7 +138,7 @@ const VARIABLE: Description = thing(
     ]],
 );
 
-const ACTIVE: Description = thing(
+const ACTIVE: Description = element(
     "active",
     "Period",
     "When the zone is active.",
@@ -238,7 +230,7 @@ const ZONE: Description = Description {
     ],
 };
 
-const PARAMETER: Description = thing(
+const PARAMETER: Description = element(
     "parameter",
     "Parameter",
     "A name that the procedure's expressions may read.",
@@ -254,7 +246,7 @@ const PARAMETER: Description = thing(
         .first("= 0.0")),
     ]],
 );
-const PROCEDURE: Description = thing(
+const PROCEDURE: Description = element(
     "procedure",
     "Procedure",
     "Legs that can be called from anywhere, with arguments.",
@@ -282,7 +274,7 @@ const PROCEDURE: Description = thing(
     ],
 );
 
-const EMERGENCY_PLAN: Description = thing(
+const EMERGENCY_PLAN: Description = element(
     "emergencyPlan",
     "Emergency plan",
     "Another way down: stages of its own that end on a runway.",
@@ -301,7 +293,7 @@ const STAGES: &[Word] = &[
     ("approach", "approach"),
     ("land", "landing"),
 ];
-const STAGE: Description = thing(
+const STAGE: Description = element(
     "stage",
     "Stage",
     "Legs with one purpose. What it says holds for its legs.",
