@@ -382,7 +382,7 @@ fn what_is_no_value_is_refused_in_words_and_changes_nothing() {
 #[test]
 fn several_legs_show_what_is_the_same_or_mixed_and_are_set_and_added_to_together() {
     let mut panels = Panels::leg("scan");
-    panels.0.state_mut().view.toggle("crossing".into());
+    panels.0.state_mut().view.toggle(Selection::Leg("crossing".into()));
     panels.0.run_steps(3);
     // 100 m and 80 m
     panels.click("Spacing: mixed");
@@ -408,7 +408,7 @@ fn several_legs_show_what_is_the_same_or_mixed_and_are_set_and_added_to_together
     panels.undo();
     assert_eq!(panels.plan(), everything(), "each was one step");
     // legs of different kinds have less in common
-    panels.0.state_mut().view.toggle("orbit".into());
+    panels.0.state_mut().view.toggle(Selection::Leg("orbit".into()));
     panels.0.run_steps(3);
     assert!(!panels.names().contains("Spacing: mixed") && panels.shows("Airspeed"));
 }
@@ -419,7 +419,7 @@ fn altitudes_of_several_legs_that_differ_are_mixed_and_set_by_one_step() {
     panels.set_altitude("scan", 120.0, AltitudeReference::Home);
     panels.set_altitude("crossing", 90.0, AltitudeReference::Agl);
     let before = panels.plan();
-    panels.0.state_mut().view.toggle("crossing".into());
+    panels.0.state_mut().view.toggle(Selection::Leg("crossing".into()));
     panels.0.run_steps(3);
     assert!(!panels.names().contains("Altitude"), "no leg's altitude is shown for that of all");
     panels.write(Role::TextInput, "Altitude: mixed", "high");
@@ -512,7 +512,7 @@ fn altitudes_of_several_legs_count_each_from_its_own_ground() {
     for leg in ["scan", "tf"] {
         panels.set_altitude(leg, 90.0, AltitudeReference::Agl);
     }
-    panels.0.state_mut().view.toggle("tf".into());
+    panels.0.state_mut().view.toggle(Selection::Leg("tf".into()));
     panels.0.run_steps(3);
     panels.choose("Above", "AMSL");
     for leg in ["scan", "tf"] {

@@ -268,7 +268,7 @@ mod tests {
     fn oldest_logs_go_when_the_quota_is_used_up() {
         let folder = tempfile::tempdir().unwrap();
         let config = Config { folder: folder.path().into(), limits: LIMITS, vehicle: "uav1".into() };
-        let mut writer = Writer::new(config);
+        let mut writer = Writer::new(config, Arc::default());
         (0..200).for_each(|_| writer.write(vec![7; 1 << 20]));
         let sizes: Vec<usize> = written(folder.path()).iter().map(Vec::len).collect();
         assert!(sizes.iter().all(|size| *size <= FILE_BYTES), "{sizes:?}");

@@ -83,7 +83,7 @@ fn course(ready: bool) -> Course {
 }
 
 fn beat(mode: Mode, armed: bool) -> Report {
-    Report::Heartbeat { mode, name: "a mode".into(), armed }
+    Report::Heartbeat { mode, name: "a mode".into(), armed, failsafe: false }
 }
 
 fn fix(north_mps: f64) -> Report {
