@@ -11,7 +11,7 @@ use egui::{
     Align2, FontId, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, Vec2, WidgetInfo, vec2,
 };
 use flight_plan::{Altitude, AltitudeReference, Edit, Id, Value};
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 
 /// Marks are so far from each other, and so large to the pointer, screen points.
 const REACH: f32 = 14.0;
@@ -154,8 +154,13 @@ fn marks<'a>(axes: &Axes, scene: &Scene<'a>) -> Vec<(usize, &'a Passage, Pos2)> 
     let is_selected = |passage: &Passage| scene.is_selected(&Selection::Leg(passage.leg.clone()));
     let (first, rest): (Vec<_>, Vec<_>) =
         places.into_iter().partition(|(_, passage, _)| is_selected(passage));
-    let mut columns = HashSet::new();
-    first.into_iter().chain(rest).filter(|(.., at)| columns.insert((at.x / REACH) as i64)).collect()
+    // whole screen points suffice, and are in order
+    let mut taken: BTreeSet<i64> = BTreeSet::new();
+    let is_free = |(.., at): &(usize, &Passage, Pos2)| {
+        let (x, gap) = (at.x.round() as i64, REACH as i64 + 1);
+        taken.range(x - gap + 1..x + gap).next().is_none() && taken.insert(x)
+    };
+    first.into_iter().chain(rest).filter(is_free).collect()
 }
 
 fn mark(ui: &Ui, scene: &Scene<'_>, passage: &Passage, index: usize, at: Pos2) -> Response {
