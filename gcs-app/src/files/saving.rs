@@ -55,6 +55,14 @@ pub struct Writing {
 }
 
 pub(super) fn save(path: PathBuf, writing: &Writing) -> FileEvent {
+    save_by(path, writing, write_whole)
+}
+
+fn save_by(
+    path: PathBuf,
+    writing: &Writing,
+    write: impl FnOnce(&Path, &[u8]) -> std::io::Result<Option<Stamp>>,
+) -> FileEvent {
     let document = writing.document;
     match writing.over {
         Over::As(expected) if Stamp::of(&path).is_some_and(|now| now != expected) => {
@@ -66,7 +74,7 @@ pub(super) fn save(path: PathBuf, writing: &Writing) -> FileEvent {
         _ => {}
     }
     let text = text_of(&path, writing);
-    match write_whole(&path, text.as_bytes()) {
+    match write(&path, text.as_bytes()) {
         Ok(stamp) => FileEvent::Saved { path, text: text.into(), document, version: writing.version, stamp },
         Err(error) => FileEvent::NotSaved { document, why: Some(not_saved(&path, &error)) },
     }
@@ -104,11 +112,18 @@ fn text_of(path: &Path, writing: &Writing) -> String {
 /// to is written. What is no file (a device, a pipe) is written into. Gives the file's state as it was written, whatever
 /// another program does to it afterwards.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<Option<Stamp>> {
+    replace(path, |file| file.write_all(bytes))
+}
+
+fn replace(
+    path: &Path,
+    fill: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> std::io::Result<Option<Stamp>> {
     let path = &std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if path.metadata().is_ok_and(|is| !is.is_file() && !is.is_dir()) {
-        return std::fs::write(path, bytes).map(|()| None);
+        return fill(&mut File::create(path)?).map(|()| None);
     }
-    let temporary = Temporary::beside(path, bytes)?;
+    let temporary = Temporary::beside(path, fill)?;
     let stamp = temporary.stamp;
     temporary.take_place()?;
     Ok(stamp)
@@ -128,7 +143,8 @@ pub(crate) fn write_together(files: &[(PathBuf, Vec<u8>)]) -> std::io::Result<()
             ));
         }
         let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.clone());
-        written.push(Temporary::beside(&place, bytes).map_err(|error| of(path, error))?);
+        written
+            .push(Temporary::beside(&place, |file| file.write_all(bytes)).map_err(|error| of(path, error))?);
     }
     files
         .iter()
@@ -144,10 +160,10 @@ struct Temporary {
 }
 
 impl Temporary {
-    fn beside(place: &Path, bytes: &[u8]) -> std::io::Result<Self> {
+    fn beside(place: &Path, fill: impl FnOnce(&mut File) -> std::io::Result<()>) -> std::io::Result<Self> {
         let (path, mut file) = new_file_in(folder_of(place))?;
         let mut temporary = Self { path, place: place.to_owned(), stamp: None };
-        file.write_all(bytes)?;
+        fill(&mut file)?;
         file.sync_all()?;
         temporary.stamp = Stamp::from_meta(&file.metadata()?);
         Ok(temporary)
@@ -227,6 +243,21 @@ mod tests {
     fn full_disk_is_told() {
         let why = why(save("/dev/full".into(), &writing("x", 1)));
         assert!(why.contains("/dev/full was not saved") && why.contains("space"), "{why}");
+    }
+
+    #[test]
+    fn a_disk_that_fills_up_while_saving_leaves_the_old_file_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plan.xml");
+        assert!(matches!(save(path.clone(), &writing("old", 1)), FileEvent::Saved { .. }));
+        let half = |file: &mut File| -> std::io::Result<()> {
+            file.write_all(b"<flightPlan name='new")?;
+            Err(ErrorKind::StorageFull.into())
+        };
+        let why = why(save_by(path.clone(), &writing("new", 2), |path, _| replace(path, half)));
+        assert!(why.contains("plan.xml was not saved") && why.contains("Save it elsewhere"), "{why}");
+        assert_eq!(name_in(&path), "old");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
     }
 
     #[test]
