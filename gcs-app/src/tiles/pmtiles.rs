@@ -311,6 +311,28 @@ mod tests {
     }
 
     #[test]
+    fn of_a_file_of_a_gigabyte_only_what_is_shown_is_read() {
+        const GIGABYTE: u64 = 1 << 30;
+        let picture = tile(8, [10, 200, 30, 255], ImageFormat::Png);
+        let last = GIGABYTE - picture.len() as u64;
+        // the world in one tile of 900 MB, and a good one at the very end
+        let root = packed_directory(&[(0, 1, 900 << 20, 0), (1, 1, picture.len() as u64, last)]);
+        let mut bytes = archive(&root, &[], &[]);
+        bytes[64..72].copy_from_slice(&GIGABYTE.to_le_bytes());
+        let from = bytes.len() as u64;
+        let mut file = tempfile::NamedTempFile::new().unwrap();
+        file.write_all(&bytes).unwrap();
+        // a hole on the disk
+        file.as_file().set_len(from + GIGABYTE).unwrap();
+        file.seek(SeekFrom::Start(from + last)).unwrap();
+        file.write_all(&picture).unwrap();
+        let (mut tiles, _) = PmTiles::open(file.path()).unwrap();
+        assert!(matches!(tiles.read(wanted(0, 0, 0)), Answer::Unreadable));
+        assert!(matches!(tiles.read(wanted(1, 0, 0)), Answer::Picture(_)));
+        assert!(matches!(tiles.read(wanted(1, 1, 1)), Answer::Nothing));
+    }
+
+    #[test]
     fn a_loop_of_directories_and_a_bomb_are_unreadable() {
         // a leaf that leads to itself
         let leaf = packed_directory(&[(0, 0, 40, 0)]);
