@@ -32,6 +32,21 @@ pub enum Command {
     Layer(LayerCommand),
     /// To the vehicle that is shown.
     Fly(FlyCommand),
+    /// Each of these, in order.
+    Each(Vec<Command>),
+}
+
+/// What is done with the clipboard, on the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Clip {
+    /// Copy what is selected.
+    Copy,
+    /// Copy what is selected and take it out of the plan.
+    Cut,
+    /// Put what was copied behind what is selected.
+    Paste,
+    /// Copy what is selected, and put the copies beside it.
+    Duplicate,
 }
 
 /// Commands to the document.
@@ -145,6 +160,10 @@ pub enum ViewCommand {
     Fit,
     /// Lock the plan against being dragged by accident, or unlock it.
     Lock(bool),
+    /// Bring the map nearer, so many levels of zoom; less than 0 takes it further away.
+    Zoom(f64),
+    /// Copy or paste on the map.
+    Clip(Clip),
     /// Keep the aircraft in the map's middle, or stop that.
     Follow(bool),
     /// An answer to the guide to a new plan.

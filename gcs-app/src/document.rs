@@ -20,7 +20,7 @@ pub struct Document {
     /// Not everything in its file could be read.
     is_partial: bool,
     kinds: BTreeMap<Id, &'static str>,
-    /// Of the legs that have one.
+    /// Of the parts that have one: many are asked for in each frame.
     names: BTreeMap<Id, String>,
     version: u64,
     /// The first version.
@@ -123,6 +123,10 @@ impl Document {
     pub fn is_nobodys(&self) -> bool {
         self.path.is_none() && !self.is_dirty() && !self.can_undo() && !self.can_redo()
     }
+    /// About what it and its history hold, bytes.
+    pub fn bytes(&self) -> usize {
+        self.history.bytes() + self.text.as_ref().map_or(0, |text| text.len())
+    }
     /// There is a step to take back.
     pub fn can_undo(&self) -> bool {
         self.history.can_undo()
@@ -136,9 +140,9 @@ impl Document {
         self.kinds.get(leg).copied().unwrap_or_default()
     }
 
-    /// What people call a leg: its name, else its identifier.
-    pub fn leg_label<'a>(&'a self, leg: &'a Id) -> &'a str {
-        self.names.get(leg).map_or(leg.as_str(), String::as_str)
+    /// What people call a part of the plan: its name, else its identifier.
+    pub fn label<'a>(&'a self, id: &'a Id) -> &'a str {
+        self.names.get(id).map_or(id.as_str(), String::as_str)
     }
 
     /// The leg of the document that a flown one stands for: that of the procedure, where it was made by a call.
@@ -229,8 +233,7 @@ impl Document {
         }
         let legs = self.history.plan().all_legs();
         self.kinds = legs.iter().map(|c| (c.leg.id.clone(), c.leg.kind_name())).collect();
-        let named = legs.iter().filter(|context| !context.leg.name.is_empty());
-        self.names = named.map(|context| (context.leg.id.clone(), context.leg.name.clone())).collect();
+        self.names = self.history.plan().named().map(|(id, name)| (id.clone(), name.to_owned())).collect();
         // versions are never used twice, not even by another document of this run
         self.version = next_version();
     }

@@ -4,6 +4,7 @@
 //! changed, and a newer plan always wins.
 
 mod aboard;
+mod beginning;
 mod bench;
 mod coverage;
 mod left_out;
@@ -95,6 +96,8 @@ pub struct Forecast {
     pub stops: usize,
     /// Why it ends early, if it does.
     pub cut_short: Option<String>,
+    /// It is the beginning of a plan with errors: as far as that can be flown.
+    pub is_beginning: bool,
 }
 
 impl Forecast {

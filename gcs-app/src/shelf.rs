@@ -2,8 +2,8 @@
 
 use crate::document::Document;
 
-/// So many without unsaved changes are kept on either side.
-const MOST: usize = 20;
+/// Documents on either side hold so much together, bytes; then the oldest without unsaved changes are forgotten.
+const MOST_BYTES: usize = 512 << 20;
 
 /// The documents before and after the one that is shown, the nearest last.
 #[derive(Debug, Default)]
@@ -19,8 +19,8 @@ impl Shelf {
         if !old.is_nobodys() {
             self.before.push(old);
         }
-        forget_oldest(&mut self.before);
-        forget_oldest(&mut self.after);
+        forget_oldest(&mut self.before, MOST_BYTES);
+        forget_oldest(&mut self.after, MOST_BYTES);
     }
 
     /// The document takes its last step back; one without steps gives way to the one before it. True: another is shown.
@@ -79,12 +79,12 @@ impl Shelf {
 }
 
 /// One with unsaved changes is never forgotten: it took somebody's work to make it.
-fn forget_oldest(documents: &mut Vec<Document>) {
-    let mut spare = documents.iter().filter(|document| !document.is_dirty()).count().saturating_sub(MOST);
+fn forget_oldest(documents: &mut Vec<Document>, most_bytes: usize) {
+    let mut bytes: usize = documents.iter().map(Document::bytes).sum();
     documents.retain(|document| {
-        let forgotten = spare > 0 && !document.is_dirty();
-        spare -= usize::from(forgotten);
-        !forgotten
+        let is_forgotten = bytes > most_bytes && !document.is_dirty();
+        bytes -= if is_forgotten { document.bytes() } else { 0 };
+        !is_forgotten
     });
 }
 
@@ -112,17 +112,19 @@ mod tests {
     }
 
     #[test]
-    fn the_list_is_bounded_and_unsaved_changes_are_never_forgotten() {
+    fn undo_reaches_the_first_of_very_many_documents() {
         let (mut shelf, mut shown) = (Shelf::default(), named("mine", true));
-        for round in 0..4 * MOST {
-            shelf.open(&mut shown, named("clean", false));
-            // some of them get behind the one that is shown
-            if round % 3 == 0 {
-                shelf.undo(&mut shown);
-            }
-        }
-        assert_eq!(names(shelf.unsaved(&shown)), ["mine"]);
-        assert!(shelf.before.len() <= MOST + 1 && shelf.after.len() <= MOST + 1);
+        (0..500).for_each(|round| shelf.open(&mut shown, named(&round.to_string(), false)));
+        assert_eq!(std::iter::from_fn(|| shelf.undo(&mut shown).then_some(())).count(), 500);
+        assert_eq!(shown.plan().name, "mine");
+    }
+
+    #[test]
+    fn what_documents_hold_is_bounded_and_unsaved_changes_are_never_forgotten() {
+        let mut documents: Vec<Document> = (0..50).map(|i| named(&i.to_string(), i % 10 == 0)).collect();
+        let each = documents[0].bytes();
+        forget_oldest(&mut documents, 8 * each);
+        assert_eq!(names(documents.iter()), ["0", "10", "20", "30", "40", "47", "48", "49"]);
     }
 
     #[test]

@@ -40,7 +40,7 @@ fn subject(scene: &Scene<'_>) -> (Vec<Option<Id>>, String) {
     match &scene.view.selection {
         Some(Selection::Leg(leg)) => match together(scene, leg) {
             legs if legs.len() > 1 => (legs, "the selected legs".into()),
-            one => (one, scene.document.leg_label(leg).to_owned()),
+            one => (one, scene.document.label(leg).to_owned()),
         },
         Some(Selection::Stage(id)) => {
             let name = scene.document.plan().stage(id).map_or("", |stage| stage.name.as_str());

@@ -16,7 +16,7 @@ pub fn of(scene: &Scene<'_>) -> Vec<Action> {
     let Some(Selection::Leg(leg)) = &scene.view.selection else { return Vec::new() };
     let mut actions = Vec::new();
     for binding in bindings(scene.document.plan(), leg) {
-        let what = format!("the {} of {}", binding.name.to_lowercase(), scene.document.leg_label(leg));
+        let what = format!("the {} of {}", binding.name.to_lowercase(), scene.document.label(leg));
         let mut add = |to: &str, name: String, edit: Edit, is_it: bool| {
             let id = format!("bind-{}-{to}", binding.name);
             actions.push(action(id, name, edit, is_it));

@@ -5,7 +5,9 @@
 
 pub mod alternates;
 pub mod bindings;
+pub mod flight;
 pub mod fuzzy;
+pub mod offers;
 pub mod places;
 mod table;
 
@@ -103,6 +105,19 @@ pub struct Action {
 }
 
 impl Action {
+    /// Something of the moment, without a key; without a command it can't be done.
+    fn now(group: Group, name: String, command: Option<Command>) -> Self {
+        Self {
+            id: format!("{} {name}", group.name()).into(),
+            name: name.into(),
+            group,
+            kind: Kind::Do,
+            keys: Vec::new(),
+            while_typing: false,
+            command: command.ok_or("Not possible here".into()),
+        }
+    }
+
     /// Its key as people write it, if it has one.
     pub fn key(&self, ctx: &Context) -> Option<String> {
         self.keys.first().map(|key| ctx.format_shortcut(key))

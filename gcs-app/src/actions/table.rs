@@ -1,23 +1,22 @@
 //! The actions, one a line: group, identifier, name, kind, keys, and what it asks for or why it can't.
 
-use super::{Action, Group, Kind, bindings};
+use super::{Action, Group, Kind, bindings, flight};
 use crate::command::{
-    Command, DocumentCommand, FlyCommand, LinkCommand, PreviewCommand, Replacement, Selection, ViewCommand,
+    Clip, Command, DocumentCommand, FlyCommand, PreviewCommand, Replacement, Selection, ViewCommand,
 };
 use crate::guide::Answer;
 use crate::help::topic_of;
 use crate::map::furniture::Edge;
-use crate::panels::{Scene, bar, flight, start};
+use crate::panels::{Scene, bar, start};
 use crate::theme::Scale;
 use crate::units::Units;
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
-use flight_exec::{Command as PlanCommand, Phase};
+use flight_exec::Command as PlanCommand;
 use flight_plan::{Cause, Id, create};
 use interchange::Format;
-use usal::contract::{GatewayRequest, GatewayState};
 
 /// What an action asks for; or why it is not possible now.
-type Asked = Result<Command, &'static str>;
+pub(super) type Asked = Result<Command, &'static str>;
 
 /// An action as it is written down.
 pub struct Entry {
@@ -113,6 +112,10 @@ pub const ENTRIES: &[Entry] = &[
 
     entry(Group::Edit, "undo", "Undo", &[ctrl(Key::Z)], undo),
     entry(Group::Edit, "redo", "Redo", &[ctrl_shift(Key::Z), ctrl(Key::Y)], redo),
+    entry(Group::Edit, "copy", "Copy", &[ctrl(Key::C)], |s| clip(s, Clip::Copy)),
+    entry(Group::Edit, "cut", "Cut", &[ctrl(Key::X)], |s| clip(s, Clip::Cut)),
+    entry(Group::Edit, "paste", "Paste", &[ctrl(Key::V)], |_| view(ViewCommand::Clip(Clip::Paste))),
+    entry(Group::Edit, "duplicate", "Duplicate what is selected", &[ctrl(Key::D)], |s| clip(s, Clip::Duplicate)),
     entry(Group::Edit, "delete", "Delete what is selected", &[plain(Key::Delete)], delete),
     entry(Group::Edit, "rename", "Rename what is selected", &[plain(Key::F2)], rename),
     entry(Group::Edit, "earlier", "Move what is selected up", &[ctrl(Key::ArrowUp), alt(Key::ArrowUp)], |scene| shift(scene, -1)),
@@ -124,6 +127,8 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::View, "search", "Search in the plan", &[ctrl(Key::F)], |_| view(ViewCommand::Search)),
 
     entry(Group::View, "fit", "Show the whole plan", &[plain(Key::F)], |_| view(ViewCommand::Fit)),
+    entry(Group::View, "zoom-in", "Zoom the map in", &[], |_| view(ViewCommand::Zoom(1.0))),
+    entry(Group::View, "zoom-out", "Zoom the map out", &[], |_| view(ViewCommand::Zoom(-1.0))),
     choice(Group::View, "follow", "Follow the aircraft", |s| Kind::Switch(s.view.follow), follow),
     choice(Group::View, "play", "Play the preview", |s| Kind::Switch(s.view.playing), play).with_keys(&[plain(Key::Space)]),
     choice(Group::WhatIf, "coverage", "Coverage: the path by its worst alarm", |s| Kind::Switch(s.view.coverage), |s| preview(PreviewCommand::Coverage(!s.view.coverage))),
@@ -131,6 +136,7 @@ pub const ENTRIES: &[Entry] = &[
     choice(Group::WhatIf, "what-if-energy", "The energy is too low here", |s| alarm_is(s, Cause::Energy), |s| raise(s, Cause::Energy)),
     choice(Group::WhatIf, "what-if-link", "The link is lost here", |s| alarm_is(s, Cause::Link), |s| raise(s, Cause::Link)),
     choice(Group::WhatIf, "what-if-gps", "GPS is lost here", |s| alarm_is(s, Cause::Gps), |s| raise(s, Cause::Gps)),
+    choice(Group::WhatIf, "what-if-operator", "The operator calls it off here", |s| alarm_is(s, Cause::Operator), |s| raise(s, Cause::Operator)),
     entry(Group::WhatIf, "what-if-reset", "Back to the plan's own world", &[], |_| preview(PreviewCommand::Reset)),
     entry(Group::Maps, "maps", "Maps and elevations…", &[], |_| view(ViewCommand::Maps(true))),
     choice(Group::Maps, "graticule", "Graticule", |s| Kind::Switch(s.view.edge.graticule), |s| view(ViewCommand::Edge(Edge { graticule: !s.view.edge.graticule, ..s.view.edge }))),
@@ -150,15 +156,20 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Size, "smaller", "Smaller", &[ctrl(Key::Minus)], |s| scale(s, -1.0, "It can't be smaller")),
     entry(Group::Size, "normal-size", "Normal size", &[ctrl(Key::Num0)], |_| view(ViewCommand::Scale(Scale::default()))),
 
+    entry(Group::Flight, "connect", "Connect as before", &[], flight::connect),
+    entry(Group::Flight, "disconnect", "Disconnect", &[], flight::disconnect),
     entry(Group::Flight, "push", "Push the plan to the vehicle", &[], |s| bar::may_push(s).map(|()| Command::Fly(FlyCommand::Propose))),
-    entry(Group::Flight, "hold", "Hold here", &[], |s| flying(s, PlanCommand::Hold)),
-    entry(Group::Flight, "resume", "Resume", &[], resume),
-    hold("start", "Start and take off", start),
-    hold("skip-leg", "Skip the leg", |s| flying(s, PlanCommand::SkipLeg)),
-    hold("emergency", "Emergency: fly the alternate in force", emergency),
-    hold("abort", "Abort: Safe mode flies home", |s| in_the_air(s, PlanCommand::AbortToSafe)),
-    entry(Group::Flight, "leave-safe", "Leave Safe mode", &[], leave_safe),
-    entry(Group::Flight, "disconnect", "Disconnect", &[], disconnect),
+    entry(Group::Flight, "commit", "Commit what was pushed", &[], flight::commit),
+    entry(Group::Flight, "keep-as-draft", "Keep what was pushed as a draft", &[], flight::keep_as_draft),
+    entry(Group::Flight, "hold", "Hold here", &[], |s| flight::flying(s, PlanCommand::Hold)),
+    entry(Group::Flight, "resume", "Resume", &[], flight::resume),
+    hold("start", "Start and take off", flight::start),
+    hold("rewind", "Rewind to the start", flight::rewind),
+    entry(Group::Flight, "skip-leg", "Skip the leg…", &[], flight::skip),
+    entry(Group::Flight, "return-to-main", "Return to the main plan…", &[], flight::return_to_main),
+    hold("emergency", "Emergency: fly the alternate in force", flight::emergency),
+    hold("abort", "Abort: Safe mode flies home", |s| flight::in_the_air(s, PlanCommand::AbortToSafe)),
+    entry(Group::Flight, "leave-safe", "Leave Safe mode", &[], flight::leave_safe),
 
     choice(Group::Help, "help", "Help about what is selected", |s| Kind::Switch(s.view.help.is_some()), help).with_keys(&[plain(Key::F1)]),
     entry(Group::Help, "tour", "Tour of the window", &[], |_| view(ViewCommand::Tour(Some(0)))),
@@ -242,6 +253,15 @@ fn delete(scene: &Scene<'_>) -> Asked {
     document(DocumentCommand::Edit(edit))
 }
 
+/// What is selected, or all legs of a stage, to the clipboard.
+fn clip(scene: &Scene<'_>, clip: Clip) -> Asked {
+    let is_stage = matches!(scene.view.selection, Some(Selection::Stage(_)));
+    if scene.selected_set().is_empty() && !(clip == Clip::Copy && is_stage) {
+        return Err("Select legs, fixes, zones or runways first");
+    }
+    view(ViewCommand::Clip(clip))
+}
+
 fn rename(scene: &Scene<'_>) -> Asked {
     view(ViewCommand::Rename(scene.view.selection.clone().ok_or(NOTHING)?))
 }
@@ -309,51 +329,4 @@ fn scale(scene: &Scene<'_>, tenths: f32, why_not: &'static str) -> Asked {
 fn help(scene: &Scene<'_>) -> Asked {
     let topic = if scene.view.help.is_some() { None } else { Some(topic_of(scene)) };
     view(ViewCommand::Help(topic))
-}
-
-fn plan(command: PlanCommand) -> Asked {
-    Ok(Command::Fly(FlyCommand::Plan(command)))
-}
-
-const NOT_FLYING: &str = "No plan is being flown";
-
-fn flying(scene: &Scene<'_>, command: PlanCommand) -> Asked {
-    let flying = matches!(scene.vehicle.phase(), Phase::Flying | Phase::AwaitingDecision);
-    if flying { plan(command) } else { Err(NOT_FLYING) }
-}
-
-fn in_the_air(scene: &Scene<'_>, command: PlanCommand) -> Asked {
-    if scene.vehicle.phase() == Phase::Holding { plan(command) } else { flying(scene, command) }
-}
-
-fn resume(scene: &Scene<'_>) -> Asked {
-    if flight::can_resume(scene) {
-        plan(PlanCommand::Resume)
-    } else {
-        Err("The plan is being flown, or none is")
-    }
-}
-
-fn start(scene: &Scene<'_>) -> Asked {
-    let why_not = "A vehicle on the ground with a plan aboard can be started";
-    if flight::can_launch(scene) { Ok(Command::Fly(FlyCommand::Launch)) } else { Err(why_not) }
-}
-
-fn emergency(scene: &Scene<'_>) -> Asked {
-    in_the_air(scene, PlanCommand::Emergency { cause: Cause::Operator, plan: None })
-}
-
-fn leave_safe(scene: &Scene<'_>) -> Asked {
-    let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
-    if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn)) {
-        Ok(Command::Fly(FlyCommand::Gateway(GatewayRequest::Recover)))
-    } else {
-        Err("The gateway is not in Safe mode")
-    }
-}
-
-fn disconnect(scene: &Scene<'_>) -> Asked {
-    let name = scene.vehicles.shown_name().filter(|_| scene.vehicle.open_link().is_some());
-    let name = name.ok_or("No link is open")?;
-    Ok(Command::Link(LinkCommand::Disconnect(name.clone())))
 }

@@ -9,7 +9,7 @@ use crate::document::Document;
 use crate::guide::Answer;
 use crate::link::Call;
 use crate::panels::bar::PUSH;
-use crate::state::{LOOK_AHEAD, Proposal, VehicleName};
+use crate::state::{LOOK_AHEAD, Proposal, Vehicle, VehicleName};
 use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
@@ -26,6 +26,9 @@ impl App {
             Command::Preview(command) => self.change_preview(command),
             Command::Layer(command) => self.change_layers(command),
             Command::Link(command) => self.change_link(command, now_s),
+            Command::Each(commands) => {
+                commands.into_iter().for_each(|command| self.carry_out(command, shown, now_s));
+            }
             Command::Fly(command) => {
                 if let Some(vehicle) = shown {
                     self.fly(vehicle, command, now_s);
@@ -194,6 +197,8 @@ impl App {
                 self.map.fit();
             }
             ViewCommand::Lock(locked) => self.view.locked = locked,
+            ViewCommand::Zoom(by) => self.map.zoom(by),
+            ViewCommand::Clip(clip) => self.map.clip(clip),
             ViewCommand::Follow(follow) => self.follow(follow),
             ViewCommand::Guide(answer) => self.answer(answer),
             ViewCommand::Tool(id) => {
@@ -294,7 +299,8 @@ impl App {
                 }
             }
             FlyCommand::Plan(command) => {
-                let label = plan_label(&command);
+                let Some(known) = self.vehicles.get(vehicle) else { return };
+                let label = plan_label(&command, known);
                 self.put_aside(vehicle);
                 self.call(vehicle, &label, Call::Plan(command), now_s);
             }
@@ -353,22 +359,25 @@ impl App {
     }
 }
 
-/// A command, for people.
-pub(crate) fn plan_label(command: &PlanCommand) -> String {
+/// A command, for people, with what they call the parts of the plan aboard.
+pub(crate) fn plan_label(command: &PlanCommand, vehicle: &Vehicle) -> String {
+    let of = |id: &Id| vehicle.name_of(id);
     match command {
         PlanCommand::Start => "Start".into(),
         PlanCommand::Hold => "Hold".into(),
         PlanCommand::Resume => "Resume".into(),
         PlanCommand::SkipLeg => "Skip leg".into(),
-        PlanCommand::GoTo { leg } => format!("Go to {leg}"),
-        PlanCommand::SetCount { leg, count } => format!("{leg}: count {count}"),
-        PlanCommand::Decide { leg, branch } => format!("{leg}: take {branch}"),
+        PlanCommand::GoTo { leg } => format!("Go to {}", of(leg)),
+        PlanCommand::SetCount { leg, count } => format!("{}: count {count}", of(leg)),
+        PlanCommand::Decide { leg, branch } => {
+            format!("{}: take {}", of(leg), vehicle.name_of_branch(leg, branch))
+        }
         PlanCommand::SetVariable { name, value } => {
             format!("Set {name} to {}", crate::state::log::variable(value))
         }
-        PlanCommand::Emergency { plan: Some(plan), .. } => format!("Emergency: fly {plan}"),
+        PlanCommand::Emergency { plan: Some(plan), .. } => format!("Emergency: fly {}", of(plan)),
         PlanCommand::Emergency { plan: None, .. } => "Emergency: fly the alternate in force".into(),
-        PlanCommand::ReturnToMain { leg } => format!("Return to the main plan at {leg}"),
+        PlanCommand::ReturnToMain { leg } => format!("Return to the main plan at {}", of(leg)),
         PlanCommand::Rewind => "Rewind to the start".into(),
         PlanCommand::AbortToSafe => "Abort: Safe mode".into(),
         PlanCommand::Commit { .. } => "Commit plan".into(),

@@ -6,7 +6,7 @@
 use super::preview::Forecaster;
 use super::reviewer::{Path, Trial};
 use super::worker::{Analysis, Found, Outbox, Question};
-use super::{Alarm, Coverage, Flown, Forecast, Shared};
+use super::{Alarm, Coverage, Flown, Forecast, Shared, beginning};
 use aircraft::Profile;
 use flight_exec::rehearse::WhatIf;
 use flight_exec::review::Conditions;
@@ -204,8 +204,8 @@ impl Bench {
                 None
             }
             Err(why) => {
-                if !flies_a_part_of(&self.last, &question.plan) {
-                    self.last = Shared::default();
+                if self.last.is_beginning || !flies_a_part_of(&self.last, &question.plan) {
+                    self.last = self.beginning(question).unwrap_or_default();
                 }
                 Some(why)
             }
@@ -216,6 +216,16 @@ impl Bench {
             no_forecast,
             what_if: question.what_if.clone(),
         }
+    }
+
+    /// As far as a plan with errors can be flown.
+    fn beginning(&mut self, question: &Question) -> Option<Shared> {
+        if self.program.is_some() {
+            return None;
+        }
+        let program = Arc::new(beginning::of(&question.plan, &mut self.trials)?);
+        let forecast = self.forecaster.fly(&program, &question.what_if.for_plan(&question.plan)).ok()?;
+        Some(Arc::new(Forecast { is_beginning: true, ..forecast.as_ref().clone() }))
     }
 
     fn flight(&mut self, question: &Question) -> Result<Shared, String> {

@@ -96,6 +96,7 @@ impl Forecaster {
             battery_left: Some(preview.battery_left),
             stops: preview.stops.len(),
             cut_short: cut_short(preview, outcome),
+            is_beginning: false,
         });
         Ok(self.last.clone())
     }

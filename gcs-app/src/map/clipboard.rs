@@ -3,10 +3,10 @@
 use super::drawings;
 use super::menu::Menu;
 use super::tools::{Canvas, new_leg};
-use crate::command::{Queue, Selection, ViewCommand};
+use crate::command::{Clip, Queue, Selection, ViewCommand};
 use crate::coordinates::{self, Known};
 use crate::panels::start;
-use egui::{Context, Event, Key, Modifiers, Ui};
+use egui::{Context, Event, Ui, ViewportCommand};
 use flight_plan::clipboard::{self, Pasted};
 use flight_plan::create::{self, Drawn, LegChoice};
 use flight_plan::{Id, Place, Thing, Value};
@@ -31,9 +31,18 @@ pub fn run(ui: &Ui, menu: &mut Menu, canvas: &Canvas<'_>, queue: &mut Queue) {
             _ => {}
         }
     }
-    if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::D)) {
-        let set = canvas.scene.selected_set();
-        put(clipboard::duplicate(canvas.scene.document.plan(), &set), queue);
+}
+
+/// What was chosen in the palette, or by its key. What is pasted comes in a later frame.
+pub fn carry_out(clip: Clip, ui: &Ui, canvas: &Canvas<'_>, queue: &mut Queue) {
+    match clip {
+        Clip::Copy => drop(copy(ui.ctx(), canvas)),
+        Clip::Cut => cut(ui.ctx(), canvas, queue),
+        Clip::Paste => ui.send_viewport_cmd(ViewportCommand::RequestPaste),
+        Clip::Duplicate => {
+            let set = canvas.scene.selected_set();
+            put(clipboard::duplicate(canvas.scene.document.plan(), &set), queue);
+        }
     }
 }
 

@@ -192,7 +192,9 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
     theme::card(&chip).show(&mut chip, |ui| {
         // a click on it goes to the map
         ui.add(egui::Label::new(status).selectable(false).wrap());
-        ui.horizontal_wrapped(|ui| tools.options(ui, scene));
+        if tools.has_options() {
+            ui.horizontal_wrapped(|ui| tools.options(ui, scene));
+        }
     });
 }
 

@@ -140,7 +140,7 @@ fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
     });
     let handles = handles.filter_map(|handle| {
         let (at, what) = (view.place(handle.at), selection(plan, &handle.what));
-        inside(at, view).then(|| Item { name: handle.what.name(), at, what })
+        inside(at, view).then(|| Item { name: handle.what.name(scene.document), at, what })
     });
     let mut once = HashSet::new();
     let all = runways

@@ -47,6 +47,6 @@ fn places(together: &[LeftOut], scene: &Scene<'_>, place_of: &impl Fn(&Id) -> Op
 }
 
 fn words(together: &[LeftOut], scene: &Scene<'_>) -> String {
-    let names: Vec<&str> = together.iter().map(|left| scene.document.leg_label(&left.leg)).collect();
+    let names: Vec<&str> = together.iter().map(|left| scene.document.label(&left.leg)).collect();
     format!("left out: {}", names.join(", "))
 }

@@ -47,7 +47,9 @@ pub fn draw_failures(
     if let Some((end, why)) = end.filter(|_| scene.analysis.no_forecast.is_none()) {
         failure(painter, view.place(end.position), why, p);
     }
-    if let Some((problem, at)) = first_error(scene).zip(error_at) {
+    // what has no place of its own is wrong where the path ends
+    let ends = scene.forecast().points.last().filter(|_| scene.forecast().is_beginning);
+    if let Some((problem, at)) = first_error(scene).zip(error_at.or(ends.map(|end| end.position))) {
         let why = scene.document.plan().in_names(&problem.message);
         failure(painter, view.place(at), &why, p);
     }

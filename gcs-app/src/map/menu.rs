@@ -7,12 +7,12 @@ use crate::map::path;
 use crate::map::tools::pen::way;
 use crate::panels::tree::menu as tree_menu;
 use crate::panels::what_if::{self, CAUSES, cause_name};
-use crate::panels::{Scene, tree};
+use crate::panels::{Scene, flight, tree};
 use crate::theme;
 use crate::units;
 use egui::containers::menu::menu_style;
 use egui::{Layout, Popup, PopupAnchor, PopupKind, Pos2, RichText, Ui, ViewportCommand};
-use flight_exec::{Command, Phase};
+use flight_exec::Command;
 use flight_plan::create::{self, Drawn, LegChoice};
 use flight_plan::{Edit, Id, Place, Thing, Value};
 use geometry::LatLon;
@@ -119,7 +119,7 @@ fn with(ui: &mut Ui, scene: &Scene<'_>, thing: &Selection, queue: &mut Queue) {
         queue.view(ViewCommand::Select(Some(thing.clone())));
     }
     if let Selection::Leg(leg) = thing
-        && is_flown(scene, leg)
+        && flight::is_flown(scene, leg)
         && ui.button("Go to it…").on_hover_text("Shows what would follow, then asks").clicked()
     {
         queue.consider(Command::GoTo { leg: leg.clone() });
@@ -135,12 +135,6 @@ fn with(ui: &mut Ui, scene: &Scene<'_>, thing: &Selection, queue: &mut Queue) {
         queue.view(ViewCommand::Select(Some(Selection::Variable(made))));
     }
     tree_menu::show(ui, scene, thing, queue);
-}
-
-/// The vehicle flies, and its plan has this leg.
-fn is_flown(scene: &Scene<'_>, leg: &Id) -> bool {
-    let aboard = scene.vehicle.aboard.as_ref().is_some_and(|aboard| aboard.plan.leg(leg).is_some());
-    aboard && matches!(scene.vehicle.phase(), Phase::Flying | Phase::Holding | Phase::AwaitingDecision)
 }
 
 /// New legs here: beside the leg under the pointer, or the selected one.

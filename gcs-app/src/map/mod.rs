@@ -29,7 +29,7 @@ mod variables;
 pub mod view;
 pub mod zones;
 
-use crate::command::{Queue, Selection, ViewCommand};
+use crate::command::{Clip, Queue, Selection, ViewCommand};
 use crate::layers::Opened;
 use crate::panels::{Scene, field, start};
 use crate::theme::{self, Palette};
@@ -81,6 +81,8 @@ pub struct MapState {
     tools: Toolbox,
     navigation: navigate::Navigation,
     menu: menu::Menu,
+    /// What is to be done with the clipboard in the next frame.
+    clip: Option<Clip>,
     items: items::Items,
     sketch: Sketch,
     sketched: Option<(u64, Option<PlanVariables>)>,
@@ -90,6 +92,16 @@ impl MapState {
     /// Shows the whole plan in the next frame.
     pub fn fit(&mut self) {
         self.fit = true;
+    }
+
+    /// Brings it nearer in the next frame, by so many levels of zoom.
+    pub fn zoom(&mut self, by: f64) {
+        self.navigation.zoom(by);
+    }
+
+    /// Copies or pastes in the next frame.
+    pub fn clip(&mut self, clip: Clip) {
+        self.clip = Some(clip);
     }
 
     /// Brings a place into the middle, near enough to see it.
@@ -271,6 +283,9 @@ impl MapState {
         let asked = self.tools.run(ui, response, &canvas, queue, p);
         self.menu.run(ui, asked, &canvas, queue);
         variables::take_dropped(ui, &canvas, queue);
+        if let Some(clip) = self.clip.take() {
+            clipboard::carry_out(clip, ui, &canvas, queue);
+        }
         clipboard::run(ui, &mut self.menu, &canvas, queue);
         path::draw_cursor(&painter, view, scene, p);
         start::draw(&painter, view, scene, p);

@@ -30,6 +30,11 @@ impl Navigation {
         self.widget
     }
 
+    /// Zooms by so many levels in the next frame.
+    pub fn zoom(&mut self, by: f64) {
+        self.zoom += by;
+    }
+
     /// Takes the keys that move the map, unless another widget has the focus.
     pub fn keys(&mut self, ctx: &Context) {
         let pressed = |key| ctx.input_mut(|i| i.count_and_consume_key(Modifiers::NONE, key)) as f32;

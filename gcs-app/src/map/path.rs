@@ -27,8 +27,11 @@ impl Layer {
     pub fn draw(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, sketch: &Sketch, p: &Palette) {
         let forecast = scene.forecast();
         let (_, standing) = bar::plan_state(scene);
+        if forecast.points.is_empty() || forecast.is_beginning {
+            draft(painter, view, sketch, colour(scene, p), p);
+        }
         if forecast.points.is_empty() {
-            return draft(painter, view, sketch, colour(scene, p), p);
+            return;
         }
         let line = || forecast.points.iter().map(|point| point.position.into()).collect();
         let parts = self.line.parts(line, scene.analysis.forecast_version, view);

@@ -93,9 +93,7 @@ fn effect(considered: &Considered, vehicle: &Vehicle) -> String {
             let next = next.map_or_else(String::new, |next| format!(", fly {} next", name(next)));
             format!("Skip {leg}{next}")
         }
-        Command::GoTo { leg } => format!("Go to {}", name(leg)),
-        Command::ReturnToMain { leg } => format!("Return to the main plan at {}", name(leg)),
-        other => crate::app::plan_label(other),
+        other => crate::app::plan_label(other, vehicle),
     }
 }
 

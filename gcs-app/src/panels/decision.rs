@@ -23,7 +23,11 @@ pub fn open(scene: &Scene<'_>) -> Option<(DecisionRequest, f64)> {
 pub fn show(ui: &mut Ui, request: &DecisionRequest, left_s: f64, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.horizontal(|ui| {
-        ui.label(RichText::new(format!("◆ Decide at {}", request.leg)).strong().color(p.active));
+        ui.label(
+            RichText::new(format!("◆ Decide at {}", scene.vehicle.name_of(&request.leg)))
+                .strong()
+                .color(p.active),
+        );
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let distance = scene.units().distance().show(request.distance_left_m);
             ui.label(RichText::new(format!("{} · {distance}", units::duration(left_s))).monospace());
@@ -46,7 +50,10 @@ pub fn show(ui: &mut Ui, request: &DecisionRequest, left_s: f64, scene: &Scene<'
     }
     let nobody = request.default.as_ref().map_or_else(
         || "Nobody decides: the aircraft holds there and asks again.".to_owned(),
-        |default| format!("Nobody decides: {default}."),
+        |default| {
+            let option = request.options.iter().find(|option| option.branch == *default);
+            format!("Nobody decides: {}.", option.map_or(default.as_str(), |option| option.label.as_str()))
+        },
     );
     ui.label(RichText::new(nobody).size(11.5).color(p.weak));
 }

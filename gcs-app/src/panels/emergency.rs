@@ -57,23 +57,37 @@ fn because(cause: Cause) -> &'static str {
     }
 }
 
+/// One is being flown.
+pub fn is_flown(scene: &Scene<'_>) -> bool {
+    scene.vehicle.status.as_ref().is_some_and(|status| status.value.emergency.is_some())
+}
+
+/// The leg at which the main plan would be gone on with: where the emergency was raised, else its first.
+pub fn way_back_to(scene: &Scene<'_>) -> Option<Id> {
+    let aboard = scene.vehicle.aboard.as_ref().filter(|_| is_flown(scene))?;
+    let raised = scene.vehicle.raised.as_ref().and_then(|raised| raised.from_leg.as_ref());
+    let main = main_legs(&aboard.plan);
+    raised.filter(|leg| main.contains(leg)).or(main.first().copied()).cloned()
+}
+
+fn main_legs(plan: &FlightPlan) -> Vec<&Id> {
+    let legs = plan.all_legs().into_iter().filter(|context| context.section == Section::Main);
+    legs.map(|context| &context.leg.id).collect()
+}
+
 /// Which leg, then the command: it goes on where the emergency was raised unless another leg is chosen.
 fn way_back(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(aboard) = &scene.vehicle.aboard else { return };
-    let legs = aboard.plan.all_legs();
-    let main =
-        || legs.iter().filter(|context| context.section == Section::Main).map(|context| &context.leg.id);
-    let raised = scene.vehicle.raised.as_ref().and_then(|raised| raised.from_leg.as_ref());
+    let main = main_legs(&aboard.plan);
     let id = ui.make_persistent_id("way back");
     let chosen: Option<Id> = ui.data(|d| d.get_temp(id));
-    let leg = chosen.as_ref().or(raised).filter(|leg| main().any(|id| id == *leg)).or(main().next());
-    let Some(leg) = leg.cloned() else { return };
+    let Some(leg) = chosen.filter(|leg| main.contains(&leg)).or_else(|| way_back_to(scene)) else { return };
     if ui.button(format!("Return to the main plan at {}", scene.vehicle.name_of(&leg))).clicked() {
         queue.consider(Command::ReturnToMain { leg: leg.clone() });
     }
     let combo = ComboBox::from_id_salt("way back").selected_text("another leg").width(96.0);
     let shown = combo.show_ui(ui, |ui| {
-        for other in main() {
+        for other in main {
             if ui.selectable_label(*other == leg, scene.vehicle.name_of(other)).clicked() {
                 ui.data_mut(|d| d.insert_temp(id, other.clone()));
             }

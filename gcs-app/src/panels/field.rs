@@ -3,6 +3,7 @@
 use crate::theme;
 use crate::units::Unit;
 use egui::{Color32, Context, DragValue, Id, Key, Response, RichText, Sense, Stroke, Ui, vec2};
+use std::cell::RefCell;
 use std::ops::RangeInclusive;
 
 /// What happened to a field.
@@ -77,6 +78,7 @@ pub fn number_between(
     unit: Unit,
     range_si: RangeInclusive<f64>,
 ) -> Change<f64> {
+    let typed = Typed::of(ui);
     let before = unit.from_si(si);
     let decimals = unit.decimals.max(1);
     let mut shown = before;
@@ -87,12 +89,59 @@ pub fn number_between(
         .range(unit.from_si(*range_si.start())..=unit.from_si(*range_si.end()))
         // what is only looked at stays as it is, however wrong
         .clamp_existing_to_range(false)
-        .update_while_editing(false);
+        .update_while_editing(false)
+        .custom_parser(|text| typed.read(unit, text));
     let response = ui.add_sized([78.0, 24.0], drag);
     named(&response, name, shown);
+    typed.tell(ui, &response);
     // a field that was only entered and left gives the number back as it is shown
     let is_rounded = !response.dragged() && (shown - before).abs() < 0.5 * 0.1_f64.powi(decimals as i32);
     if response.changed() && is_rounded { Change::None } else { outcome(&response, unit.to_si(shown)) }
+}
+
+/// What was typed into a field of a number, and why it could not be read.
+#[derive(Debug)]
+pub struct Typed {
+    refused: RefCell<Option<String>>,
+    /// The same in the next frame, whichever part of the field has the keyboard.
+    id: Id,
+}
+
+/// Seconds for which it is said why a number was not taken.
+const REFUSED_S: f64 = 8.0;
+
+impl Typed {
+    /// For the field that is drawn next.
+    pub fn of(ui: &Ui) -> Self {
+        Self { refused: RefCell::default(), id: ui.next_auto_id().with("refused") }
+    }
+
+    /// In this unit; for the parser of a field.
+    pub fn read(&self, unit: Unit, text: &str) -> Option<f64> {
+        self.take(unit.read(text))
+    }
+
+    /// The same for what has been read already.
+    pub fn take(&self, read: Result<f64, String>) -> Option<f64> {
+        read.map_err(|why| *self.refused.borrow_mut() = Some(why)).ok()
+    }
+
+    /// Says at the field why what was typed was not taken, until something else is typed or some time has passed.
+    pub fn tell(self, ui: &Ui, field: &Response) {
+        let id = self.id;
+        let now = ui.input(|i| i.time);
+        if let Some(why) = self.refused.into_inner() {
+            ui.data_mut(|d| d.insert_temp(id, (why, now)));
+        } else if field.gained_focus() {
+            ui.data_mut(|d| d.remove::<(String, f64)>(id));
+        }
+        let Some((why, since)) = ui.data(|d| d.get_temp::<(String, f64)>(id)) else { return };
+        let left_s = since + REFUSED_S - now;
+        if left_s > 0.0 {
+            ui.ctx().request_repaint_after_secs(left_s as f32);
+            field.show_tooltip_text(format!("⚠ {why}. Nothing was changed."));
+        }
+    }
 }
 
 /// Gives a spin button a name, which its text alone is not.

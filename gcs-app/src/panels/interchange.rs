@@ -16,6 +16,8 @@ use interchange::{Areas, Note};
 const WIDTH: f32 = 560.0;
 const LIST_HEIGHT: f32 = 220.0;
 const ROW: f32 = 20.0;
+/// More notes than these have a line each, cut where it ends, and are whole in a tooltip.
+const MOST_WRAPPED: usize = 200;
 
 /// Draws it, while there is something to be decided.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -139,25 +141,28 @@ fn notes(ui: &mut Ui, title: &str, notes: &[Note]) {
     }
     super::group_title(ui, &format!("{title} ({})", notes.len()));
     ui.separator();
-    let height = (notes.len() as f32 * ROW).min(LIST_HEIGHT);
-    let area = ScrollArea::vertical().auto_shrink(false).max_height(height);
-    area.show_rows(ui, ROW - ui.spacing().item_spacing.y, notes.len(), |ui, shown| {
-        for note in notes.get(shown).unwrap_or_default() {
-            row(ui, note);
-        }
-    });
+    let area = ScrollArea::vertical().auto_shrink([false, true]).max_height(LIST_HEIGHT);
+    if notes.len() <= MOST_WRAPPED {
+        area.show(ui, |ui| notes.iter().for_each(|note| drop(ui.add(Label::new(text(note)).wrap()))));
+    } else {
+        area.show_rows(ui, ROW - ui.spacing().item_spacing.y, notes.len(), |ui, shown| {
+            for note in notes.get(shown).unwrap_or_default() {
+                let text = text(note);
+                ui.add(Label::new(&text).truncate()).on_hover_text(&text);
+            }
+        });
+    }
     ui.separator();
     ui.add_space(4.0);
 }
 
-fn row(ui: &mut Ui, note: &Note) {
+fn text(note: &Note) -> String {
     let remedy = if note.code == "aircraft-assumed" {
         "; choose it in the inspector of the plan, under Aircraft"
     } else {
         ""
     };
-    let text = format!("{}: {}{remedy}", note.place, note.message);
-    ui.add(Label::new(text).truncate()).on_hover_text(note.to_string());
+    format!("{}: {}{remedy}", note.place, note.message)
 }
 
 /// What is in a plan, in a few words.

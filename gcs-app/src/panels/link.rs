@@ -97,20 +97,40 @@ struct Form {
 }
 
 impl Form {
-    /// As the vehicle is connected that is shown, or was before; else as an agent on this machine is.
     fn of(scene: &Scene<'_>) -> Self {
-        let shown = scene.vehicles.shown_name().map(VehicleName::as_str);
-        let last = scene.connections.last(shown);
-        let open = scene.vehicle.link.endpoint();
-        let endpoint = open.or(last.map(|made| made.endpoint.as_str())).unwrap_or("tcp/127.0.0.1:7447");
-        let vehicle = shown.or(last.map(|made| made.vehicle.as_str())).unwrap_or("uav1");
-        Self { endpoint: endpoint.into(), vehicle: vehicle.into(), waits: false }
+        let Connection { endpoint, vehicle } = default_connection(scene);
+        Self { endpoint, vehicle, waits: false }
     }
 
     fn connect(&mut self, endpoint: String, queue: &mut Queue) {
         self.waits = true;
-        queue.link(LinkCommand::Connect { endpoint, vehicle: self.vehicle.as_str().into() });
+        queue.link(connecting(&Connection { endpoint, vehicle: self.vehicle.clone() }));
     }
+}
+
+/// As the vehicle is connected that is shown, or was before; else as an agent on this machine is.
+pub fn default_connection(scene: &Scene<'_>) -> Connection {
+    let shown = scene.vehicles.shown_name().map(VehicleName::as_str);
+    let last = scene.connections.last(shown);
+    let open = scene.vehicle.link.endpoint();
+    let endpoint = open.or(last.map(|made| made.endpoint.as_str())).unwrap_or("tcp/127.0.0.1:7447");
+    let vehicle = shown.or(last.map(|made| made.vehicle.as_str())).unwrap_or("uav1");
+    Connection { endpoint: endpoint.into(), vehicle: vehicle.into() }
+}
+
+/// Makes a connection.
+pub fn connecting(made: &Connection) -> LinkCommand {
+    LinkCommand::Connect { endpoint: made.endpoint.clone(), vehicle: made.vehicle.as_str().into() }
+}
+
+/// The connections that were made before and are not open.
+pub fn offers<'a>(scene: &Scene<'a>) -> Vec<&'a Connection> {
+    let open = scene.vehicle.link.endpoint();
+    let is_open = |made: &Connection| {
+        open == Some(&made.endpoint)
+            && scene.vehicles.shown_name().is_some_and(|name| name.as_str() == made.vehicle)
+    };
+    scene.connections.list().iter().filter(|made| !is_open(made)).collect()
 }
 
 fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -152,12 +172,7 @@ fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 
 /// The other connections that were made: a click makes one again.
 fn made_before(ui: &mut Ui, scene: &Scene<'_>, form: &mut Form, queue: &mut Queue) {
-    let open = scene.vehicle.link.endpoint();
-    let is_open = |made: &Connection| {
-        open == Some(&made.endpoint)
-            && scene.vehicles.shown_name().is_some_and(|name| name.as_str() == made.vehicle)
-    };
-    let others: Vec<&Connection> = scene.connections.list().iter().filter(|made| !is_open(made)).collect();
+    let others = offers(scene);
     if others.is_empty() {
         return;
     }

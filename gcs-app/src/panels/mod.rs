@@ -319,6 +319,9 @@ impl<'a> Scene<'a> {
         let since_s = self.view.behind_since_s.map_or(0.0, |since_s| self.now_s - since_s);
         let drawn = !self.forecast().points.is_empty();
         match &self.analysis.no_forecast {
+            Some(_) if drawn && self.forecast().is_beginning => {
+                Some("A draft: drawn as far as it can be flown. The plan has errors")
+            }
             Some(_) if drawn => Some("Out of date: the last path that could be flown. The plan has errors"),
             Some(_) if !self.document.plan().stages.is_empty() => Some("A draft: the plan has errors"),
             None if drawn && since_s > OUT_OF_DATE_AFTER_S => Some("Out of date: being computed…"),

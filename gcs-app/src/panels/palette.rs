@@ -1,7 +1,7 @@
 //! The command palette: everything that can be done, found by a few letters.
 
 use super::{Scene, field};
-use crate::actions::{Action, Fittings, Kind, all, alternates, bindings, fuzzy, places};
+use crate::actions::{Action, Fittings, Kind, all, alternates, bindings, flight, fuzzy, offers, places};
 use crate::command::{Queue, ViewCommand};
 use crate::theme;
 use egui::text::{CCursor, CCursorRange};
@@ -157,7 +157,9 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     }
     actions.extend(alternates::of(scene));
     actions.extend(bindings::of(scene));
-    actions.extend(places::of(scene.document.plan()));
+    actions.extend(offers::of(scene));
+    actions.extend(flight::of(scene));
+    actions.extend(places::of(scene.document));
     let score = |action: &Action| fuzzy::score(query, &format!("{} {}", action.group.name(), action.name));
     let mut scored: Vec<(i32, Action)> =
         actions.into_iter().filter_map(|action| Some((score(&action)?, action))).collect();

@@ -303,7 +303,8 @@ fn draw_cursor(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     let at = axes.place(point);
     painter.vline(at.x, axes.plot.y_range(), Stroke::new(1.0, p.text));
     painter.circle(at, 4.0, p.text, Stroke::new(1.5, p.halo));
-    let leg = scene.forecast().passages.get(point.passage).map_or("", |passage| passage.leg.as_str());
+    let leg =
+        scene.forecast().passages.get(point.passage).map_or("", |passage| scene.document.label(&passage.leg));
     let altitude = scene.units().altitude();
     let above = point
         .ground_amsl_m

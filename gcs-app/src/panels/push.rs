@@ -113,7 +113,7 @@ fn next(ui: &mut Ui, proposal: &Proposal, scene: &Scene<'_>, p: &Palette) {
         Some(entry) => (Some(&entry.leg), Some(entry.position), Some((entry.in_m, entry.in_s))),
         None => (report.next_leg.as_ref(), report.next_position, report.next_in_m.zip(report.next_in_s)),
     };
-    let leg = leg.map_or("–", |leg| scene.document.leg_label(leg));
+    let leg = leg.map_or("–", |leg| scene.document.label(leg));
     let place = position.map_or_else(String::new, |at| format!(" at {}", units::position(at)));
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new("The aircraft would fly next:").color(p.weak));
@@ -134,14 +134,11 @@ fn in_so_far(way: Option<(f64, f64)>, units: Units) -> String {
 fn entry(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) {
     ui.vertical(|ui| {
         ui.label("The leg it is on is gone. Enter at:");
-        let current = proposal.entry.as_ref().map_or("choose a leg", |leg| scene.document.leg_label(leg));
+        let current = proposal.entry.as_ref().map_or("choose a leg", |leg| scene.document.label(leg));
         egui::ComboBox::from_id_salt("entry").selected_text(current).show_ui(ui, |ui| {
-            for context in
-                scene.document.plan().all_legs().iter().filter(|c| c.section == flight_plan::Section::Main)
-            {
-                let leg = &context.leg.id;
+            for leg in entries(scene) {
                 let way = proposal.report.entries.iter().find(|entry| entry.leg == *leg);
-                let name = scene.document.leg_label(leg);
+                let name = scene.document.label(leg);
                 let text = format!("{name}{}", in_so_far(way.map(|e| (e.in_m, e.in_s)), scene.units()));
                 if ui.selectable_label(proposal.entry.as_ref() == Some(leg), text).clicked() {
                     queue.fly(FlyCommand::EnterAt(leg.clone()));
@@ -151,10 +148,20 @@ fn entry(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue)
     });
 }
 
+/// It can be committed.
+pub fn is_ready(proposal: &Proposal) -> bool {
+    proposal.report.acceptable && (!proposal.report.entry_needed || proposal.entry.is_some())
+}
+
+/// Legs at which it may be entered.
+pub fn entries<'a>(scene: &Scene<'a>) -> impl Iterator<Item = &'a Id> {
+    let legs = scene.document.plan().all_legs().into_iter();
+    legs.filter(|context| context.section == flight_plan::Section::Main).map(|context| &context.leg.id)
+}
+
 fn buttons(ui: &mut Ui, proposal: &Proposal, queue: &mut Queue) {
     let p = theme::of(ui);
-    let ready = proposal.report.acceptable && (!proposal.report.entry_needed || proposal.entry.is_some());
-    if ui.add_enabled(ready, super::primary_button("Commit", p)).clicked() {
+    if ui.add_enabled(is_ready(proposal), super::primary_button("Commit", p)).clicked() {
         queue.fly(FlyCommand::Commit);
     }
     if ui.button("Keep as draft").clicked() {

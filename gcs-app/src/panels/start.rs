@@ -203,7 +203,10 @@ fn number(ui: &mut Ui, name: &str, si: &mut f64, unit: Unit, range_si: RangeIncl
         let mut shown = unit.from_si(*si);
         let range = unit.from_si(*range_si.start())..=unit.from_si(*range_si.end());
         let value = DragValue::new(&mut shown).range(range).suffix(format!(" {}", unit.symbol));
+        let typed = field::Typed::of(ui);
+        let value = value.update_while_editing(false).custom_parser(|text| typed.read(unit, text));
         let response = ui.add(value.max_decimals(0));
+        typed.tell(ui, &response);
         response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, name));
         if response.changed() {
             *si = unit.to_si(shown);

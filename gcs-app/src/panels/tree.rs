@@ -4,7 +4,7 @@ pub mod alternates;
 mod drag;
 mod drop;
 mod keyboard;
-mod make;
+pub mod make;
 pub mod menu;
 mod rename;
 mod row;

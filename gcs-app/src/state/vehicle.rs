@@ -345,6 +345,12 @@ impl Vehicle {
         name.unwrap_or(id.as_str()).to_owned()
     }
 
+    /// What people call a branch of the plan aboard.
+    pub fn name_of_branch(&self, fork: &Id, branch: &Id) -> String {
+        let plan = self.aboard.as_ref().map(|aboard| aboard.plan.as_ref());
+        plan.map_or(branch.as_str(), |plan| plan.branch_label(fork, branch)).to_owned()
+    }
+
     /// The leg being flown.
     pub fn current_leg(&self) -> Option<&Id> {
         Some(&self.status.as_ref()?.value.place.as_ref()?.leg)

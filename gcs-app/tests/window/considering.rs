@@ -1,8 +1,9 @@
 //! Commands that lead elsewhere are looked at before they are given.
 
 use super::Window;
-use super::flying::flying;
+use super::flying::{flying, flying_its_plan};
 use super::vehicle::{place, status};
+use egui_kittest::kittest::Queryable;
 use flight_exec::{Command, Foresight, PathPoint, Phase};
 use gcs_app::link::{Call, Reply};
 use gcs_app::state::Ticket;
@@ -131,4 +132,40 @@ fn a_plan_that_was_under_way_is_rewound_on_the_ground_only() {
     assert!(window.asked().is_none());
     window.hold("Rewind to the start (hold)", 90);
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Rewind)));
+}
+
+/// What follows is asked for, and nothing else; then the command is given by its button.
+fn is_looked_at_first(window: &mut Window, command: Command, button: &str) {
+    let (ticket, call) = window.asked().unwrap();
+    assert_eq!(call, Call::Foresee(Some(command.clone())), "nothing is done yet");
+    assert!(window.asked().is_none());
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    assert!(window.shows("Left out: side2"));
+    window.click(button);
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(command)));
+}
+
+#[test]
+fn skip_from_the_palette_shows_what_follows_before_it_acts() {
+    let (mut window, _) = flying();
+    window.ask_for("skip the leg");
+    window.press(egui::Key::Enter);
+    is_looked_at_first(&mut window, Command::SkipLeg, "Skip side2, fly side3 next");
+}
+
+#[test]
+fn go_to_shows_what_follows_before_it_acts_from_inspector_map_and_palette() {
+    let mut window = flying_its_plan();
+    let go_to = || Command::GoTo { leg: "side4".into() };
+    window.click("TF side4");
+    window.click("Go to this leg…");
+    is_looked_at_first(&mut window, go_to(), "Go to side4");
+    window.right_click_at(window.centre("Path of side4"));
+    window.harness.get_all_by_label("TF side4").last().unwrap().click();
+    window.steps(3);
+    window.click("Go to it…");
+    is_looked_at_first(&mut window, go_to(), "Go to side4");
+    window.ask_for("fly to side4");
+    window.press(egui::Key::Enter);
+    is_looked_at_first(&mut window, go_to(), "Go to side4");
 }

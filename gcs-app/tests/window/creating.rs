@@ -59,6 +59,16 @@ fn each_template_gives_a_plan_that_can_be_flown_and_undone() {
 }
 
 #[test]
+fn the_question_on_the_map_has_no_empty_line_below_it() {
+    let mut window = Window::open(EMPTY);
+    window.steps(3);
+    let said = "Where do you fly? Zoom in and click there, or type it into the card.";
+    let text = window.harness.get_by_label(said).rect();
+    let below = window.plate_around(text).unwrap().bottom() - text.bottom();
+    assert!(below < 16.0, "{below}");
+}
+
+#[test]
 fn window_without_a_plan_shows_the_world_and_asks_where() {
     let mut window = Window::open(EMPTY);
     window.steps(3);
@@ -245,7 +255,7 @@ fn point_of_a_new_corridor_is_dragged_by_itself() {
     };
     let before = route(&window);
     window.click("CORR Along the line");
-    let at = window.centre("Corner 3 of strip");
+    let at = window.centre("Corner 3 of Along the line");
     window.drag(at, vec2(-40.0, -30.0));
     let after = route(&window);
     assert_eq!(after[..2], before[..2]);

@@ -6,7 +6,8 @@ use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::{Command, IterationPlace, Phase, ProposalReport};
 use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Reply};
-use gcs_app::state::Outcome;
+use gcs_app::state::{ActivePlan, Outcome};
+use std::sync::Arc;
 use usal::contract::{Alarm, Severity};
 
 pub fn report(hash: &str, acceptable: bool) -> ProposalReport {
@@ -49,6 +50,28 @@ pub fn flying() -> (Window, flight_exec::Status) {
     // the window reads the plan aboard; this vehicle does not give it
     while window.asked().is_some() {}
     (window, value)
+}
+
+/// Flying the document, which the window knows to be aboard.
+pub fn flying_its_plan() -> Window {
+    let (mut window, _) = connected();
+    fly_its_plan(&mut window);
+    window
+}
+
+/// The vehicle flies the document, and gives it when it is asked.
+pub fn fly_its_plan(window: &mut Window) {
+    window.connect();
+    let hash = window.app().analysis().hash.clone();
+    let aboard = ActivePlan { plan: Arc::new(window.plan()), hash: hash.as_str().into() };
+    let mut value = status(Phase::Flying);
+    value.plan = Some(hash.into());
+    value.place = Some(place("circuit", "side2"));
+    window.receive_position(false);
+    window.receive_status(value);
+    let (ticket, _) = window.asked().unwrap();
+    window.answer(ticket, Ok(Reply::Plan(Some(aboard))));
+    while window.asked().is_some() {}
 }
 
 #[test]
@@ -122,8 +145,8 @@ fn proposal_leaves_the_commands_of_the_flight_in_reach() {
 #[test]
 fn proposal_says_in_words_what_is_different_and_what_was_edited_since() {
     let (mut window, hash) = connected();
-    let plan = std::sync::Arc::new(window.plan());
-    let aboard = gcs_app::state::ActivePlan { plan, hash: hash.as_str().into() };
+    let plan = Arc::new(window.plan());
+    let aboard = ActivePlan { plan, hash: hash.as_str().into() };
     let mut value = status(Phase::Flying);
     value.plan = Some(hash.clone().into());
     window.receive_position(false);

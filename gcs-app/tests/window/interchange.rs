@@ -4,6 +4,7 @@ use super::filing::{name, until_listed, window, window_on};
 use super::reach::Missing as Dropped;
 use super::{SQUARE, Window};
 use egui::Key;
+use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -35,6 +36,8 @@ fn plan_of_another_program_is_imported_after_its_losses_were_shown() {
     assert!(window.shows("Import “survey.plan” (QGC plan)") && window.shows("ASSUMED, CHANGED OR LEFT OUT"));
     let note = window.app().view().imported.as_ref().unwrap().import.notes[0].clone();
     assert!(window.shows(&format!("{}: {}", note.place, note.message)), "as on the command line: {note}");
+    let list = window.harness.get_by_label_contains("choose it in the inspector").rect();
+    assert!(list.height() > 20.0, "a long note is wrapped, not cut: {list}");
     window.press(Key::Escape);
     assert!(window.plan() == before && window.app().view().imported.is_none());
 

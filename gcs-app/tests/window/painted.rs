@@ -28,6 +28,15 @@ fn strokes(shape: &Shape) -> Vec<Color32> {
     }
 }
 
+/// The rectangles of a shape.
+fn plates(shape: &Shape) -> Vec<Rect> {
+    match shape {
+        Shape::Rect(plate) => vec![plate.rect],
+        Shape::Vec(several) => several.iter().flat_map(plates).collect(),
+        _ => Vec::new(),
+    }
+}
+
 impl Window {
     /// These words are painted somewhere.
     pub fn paints(&self, words: &str) -> bool {
@@ -55,6 +64,14 @@ impl Window {
         text.override_text_color
             .or(own.filter(|own| *own != Color32::PLACEHOLDER))
             .or(Some(text.fallback_color))
+    }
+
+    /// The smallest plate that is painted behind something.
+    pub fn plate_around(&self, inner: Rect) -> Option<Rect> {
+        let shapes = self.harness.output().shapes.iter();
+        let plates =
+            shapes.flat_map(|clipped| plates(&clipped.shape)).filter(|plate| plate.contains_rect(inner));
+        plates.min_by(|a, b| a.area().total_cmp(&b.area()))
     }
 
     /// So many lines of this colour are painted within what is called so.

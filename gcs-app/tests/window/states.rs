@@ -175,13 +175,14 @@ fn off_the_screen(window: &Window) -> Vec<String> {
 fn look(state: &str, window: &mut Window, found: &mut Vec<String>) {
     let more = ["plan", "flying"].contains(&state);
     let sizes = SIZES.into_iter().chain(MORE.into_iter().filter(|_| more));
-    for (number, size) in sizes.enumerate() {
-        let theme = if number % 2 == 0 { egui::Theme::Dark } else { egui::Theme::Light };
-        window.harness.input_mut().system_theme = Some(theme);
+    for size in sizes {
         window.harness.set_size(size);
-        window.steps(2);
-        let faults = faults(window).into_iter().chain(off_the_screen(window));
-        found.extend(faults.map(|fault| format!("{state} at {size}: {fault}")));
+        for theme in [egui::Theme::Dark, egui::Theme::Light] {
+            window.harness.input_mut().system_theme = Some(theme);
+            window.steps(2);
+            let faults = faults(window).into_iter().chain(off_the_screen(window));
+            found.extend(faults.map(|fault| format!("{state} at {size}, {theme:?}: {fault}")));
+        }
     }
     window.harness.set_size(vec2(1280.0, 800.0));
     window.steps(2);

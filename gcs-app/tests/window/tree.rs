@@ -262,3 +262,23 @@ fn a_landing_before_another_flight_shows_what_is_expected_on_the_ground() {
         assert!(window.harness.query_all_by_label_contains(field).next().is_some(), "{field}");
     }
 }
+
+#[test]
+fn every_expression_is_found_wherever_in_a_leg_it_is() {
+    let variables = r#"<variables><variable name="fuel_low" type="bool" initial="false"/>
+        <variable name="reach" type="number" unit="m" initial="300"/></variables>"#;
+    let legs = r#"<HM id="wait" fix="A" course="52" turn="right" length="600" until="fuel_low"/>
+        <orbit id="look" radius="= reach + 41.0" turns="2" turn="right"><centre fix="B"/></orbit>"#;
+    let text = SQUARE.replace("<mainPlan", &format!("{variables}<mainPlan"));
+    let text = text.replace(r#"<TF id="side2" fix="B"/>"#, &format!(r#"<TF id="side2" fix="B"/>{legs}"#));
+    let mut window = Window::open(&text);
+    window.until_analysed();
+    for (sought, found) in [("fuel_low", "HM wait"), ("41.0", "ORB look")] {
+        window.press_ctrl(egui::Key::F);
+        window.harness.event(egui::Event::Text(sought.into()));
+        window.steps(3);
+        assert!(window.shows(found) && !window.shows("TF side2"), "{sought}");
+        window.press(egui::Key::Escape);
+    }
+    assert!(window.paints("until fuel_low"), "it stands beside its leg");
+}

@@ -10,6 +10,7 @@ use flight_exec::{Command, preview};
 use flight_plan::{Cause, VariableValue, compile};
 use gcs_app::app::App;
 use gcs_app::forecast::Coverage;
+use gcs_app::panels::what_if::{CAUSES, cause_name};
 use std::sync::Arc;
 
 pub const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
@@ -107,10 +108,10 @@ fn a_decision_takes_the_other_branch() {
         window.app().analysis().forecast.passages.iter().filter(|p| p.leg.as_str() == "look").count()
     };
     assert_eq!(looks(&window), 0);
-    choose(&mut window, "ask: Close look");
+    choose(&mut window, "Look closer?: Close look");
     window.until("the other branch", is_current);
     assert_eq!(looks(&window), 1);
-    choose(&mut window, "ask: as planned");
+    choose(&mut window, "Look closer?: as planned");
     window.until("the plan's branch", is_current);
     assert_eq!(looks(&window), 0);
 }
@@ -214,7 +215,7 @@ fn a_plan_with_an_error_still_draws_and_says_where_it_fails() {
     let broken = SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, r#"<TF id="side2" fix="NOWHERE"/>"#);
     let mut draft = opened(&broken);
     assert!(draft.app().analysis().no_forecast.is_some());
-    assert!(draft.shows("A draft: the plan has errors"));
+    assert!(draft.shows("A draft: drawn as far as it can be flown"));
     draft.click("Show the error");
     assert_eq!(draft.selected(), "side2");
 }
@@ -236,4 +237,78 @@ fn the_cursor_runs_as_fast_as_chosen() {
     };
     let (slow, fast) = (ran_s(&mut window, "2×"), ran_s(&mut window, "50×"));
     assert!(slow > 0.0 && (fast / slow - 25.0).abs() < 1.0, "{slow} {fast}");
+}
+
+#[test]
+fn each_cause_is_raised_in_the_panel_and_in_the_palette() {
+    let mut window = opened(SQUARE);
+    for (cause, letters) in CAUSES.into_iter().zip(["engine", "energy", "link", "gps", "operator"]) {
+        choose(&mut window, cause_name(cause));
+        let found = |app: &App| app.analysis().diversion().is_some_and(|found| found.cause == cause);
+        window.until("the way out", found);
+        assert!(window.shows(&format!("{}: return, runway R05", cause_name(cause))), "{cause:?}");
+        window.click("Back to the plan's own world");
+        assert!(window.app().view().alarm.is_none());
+        window.ask_for(&format!("what if {letters} here"));
+        window.press(egui::Key::Enter);
+        assert_eq!(window.app().view().alarm, Some(cause), "{letters}");
+        window.click("Back to the plan's own world");
+    }
+}
+
+#[test]
+fn another_wind_aloft_changes_the_preview_and_says_so() {
+    let mut window = opened(SQUARE);
+    let (before, calm_s) = (window.plan(), duration_s(&window));
+    choose(&mut window, "Another wind aloft");
+    slide(&mut window, "Altitude aloft, AMSL", 400.0);
+    slide(&mut window, "Wind aloft from", 240.0);
+    slide(&mut window, "Wind aloft speed", 12.0);
+    let (amsl_m, wind) = window.app().view().what_if.aloft.unwrap();
+    assert!(amsl_m == 400.0 && (wind.speed_mps() - 12.0).abs() < 1e-6);
+    assert!((duration_s(&window) - calm_s).abs() > 5.0);
+    assert!(window.shows("calm at the runway, 12.0 m/s from 240° at 400 m AMSL"));
+    assert_eq!(window.plan(), before);
+    choose(&mut window, "Another wind aloft");
+    window.until("calm again", is_current);
+    assert_eq!(duration_s(&window), calm_s);
+}
+
+#[test]
+fn the_flight_starts_at_the_time_that_is_chosen() {
+    let mut window = opened(SQUARE);
+    choose(&mut window, "Start at a time of day");
+    let day_s = window.app().view().what_if.start_unix_s.unwrap().div_euclid(86_400) * 86_400;
+    slide(&mut window, "UTC", 365.0);
+    assert_eq!(window.app().view().what_if.start_unix_s, Some(day_s + 365 * 60));
+    assert!(window.shows("What if: start 06:05 UTC"));
+    assert!(!window.app().document().is_dirty());
+    choose(&mut window, "Start at a time of day");
+    assert!(window.app().view().what_if.is_nothing());
+}
+
+#[test]
+fn a_plan_that_is_opened_with_an_error_is_flown_until_there() {
+    let broken = SQUARE.replace(r#"<TF id="side3" fix="C"/>"#, r#"<TF id="side3" fix="NOWHERE"/>"#);
+    let window = opened(&broken);
+    let forecast = &window.app().analysis().forecast;
+    assert!(forecast.is_beginning && window.shows("drawn as far as it can be flown"));
+    let flown: Vec<&str> = forecast.passages.iter().map(|passage| passage.leg.as_str()).collect();
+    assert!(flown.contains(&"side2") && !flown.contains(&"side3") && !flown.contains(&"side4"), "{flown:?}");
+    let end = forecast.points.last().unwrap().position;
+    let b = window.plan().fix(&"B".into()).unwrap().position;
+    assert!(end.distance_m(b) < 300.0, "{end:?}");
+    assert!(window.paints("NOWHERE"), "the mark where it fails");
+}
+
+#[test]
+fn a_path_that_ends_at_an_error_grows_when_that_is_mended() {
+    let broken = SQUARE.replace(r#"<TF id="side3" fix="C"/>"#, r#"<TF id="side3" fix="NOWHERE"/>"#);
+    let mut window = opened(&broken);
+    let short_m = window.app().analysis().forecast.length_m();
+    window.click("TF side3");
+    window.press(egui::Key::Delete);
+    window.until_analysed();
+    let forecast = &window.app().analysis().forecast;
+    assert!(!forecast.is_beginning && forecast.length_m() > short_m);
 }

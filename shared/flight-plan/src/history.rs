@@ -1,31 +1,45 @@
 //! Undo and redo: a history of plan states.
 
+mod size;
+
 use crate::{Edit, EditError, FlightPlan};
 use std::sync::Arc;
 
-/// States that are kept; older ones are forgotten.
-const MAX_STATES: usize = 500;
+/// So much is kept of what states have for themselves, bytes: far more than a day's work. The oldest are forgotten then.
+const MOST_BYTES: usize = 512 << 20;
+
+#[derive(Debug, Clone)]
+struct State {
+    plan: Arc<FlightPlan>,
+    /// About what it has for itself.
+    bytes: usize,
+}
 
 /// A plan and how it came about.
 #[derive(Debug, Clone)]
 pub struct History {
-    states: Vec<Arc<FlightPlan>>,
+    states: Vec<State>,
     present: usize,
     /// Edits with the same gesture make one step.
     gesture: Option<u64>,
     saved: Option<usize>,
+    /// About what all states together hold.
+    bytes: usize,
+    most_bytes: usize,
 }
 
 impl History {
     /// The history of a plan that was just opened (and counts as saved).
     pub fn new(plan: FlightPlan) -> Self {
-        Self { states: vec![Arc::new(plan)], present: 0, gesture: None, saved: Some(0) }
+        let bytes = size::of(&plan, None);
+        let first = State { bytes, plan: Arc::new(plan) };
+        Self { states: vec![first], present: 0, gesture: None, saved: Some(0), bytes, most_bytes: MOST_BYTES }
     }
 
     /// The plan as it is now.
     pub fn plan(&self) -> &Arc<FlightPlan> {
         // `present` is always the index of a state; the first one is never removed without another taking its place
-        &self.states[self.present]
+        &self.states[self.present].plan
     }
 
     /// Makes an edit; what was undone before is forgotten. `gesture`: edits in a row with the same number (a drag) are one step.
@@ -45,16 +59,33 @@ impl History {
 
     fn push(&mut self, plan: FlightPlan, gesture: Option<u64>) {
         let goes_on = gesture.is_some() && gesture == self.gesture && self.present > 0;
-        self.states.truncate(self.present + usize::from(!goes_on));
-        self.states.push(Arc::new(plan));
+        let undone = self.states.drain(self.present + usize::from(!goes_on)..);
+        self.bytes -= undone.map(|state| state.bytes).sum::<usize>();
+        let before = self.states.last().map(|state| state.plan.as_ref());
+        let bytes = size::of(&plan, before);
+        self.bytes += bytes;
+        self.states.push(State { bytes, plan: Arc::new(plan) });
         self.present = self.states.len() - 1;
         self.saved = self.saved.filter(|saved| *saved < self.present);
         self.gesture = gesture;
-        if self.states.len() > MAX_STATES {
-            self.states.remove(0);
-            self.present -= 1;
-            self.saved = self.saved.and_then(|saved| saved.checked_sub(1));
+        self.forget_oldest();
+    }
+
+    /// The newest state stays, whatever its size.
+    fn forget_oldest(&mut self) {
+        let mut forgotten = 0;
+        while self.bytes > self.most_bytes && forgotten < self.present {
+            self.bytes -= self.states[forgotten].bytes;
+            forgotten += 1;
         }
+        self.states.drain(..forgotten);
+        self.present -= forgotten;
+        self.saved = self.saved.and_then(|saved| saved.checked_sub(forgotten));
+    }
+
+    /// About what all states together hold, bytes.
+    pub fn bytes(&self) -> usize {
+        self.bytes
     }
 
     /// Ends a drag: the next edit is a step of its own.
@@ -166,12 +197,25 @@ mod tests {
         assert!(!history.is_saved(), "the saved state is gone");
     }
 
+    fn steps_back(history: &mut History) -> usize {
+        std::iter::from_fn(|| history.undo().then_some(())).count()
+    }
+
     #[test]
-    fn the_oldest_states_are_forgotten() {
+    fn a_days_work_is_undone_to_its_beginning() {
         let mut history = start();
-        (1..=2000).for_each(|i| history.apply(&moved(f64::from(i)), None).unwrap());
-        let steps = std::iter::from_fn(|| history.undo().then_some(())).count();
-        assert_eq!(steps, MAX_STATES - 1);
+        (1..=20_000).for_each(|i| history.apply(&moved(f64::from(i)), None).unwrap());
+        assert_eq!(steps_back(&mut history), 20_000);
+        assert_eq!(lat(&history), 0.0);
+    }
+
+    #[test]
+    fn the_oldest_states_are_forgotten_when_they_hold_too_much() {
+        let mut history = History { most_bytes: 100_000, ..start() };
+        (1..=5000).for_each(|i| history.apply(&moved(f64::from(i)), None).unwrap());
+        assert!(history.bytes() <= 100_000 && !history.is_saved());
+        let kept = steps_back(&mut history);
+        assert!((50..1000).contains(&kept), "{kept}");
     }
 
     proptest! {

@@ -1,5 +1,6 @@
 //! What people call the parts of a plan: their names before their identifiers.
 
+use crate::create::every_leg;
 use crate::{FlightPlan, Id};
 
 impl FlightPlan {
@@ -13,6 +14,26 @@ impl FlightPlan {
         let stage = self.stage(id).map(|stage| stage.name.as_str());
         let name = stage.or_else(emergency).or_else(procedure).or_else(zone).or_else(fix).or_else(leg)?;
         (!name.is_empty()).then_some(name)
+    }
+
+    /// Everything that has a name, with it: what [`FlightPlan::name_of`] finds one by one.
+    pub fn named(&self) -> impl Iterator<Item = (&Id, &str)> {
+        let stages = self.stages.iter().chain(self.emergency_plans.iter().flat_map(|plan| &plan.stages));
+        let stages = stages.map(|stage| (&stage.id, stage.name.as_str()));
+        let emergencies = self.emergency_plans.iter().map(|plan| (&plan.id, plan.name.as_str()));
+        let procedures = self.procedures.iter().map(|procedure| (&procedure.id, procedure.name.as_str()));
+        let zones = self.zones.iter().map(|zone| (&zone.id, zone.name.as_str()));
+        let fixes = self.fixes.iter().map(|fix| (&fix.id, fix.name.as_str()));
+        let legs = every_leg(self).into_iter().map(|leg| (&leg.id, leg.name.as_str()));
+        let all = stages.chain(emergencies).chain(procedures).chain(zones).chain(fixes).chain(legs);
+        all.filter(|(_, name)| !name.is_empty())
+    }
+
+    /// What a branch of a fork is called, or else its identifier.
+    pub fn branch_label<'a>(&'a self, fork: &Id, branch: &'a Id) -> &'a str {
+        let fork = self.any_leg(fork).and_then(|leg| leg.as_fork());
+        let found = fork.and_then(|fork| fork.branches.iter().find(|other| other.id == *branch));
+        found.map(|found| found.label.as_str()).filter(|label| !label.is_empty()).unwrap_or(branch.as_str())
     }
 
     /// Its name, or else its identifier.

@@ -1,6 +1,7 @@
 //! What can be dragged or clicked on the map.
 
 use super::numbers::{self, Ruler};
+use crate::document::Document;
 use flight_plan::{Id, ScanEntry};
 use geometry::LatLon;
 
@@ -102,28 +103,29 @@ impl Handled {
         matches!(self, Self::Entry { .. } | Self::Side { .. })
     }
 
-    /// Its name.
-    pub fn name(&self) -> String {
+    /// Its name, with what people call that in the plan.
+    pub fn name(&self, document: &Document) -> String {
+        let of = |id| document.label(id);
         match self {
-            Self::Fix(id) => format!("Fix {id}"),
+            Self::Fix(id) => format!("Fix {}", of(id)),
             Self::Variable(name) => format!("Place of {name}"),
-            Self::Waypoint(id) => format!("Waypoint {id}"),
-            Self::Centre(id) => format!("Centre of {id}"),
-            Self::Radius(id) => format!("Radius of {id}"),
-            Self::Corner { leg, hole: None, corner } => format!("Corner {} of {leg}", corner + 1),
+            Self::Waypoint(id) => format!("Waypoint {}", of(id)),
+            Self::Centre(id) => format!("Centre of {}", of(id)),
+            Self::Radius(id) => format!("Radius of {}", of(id)),
+            Self::Corner { leg, hole: None, corner } => format!("Corner {} of {}", corner + 1, of(leg)),
             Self::Corner { leg, hole: Some(hole), corner } => {
-                format!("Corner {} of hole {} of {leg}", corner + 1, hole + 1)
+                format!("Corner {} of hole {} of {}", corner + 1, hole + 1, of(leg))
             }
-            Self::Ghost { leg, hole: None, before } => format!("New corner {} of {leg}", before + 1),
+            Self::Ghost { leg, hole: None, before } => format!("New corner {} of {}", before + 1, of(leg)),
             Self::Ghost { leg, hole: Some(hole), before } => {
-                format!("New corner {} of hole {} of {leg}", before + 1, hole + 1)
+                format!("New corner {} of hole {} of {}", before + 1, hole + 1, of(leg))
             }
-            Self::Between { leg, .. } => format!("New leg before {leg}"),
-            Self::Number { leg, number, .. } => format!("{} of {leg}", numbers::name(number)),
-            Self::ArcCentre(leg) => format!("Centre of the arc {leg}"),
-            Self::Entry { leg, entry, .. } => format!("Begin {leg} at its {}", corner(*entry)),
-            Self::Side { leg, is_holding: true } => format!("Hold {leg} on this side"),
-            Self::Side { leg, is_holding: false } => format!("Turn {leg} the other way"),
+            Self::Between { leg, .. } => format!("New leg before {}", of(leg)),
+            Self::Number { leg, number, .. } => format!("{} of {}", numbers::name(number), of(leg)),
+            Self::ArcCentre(leg) => format!("Centre of the arc {}", of(leg)),
+            Self::Entry { leg, entry, .. } => format!("Begin {} at its {}", of(leg), corner(*entry)),
+            Self::Side { leg, is_holding: true } => format!("Hold {} on this side", of(leg)),
+            Self::Side { leg, is_holding: false } => format!("Turn {} the other way", of(leg)),
         }
     }
 }

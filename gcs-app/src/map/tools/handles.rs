@@ -49,7 +49,7 @@ pub fn value(handle: &Handle, at: Pos2, canvas: &Canvas<'_>) -> Option<Label> {
             let centre = canvas.sketch.centre_of(of, plan)?;
             format!("Radius {}", length(centre.distance_m(handle.at), units))
         }
-        what if what.is_choice() => what.name(),
+        what if what.is_choice() => what.name(canvas.scene.document),
         _ => return None,
     };
     Some(Label { at: at + vec2(11.0, -9.0), anchor: Align2::LEFT_BOTTOM, text, first: true })
@@ -113,13 +113,13 @@ pub struct Label {
     first: bool,
 }
 
-pub fn label(handle: &Handle, at: Pos2, first: bool) -> Option<Label> {
+pub fn label(handle: &Handle, at: Pos2, canvas: &Canvas<'_>, first: bool) -> Option<Label> {
     let (id, offset, anchor) = match &handle.what {
         Handled::Fix(id) | Handled::Waypoint(id) => (id, vec2(9.0, -1.0), Align2::LEFT_CENTER),
         Handled::Centre(id) => (id, vec2(0.0, 9.0), Align2::CENTER_TOP),
         _ => return None,
     };
-    Some(Label { at: at + offset, anchor, text: id.to_string(), first })
+    Some(Label { at: at + offset, anchor, text: canvas.scene.document.label(id).to_owned(), first })
 }
 
 /// Names that do not overlap; what is selected or under the pointer comes first.

@@ -61,7 +61,7 @@ impl Select {
         let at = canvas.pointer?;
         let is_free = grips.iter().all(|grip| grip.at.distance(at) > BESIDE);
         let (leg, _) = line_under(at, canvas).filter(|_| is_free)?;
-        Some(Grip { key: LINE, name: line_name(&leg), at })
+        Some(Grip { key: LINE, name: line_name(&leg, canvas), at })
     }
 
     /// A mark between two corners, in the middle of a leg or anywhere on its line, becomes what it stands for.
@@ -101,7 +101,7 @@ impl Tool for Select {
         // what a mark has become is dragged on under the mark's name
         let name = |handle: &Handle| match &self.inserting {
             Some((name, becomes)) if *becomes == handle.what => name.clone(),
-            _ => handle.what.name(),
+            _ => handle.what.name(canvas.scene.document),
         };
         let shown = near(canvas).filter(|(_, handle, _)| self.inserting.is_none() || !is_mark(handle));
         let grips = shown.map(|(key, handle, at)| Grip { key, name: name(handle), at });
@@ -165,7 +165,7 @@ impl Tool for Select {
         }
         let plan = canvas.scene.document.plan();
         if let (Some(leg), true) = (self.line.take(), self.inserting.is_none()) {
-            let (name, at) = (line_name(&leg), canvas.view.geo(to));
+            let (name, at) = (line_name(&leg, canvas), canvas.view.geo(to));
             return if at.is_valid() {
                 self.insert(&Handled::Between { leg, gap_m: 0 }, name, at, plan, queue)
             };
@@ -177,7 +177,7 @@ impl Tool for Select {
         self.dragged = Some(mark);
         if is_mark(handle) {
             return if to.is_valid() {
-                self.insert(&handle.what, handle.what.name(), to, plan, queue)
+                self.insert(&handle.what, handle.what.name(canvas.scene.document), to, plan, queue)
             };
         }
         if let Some(edit) = edit(plan, canvas.sketch, &handle.what, to) {
@@ -218,7 +218,7 @@ impl Tool for Select {
             let hot = touch.hovered == Some(key) || touch.dragged == Some(key);
             let chosen = self.corner.as_ref() == Some(&handle.what);
             draw(painter, at, handle, selected, hot || chosen, p);
-            labels.extend(label(handle, at, selected || touch.hovered == Some(key)));
+            labels.extend(label(handle, at, canvas, selected || touch.hovered == Some(key)));
             labels.extend(value(handle, at, canvas).filter(|_| hot));
         }
         draw_labels(painter, labels, p);
@@ -262,7 +262,10 @@ impl Select {
             _ => None,
         };
         let bound = bound.or(own_variable);
-        let own = [handle.what.name(), bound.map_or_else(String::new, |name| format!("variable {name}"))];
+        let own = [
+            handle.what.name(canvas.scene.document),
+            bound.map_or_else(String::new, |name| format!("variable {name}")),
+        ];
         let own = own.map(|name| name.to_lowercase());
         let is_own = |on: &str| own.contains(&on.to_lowercase());
         let (now, was) = (handle.at, self.grabbed.as_ref().map(|grabbed| grabbed.at));
@@ -317,8 +320,8 @@ fn landing(plan: &FlightPlan, grabbed: Option<&Handle>, mark: &Mark) -> Option<E
     Some(Edit::All(back.into_iter().chain([lands]).collect()))
 }
 
-fn line_name(leg: &Id) -> String {
-    format!("Line to {leg}")
+fn line_name(leg: &Id, canvas: &Canvas<'_>) -> String {
+    format!("Line to {}", canvas.scene.document.label(leg))
 }
 
 /// Not there yet: it is when it is dragged.

@@ -2,7 +2,7 @@
 
 use super::Canvas;
 use super::pen::Mark;
-use crate::map::sketch::{Handled, Sketch};
+use crate::map::sketch::Handled;
 use crate::map::text;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Stroke, vec2};
@@ -28,7 +28,7 @@ pub fn snap_but(at: Pos2, canvas: &Canvas<'_>, not: &dyn Fn(&str, LatLon) -> boo
     }
     let far = |mark: &Mark| canvas.view.place(mark.at).distance(at);
     let is_near = |mark: &Mark| far(mark) < SNAP && mark.on.as_ref().is_none_or(|on| !not(on, mark.at));
-    let points = things(canvas).chain(runway_ends(canvas)).chain(corners(canvas.sketch)).find(is_near);
+    let points = things(canvas).chain(runway_ends(canvas)).chain(corners(canvas)).find(is_near);
     let lines = || {
         let runways = canvas.scene.document.plan().runways.iter();
         let on_line = runways.filter_map(|runway| line_of(runway, canvas.view.geo(at)));
@@ -61,10 +61,11 @@ fn runway_ends<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> 
     })
 }
 
-fn corners(sketch: &Sketch) -> impl Iterator<Item = Mark> {
-    sketch.handles.iter().filter_map(|handle| match &handle.what {
+fn corners<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> {
+    let Canvas { sketch, scene, .. } = *canvas;
+    sketch.handles.iter().filter_map(move |handle| match &handle.what {
         Handled::Corner { .. } | Handled::Waypoint(_) | Handled::Centre(_) => {
-            Some(Mark { on: Some(handle.what.name()), ..Mark::at(handle.at) })
+            Some(Mark { on: Some(handle.what.name(scene.document)), ..Mark::at(handle.at) })
         }
         _ => None,
     })

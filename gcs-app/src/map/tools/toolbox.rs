@@ -80,11 +80,13 @@ impl Toolbox {
         Some(if self.is_covered { covered.to_owned() } else { status })
     }
 
+    /// The card for a new mission has none beside its question.
+    pub fn has_options(&self) -> bool {
+        !self.is_guided
+    }
+
     /// Draws the choices that the tool in use offers.
     pub fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
-        if self.is_guided {
-            return;
-        }
         if let Some(tool) = self.tools.get_mut(self.current) {
             tool.options(ui, scene);
             if let Some(from) = tool.typed_from()

@@ -3,32 +3,24 @@
 use crate::command::{FlyCommand, Queue};
 use crate::coordinates;
 use crate::panels::field::{self, Change};
-use crate::panels::{Scene, age_of, group_title, primary_button, value_with_age};
+use crate::panels::{Scene, age_of, emergency, flight, group_title, primary_button, value_with_age};
 use crate::theme;
 use crate::units;
 use egui::{RichText, Ui};
-use flight_exec::{Command, Phase};
+use flight_exec::Command;
 use flight_plan::{Id, Variable, VariableValue};
 use wire::Convert;
 
 /// Commands that concern this leg of the plan that is being flown.
 pub fn leg(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) {
-    let aboard = scene.vehicle.aboard.as_ref().is_some_and(|a| a.plan.leg(id).is_some());
-    let flying = matches!(scene.vehicle.phase(), Phase::Flying | Phase::Holding | Phase::AwaitingDecision);
-    if !(aboard && flying) {
+    if !flight::is_flown(scene, id) {
         return;
     }
     ui.horizontal(|ui| {
         if ui.button("Go to this leg…").clicked() {
             queue.consider(Command::GoTo { leg: id.clone() });
         }
-        let emergency = scene
-            .vehicle
-            .status
-            .as_ref()
-            .and_then(|s| s.value.place.as_ref())
-            .is_some_and(|p| p.plan != flight_exec::Branching::Main);
-        if emergency && ui.button("Return to the main plan here").clicked() {
+        if emergency::is_flown(scene) && ui.button("Return to the main plan here").clicked() {
             queue.consider(Command::ReturnToMain { leg: id.clone() });
         }
     });

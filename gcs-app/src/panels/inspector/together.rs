@@ -14,7 +14,7 @@ use flight_plan::{Altitude, Edit, FlightPlan, Id, Value, create};
 pub fn head(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
     let p = theme::of(ui);
     ui.label(RichText::new(format!("{} legs", legs.len())).size(15.0).strong());
-    let names: Vec<&str> = legs.iter().map(Id::as_str).collect();
+    let names: Vec<&str> = legs.iter().map(|leg| scene.document.label(leg)).collect();
     ui.add(egui::Label::new(RichText::new(names.join(", ")).color(p.weak)).truncate());
     ui.add_space(4.0);
     raise(ui, scene, legs, queue);

@@ -106,7 +106,7 @@ pub(super) fn part(scene: &Scene<'_>, entry: &Entry<'_>) -> Selection {
 pub(super) fn label(scene: &Scene<'_>, entry: &Entry<'_>) -> String {
     let stage = scene.document.plan().stage(entry.stage).filter(|stage| stage.id == *entry.leg);
     stage.map_or_else(
-        || scene.document.leg_label(entry.leg).to_owned(),
+        || scene.document.label(entry.leg).to_owned(),
         |stage| title(&stage.name, stage.id.as_str()),
     )
 }

@@ -116,7 +116,7 @@ pub fn altitude(text: &str, usual: AltitudeReference, unit: Unit) -> Result<Opti
     Ok(number(rest.trim(), unit)?.map(|metres| Altitude { metres, reference }))
 }
 
-/// A number in a unit, with or without its symbol, or a formula behind `=`; nothing: it is inherited.
+/// A number in a unit or in another of its kind, or a formula behind `=`; nothing: it is inherited.
 fn number(text: &str, unit: Unit) -> Result<Option<Value<f64>>, String> {
     if text.is_empty() {
         return Ok(None);
@@ -124,14 +124,8 @@ fn number(text: &str, unit: Unit) -> Result<Option<Value<f64>>, String> {
     if let Some(formula) = text.strip_prefix('=') {
         return Ok(Some(Value::Expression(formula.trim().into())));
     }
-    let digits = text.strip_suffix(unit.symbol).unwrap_or(text).trim().replace(',', ".");
-    let number = digits.parse::<f64>().ok().filter(|number| number.is_finite());
-    let number = number.ok_or_else(|| {
-        format!(
-            "“{text}” is no number in {}: type one, a formula behind =, or nothing to inherit it.",
-            unit.symbol
-        )
-    })?;
+    let number =
+        unit.read(text).map_err(|why| format!("{why}, a formula behind =, or nothing to inherit it."))?;
     Ok(Some(Value::Constant(unit.to_si(number))))
 }
 
@@ -149,6 +143,7 @@ mod tests {
             ("150", constant(150.0, Home)),
             ("150 m", constant(150.0, Home)),
             ("150 m AGL", constant(150.0, Agl)),
+            ("0.15 km AGL", constant(150.0, Agl)),
             ("150AGL", constant(150.0, Agl)),
             ("1400 amsl", constant(1400.0, Amsl)),
             ("80 above home", constant(80.0, Home)),

@@ -1,7 +1,7 @@
 //! What is made from a heading of the tree: by its `+`, or a right click on it.
 
 use super::alternates;
-use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use crate::command::{Command, DocumentCommand, Queue, Selection, ViewCommand};
 use crate::panels::Scene;
 use egui::Ui;
 use flight_plan::{Edit, FlightPlan, StageKind, Thing, VariableValue, create};
@@ -12,12 +12,17 @@ use geometry::LatLon;
 pub enum Group {
     /// The main plan's.
     Stages,
-    /// And what follows.
+    /// With their stages.
     EmergencyPlans,
+    /// With their legs.
     Procedures,
+    /// Where the flight must and must not be.
     Zones,
+    /// What services write in flight.
     Variables,
+    /// Named positions.
     Fixes,
+    /// In their landing directions.
     Runways,
 }
 
@@ -93,23 +98,34 @@ fn tool(ui: &mut Ui, name: &str, id: &'static str, queue: &mut Queue) {
     }
 }
 
+/// Kinds of stages that can be added.
+pub const STAGES: [(StageKind, &str); 7] = [
+    (StageKind::TakeOff, "Take-off stage"),
+    (StageKind::Departure, "Departure stage"),
+    (StageKind::EnRoute, "En-route stage"),
+    (StageKind::Mission, "Mission stage"),
+    (StageKind::Arrival, "Arrival stage"),
+    (StageKind::Approach, "Approach stage"),
+    (StageKind::Land, "Landing stage"),
+];
+
 fn stages(ui: &mut Ui, plan: &FlightPlan, queue: &mut Queue) {
-    const KINDS: [(StageKind, &str); 7] = [
-        (StageKind::TakeOff, "Take-off stage"),
-        (StageKind::Departure, "Departure stage"),
-        (StageKind::EnRoute, "En-route stage"),
-        (StageKind::Mission, "Mission stage"),
-        (StageKind::Arrival, "Arrival stage"),
-        (StageKind::Approach, "Approach stage"),
-        (StageKind::Land, "Landing stage"),
-    ];
-    for (kind, name) in KINDS {
+    for (kind, name) in STAGES {
         if ui.button(name).clicked() {
-            let (id, edit) = create::add_stage(plan, kind);
-            queue.edit(edit);
-            queue.view(ViewCommand::Select(Some(Selection::Stage(id))));
+            queue.push(stage(plan, kind));
         }
     }
+}
+
+/// Adds a stage and selects it.
+pub fn stage(plan: &FlightPlan, kind: StageKind) -> Command {
+    let (id, edit) = create::add_stage(plan, kind);
+    making(edit, Selection::Stage(id))
+}
+
+fn making(edit: Edit, made: Selection) -> Command {
+    let select = Command::View(ViewCommand::Select(Some(made)));
+    Command::Each(vec![Command::Document(DocumentCommand::Edit(edit)), select])
 }
 
 fn emergency_plans(ui: &mut Ui, plan: &FlightPlan, queue: &mut Queue) {
@@ -124,22 +140,30 @@ fn emergency_plans(ui: &mut Ui, plan: &FlightPlan, queue: &mut Queue) {
 }
 
 fn variables(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let plan = scene.document.plan();
+    for (name, initial) in kinds_of_variables(scene) {
+        if ui.button(name).clicked() {
+            queue.push(variable(scene.document.plan(), initial));
+        }
+    }
+}
+
+/// Kinds of variables that can be added, with what they begin with.
+pub fn kinds_of_variables(scene: &Scene<'_>) -> [(&'static str, VariableValue); 5] {
     let here = middle(scene);
-    let kinds = [
+    [
         ("Number", VariableValue::Number(0.0)),
         ("Yes or no", VariableValue::Bool(false)),
         ("Text", VariableValue::Text(String::new())),
         ("Position", VariableValue::Position(here)),
         ("Area", VariableValue::Polygon(square(here))),
-    ];
-    for (name, initial) in kinds {
-        if ui.button(name).clicked() {
-            let variable = create::variable(plan, initial);
-            queue.view(ViewCommand::Select(Some(Selection::Variable(variable.name.clone()))));
-            queue.edit(Edit::Add(Box::new(Thing::Variable(variable))));
-        }
-    }
+    ]
+}
+
+/// Adds a variable and selects it.
+pub fn variable(plan: &FlightPlan, initial: VariableValue) -> Command {
+    let variable = create::variable(plan, initial);
+    let made = Selection::Variable(variable.name.clone());
+    making(Edit::Add(Box::new(Thing::Variable(variable))), made)
 }
 
 /// Where something new is seen: halfway along the path, else at the runway.

@@ -1,7 +1,7 @@
 //! What a right click on a row of the tree offers. What cannot be done there is shown, but cannot be chosen.
 
 use super::alternates;
-use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
+use crate::command::{Command, DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::footprints;
 use crate::panels::{Scene, binding};
 use aircraft::Profile;
@@ -10,9 +10,12 @@ use flight_plan::create::{self, LegChoice, Shape};
 use flight_plan::{Edit, FlightPlan, Id, Leg, LegKind};
 
 /// One row of the menu; `edit` is `None` where it cannot be done.
-struct Entry {
-    name: &'static str,
-    keys: &'static str,
+#[derive(Debug)]
+pub struct Entry {
+    /// For people.
+    pub name: &'static str,
+    /// The key of the action that does the same; empty: there is none.
+    pub keys: &'static str,
     edit: Option<Edit>,
     /// What is selected after it.
     selects: Option<Selection>,
@@ -27,6 +30,13 @@ impl Entry {
     fn making(name: &'static str, made: Option<(Id, Edit)>, select: fn(Id) -> Selection) -> Self {
         let (id, edit) = made.unzip();
         Self { name, keys: "", edit, selects: id.map(select) }
+    }
+
+    /// What it asks for; `None`: it cannot be done.
+    pub fn command(self) -> Option<Command> {
+        let select = self.selects.map(|made| Command::View(ViewCommand::Select(Some(made))));
+        let edit = Command::Document(DocumentCommand::Edit(self.edit?));
+        Some(Command::Each([edit].into_iter().chain(select).collect()))
     }
 }
 
@@ -60,8 +70,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
     for entry in entries(scene, of) {
         let button = Button::new(entry.name).shortcut_text(entry.keys);
         if ui.add_enabled(entry.edit.is_some(), button).clicked() {
-            entry.edit.into_iter().for_each(|edit| queue.edit(edit));
-            entry.selects.into_iter().for_each(|made| queue.view(ViewCommand::Select(Some(made))));
+            entry.command().into_iter().for_each(|command| queue.push(command));
         }
     }
 }
@@ -93,22 +102,31 @@ fn is_flown_itself(choice: LegChoice) -> bool {
 
 /// The kinds that a leg can become; it keeps its place, as far as that can be.
 fn kinds(ui: &mut Ui, scene: &Scene<'_>, leg: &Leg, queue: &mut Queue) {
-    let plan = scene.document.plan();
-    let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
-    let at = scene.forecast().start_of(&leg.first_flown().id);
-    let now = LegChoice::of(&leg.kind);
-    for choice in LegChoice::ALL.into_iter().filter(|choice| *choice != now && is_flown_itself(*choice)) {
-        let changed = create::convert(plan, &profile, leg, choice, at);
+    for (choice, changed) in other_kinds(scene, leg) {
         let button = ui.add_enabled(changed.is_some(), Button::new(choice.name()));
         let button = button.on_hover_text(choice.about());
-        if let Some(with) = changed.filter(|_| button.clicked()) {
-            queue.edit(Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(with) });
+        if let Some(edit) = changed.filter(|_| button.clicked()) {
+            queue.edit(edit);
             ui.close();
         }
     }
 }
 
-fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
+/// Each other kind that a leg may have, with the edit; without one, it can't become that.
+pub fn other_kinds(scene: &Scene<'_>, leg: &Leg) -> Vec<(LegChoice, Option<Edit>)> {
+    let plan = scene.document.plan();
+    let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
+    let at = scene.forecast().start_of(&leg.first_flown().id);
+    let now = LegChoice::of(&leg.kind);
+    let replace = |with| Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(with) };
+    let others = LegChoice::ALL
+        .into_iter()
+        .filter(|choice| is_flown_itself(now) && *choice != now && is_flown_itself(*choice));
+    others.map(|choice| (choice, create::convert(plan, &profile, leg, choice, at).map(replace))).collect()
+}
+
+/// What can be done to it by one edit.
+pub fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
     let plan = scene.document.plan();
     let together = scene.selected_legs();
     match of {
@@ -151,7 +169,7 @@ fn of_leg(plan: &FlightPlan, leg: &Id) -> Vec<Entry> {
     let one = std::slice::from_ref(leg);
     let is_loop = plan.leg(leg).is_some_and(|c| matches!(c.leg.kind, LegKind::Iterative { .. }));
     let mut entries = vec![
-        Entry::new("Duplicate", "", create::duplicate(plan, leg)),
+        Entry::new("Duplicate", "Ctrl+D", create::duplicate(plan, leg)),
         Entry::new("Move up", "Ctrl+Up", create::shift(plan, leg, -1)),
         Entry::new("Move down", "Ctrl+Down", create::shift(plan, leg, 1)),
         Entry::making("Put into a loop", create::loop_around(plan, one), Selection::Leg),

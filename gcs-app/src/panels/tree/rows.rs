@@ -4,7 +4,7 @@ use super::make::Group;
 use crate::command::Selection;
 use flight_plan::{
     Alternates, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Pattern, Stage, StageKind, Turnaround,
-    TurnaroundEnergy, ZoneKind,
+    TurnaroundEnergy, Use, ZoneKind,
 };
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -18,6 +18,8 @@ pub(super) struct Row {
     pub tag: &'static str,
     pub text: String,
     pub detail: String,
+    /// Its expressions and conditions, wherever in it they are: what is searched, too.
+    pub expressions: Vec<Arc<str>>,
     pub selection: Option<Selection>,
     /// What can be made in it, for a heading.
     pub group: Option<Group>,
@@ -111,6 +113,7 @@ impl Builder<'_> {
             tag: stage_tag(stage.kind),
             text: title(&stage.name, stage.id.as_str()),
             detail: turnaround(&stage.turnaround),
+            expressions: expressions(|visit| stage.for_each_expression(visit)),
             selection: Some(Selection::Stage(stage.id.clone())),
             folds: !stage.legs.is_empty(),
             nests: true,
@@ -137,6 +140,7 @@ impl Builder<'_> {
             tag: leg_tag(&leg.kind),
             text: title(&leg.name, leg.id.as_str()),
             detail: leg_detail(&leg.kind),
+            expressions: expressions(|visit| leg.for_each_expression(visit)),
             selection: Some(Selection::Leg(leg.id.clone())),
             folds: !leg.body().is_empty() || !branches.is_empty(),
             nests: matches!(leg.kind, LegKind::Iterative { .. }),
@@ -250,6 +254,13 @@ pub fn title(name: &str, id: &str) -> String {
     if name.is_empty() { id.to_owned() } else { name.to_owned() }
 }
 
+/// Everything that a walk over them visits.
+fn expressions(walk: impl FnOnce(&mut dyn FnMut(&Arc<str>, Use))) -> Vec<Arc<str>> {
+    let mut found = Vec::new();
+    walk(&mut |source, _| found.push(source.clone()));
+    found
+}
+
 /// What is in force inside; shared, where it is the same.
 fn within(outer: &Arc<Alternates>, choice: &EmergencyChoice, of: &Id) -> Arc<Alternates> {
     if choice.by_cause.is_empty() { outer.clone() } else { Arc::new(outer.within(choice, Some(of))) }
@@ -308,7 +319,11 @@ pub fn leg_tag(kind: &LegKind) -> &'static str {
 
 fn leg_detail(kind: &LegKind) -> String {
     use flight_plan::Value;
-    let LegKind::Iterative { count, until, .. } = kind else { return String::new() };
+    let (count, until) = match kind {
+        LegKind::Iterative { count, until, .. } => (count.as_ref(), until),
+        LegKind::Hm { until, .. } => (None, until),
+        _ => return String::new(),
+    };
     let count = match count {
         Some(Value::Constant(n)) => format!("×{n:.0}"),
         Some(Value::Expression(source)) => format!("×({source})"),

@@ -1,4 +1,4 @@
-//! Searching the plan: names, identifiers, kinds and what stands beside them, conditions of loops and forks among it.
+//! Searching the plan: names, identifiers, kinds, what stands beside them, and every expression and condition.
 
 use super::rows::Row;
 use crate::command::{Queue, ViewCommand};
@@ -75,5 +75,6 @@ fn is_match(row: &Row, sought: &str) -> bool {
     let Some(selection) = &row.selection else { return false };
     [row.text.as_str(), selection.id().as_str(), row.tag, row.detail.as_str()]
         .into_iter()
+        .chain(row.expressions.iter().map(|source| &**source))
         .any(|text| text.to_lowercase().contains(sought))
 }

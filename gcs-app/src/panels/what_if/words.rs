@@ -44,7 +44,10 @@ pub fn world(what_if: &WhatIf, plan: &FlightPlan, units: Units) -> String {
         let unit = plan.variable(name).map_or("", |variable| variable.unit.as_str());
         parts.push(format!("{name} {}", value_in_words(value, unit)));
     }
-    parts.extend(what_if.decisions.iter().map(|(leg, branch)| format!("{leg}: {branch}")));
+    let branches = what_if.decisions.iter();
+    parts.extend(
+        branches.map(|(leg, branch)| format!("{}: {}", plan.label(leg), plan.branch_label(leg, branch))),
+    );
     parts.join(" · ")
 }
 

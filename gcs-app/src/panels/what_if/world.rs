@@ -3,7 +3,7 @@
 use super::{remark, reset_button};
 use crate::command::{PreviewCommand, Queue};
 use crate::panels::problems::told;
-use crate::panels::{Scene, group_title};
+use crate::panels::{Scene, field, group_title};
 use crate::theme;
 use crate::units::Unit;
 use aircraft::Wind;
@@ -18,6 +18,8 @@ const MAX_WIND_MPS: f64 = 30.0;
 const ALOFT_M: f64 = 500.0;
 const HIGHEST_M: f64 = 4000.0;
 const MINUTES_OF_DAY: i64 = 24 * 60;
+const PERCENT: Unit = Unit { symbol: "%", per_si: 100.0, decimals: 0 };
+const DEGREES: Unit = Unit { symbol: "°", per_si: 1.0, decimals: 0 };
 
 /// Wind, energy and start time.
 pub fn air(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -36,7 +38,7 @@ pub fn air(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
     let mut percent = chosen.energy_share * 100.0;
     let energy = Slider::new(&mut percent, 10.0..=100.0).suffix(" %").fixed_decimals(0);
-    if ui.add(energy.text("Energy at start")).changed() {
+    if slider(ui, energy.text("Energy at start"), PERCENT) {
         chosen.energy_share = percent / 100.0;
     }
     start_time(ui, scene, &mut chosen);
@@ -55,20 +57,33 @@ fn send(scene: &Scene<'_>, chosen: WhatIf, queue: &mut Queue) {
 fn si_slider(ui: &mut Ui, name: &str, si: &mut f64, range: RangeInclusive<f64>, unit: Unit) -> bool {
     let shown = unit.from_si(*range.start())..=unit.from_si(*range.end());
     let mut value = unit.from_si(*si);
-    let slider = Slider::new(&mut value, shown).suffix(format!(" {}", unit.symbol));
-    let changed = ui.add(slider.max_decimals(unit.decimals).text(name)).changed();
+    let bar = Slider::new(&mut value, shown).suffix(format!(" {}", unit.symbol));
+    let changed = slider(ui, bar.max_decimals(unit.decimals).text(name), unit);
     if changed {
         *si = unit.to_si(value);
     }
     changed
 }
 
+/// A slider whose number can be typed in any unit of its kind; true: it has another value.
+fn slider(ui: &mut Ui, slider: Slider<'_>, unit: Unit) -> bool {
+    slider_reading(ui, slider, |text| unit.read(text))
+}
+
+fn slider_reading(ui: &mut Ui, slider: Slider<'_>, read: impl Fn(&str) -> Result<f64, String>) -> bool {
+    let typed = field::Typed::of(ui);
+    let slider = slider.update_while_editing(false).custom_parser(|text| typed.take(read(text)));
+    let response = ui.add(slider);
+    typed.tell(ui, &response);
+    response.changed()
+}
+
 fn wind(ui: &mut Ui, scene: &Scene<'_>, name: &str, wind: &mut Wind) {
     let (mut speed_mps, mut from_deg) = (wind.speed_mps(), direction(ui, name, *wind));
     let unit = scene.units().speed();
     let mut changed = si_slider(ui, &format!("{name} speed"), &mut speed_mps, 0.0..=MAX_WIND_MPS, unit);
-    let slider = Slider::new(&mut from_deg, 0.0..=359.0).suffix("°").fixed_decimals(0);
-    changed |= ui.add(slider.text(format!("{name} from"))).changed();
+    let from = Slider::new(&mut from_deg, 0.0..=359.0).suffix("°").fixed_decimals(0);
+    changed |= slider(ui, from.text(format!("{name} from")), DEGREES);
     if changed {
         *wind = Wind::from_direction(from_deg, speed_mps);
         ui.data_mut(|d| d.insert_temp(direction_id(name), from_deg));
@@ -97,15 +112,18 @@ fn start_time(ui: &mut Ui, scene: &Scene<'_>, chosen: &mut WhatIf) {
     let mut minutes = (*start_unix_s - day_s) / 60;
     let slider = Slider::new(&mut minutes, 0..=MINUTES_OF_DAY - 1)
         .custom_formatter(|n, _| clock(n as i64))
-        .custom_parser(minutes_of)
         .text("UTC");
-    if ui.add(slider).changed() {
+    if slider_reading(ui, slider, time_of_day) {
         *start_unix_s = day_s + minutes * 60;
     }
 }
 
 fn clock(minutes: i64) -> String {
     format!("{:02}:{:02}", minutes / 60, minutes % 60)
+}
+
+fn time_of_day(text: &str) -> Result<f64, String> {
+    minutes_of(text).ok_or_else(|| "A time of day is written 14:30".into())
 }
 
 fn minutes_of(text: &str) -> Option<f64> {
@@ -166,9 +184,10 @@ fn variable(ui: &mut Ui, variable: &Variable, chosen: &mut WhatIf) {
         VariableValue::Number(number) => {
             let mut number = *number;
             let range = range_of(variable, number);
-            let slider = Slider::new(&mut number, range).max_decimals(2).text(name);
+            let bar = Slider::new(&mut number, range).max_decimals(2).text(name);
             let suffix = if variable.unit.is_empty() { String::new() } else { format!(" {}", variable.unit) };
-            ui.add(slider.suffix(suffix)).changed().then_some(VariableValue::Number(number))
+            let changed = slider(ui, bar.suffix(suffix), Unit::of_symbol(&variable.unit));
+            changed.then_some(VariableValue::Number(number))
         }
         VariableValue::Bool(yes) => {
             let mut yes = *yes;
@@ -216,7 +235,7 @@ fn decision(ui: &mut Ui, (leg, name): (&Id, &str), branches: &[(&Id, &str)], cho
     let current = chosen.decisions.get(leg).cloned();
     let by_plan = ui.selectable_label(current.is_none(), "as planned");
     by_plan.widget_info(|| {
-        let name = format!("{leg}: as planned");
+        let name = format!("{name}: as planned");
         egui::WidgetInfo::selected(egui::Role::RadioButton, true, current.is_none(), name)
     });
     if by_plan.clicked() {
@@ -226,7 +245,7 @@ fn decision(ui: &mut Ui, (leg, name): (&Id, &str), branches: &[(&Id, &str)], cho
         let text = if label.is_empty() { branch.as_str() } else { label };
         let is_on = current.as_ref() == Some(*branch);
         let response = ui.selectable_label(is_on, text);
-        let name = format!("{leg}: {text}");
+        let name = format!("{name}: {text}");
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, is_on, &name));
         if response.clicked() {
             chosen.decisions.insert(leg.clone(), (*branch).clone());

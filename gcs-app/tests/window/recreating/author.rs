@@ -151,7 +151,8 @@ impl Author {
         };
         let other = fixes.iter().max_by(|a, b| far(a).total_cmp(&far(b))).unwrap();
         let (a, b) = (fixes[0].position, other.position);
-        let shown = |id: &Id| self.window.centre(&format!("Fix {id}"));
+        let plan = self.window.plan();
+        let shown = |id: &Id| self.window.centre(&format!("Fix {}", plan.label(id)));
         let (from, to) = (shown(&fixes[0].id), shown(&other.id));
         let share = |x: f64, a: f64, b: f64| ((x - a) / (b - a)) as f32;
         from + vec2(

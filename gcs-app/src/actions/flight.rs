@@ -1,0 +1,152 @@
+//! What is asked of the vehicle: connecting, pushing a plan, and the commands of the flight.
+
+use super::table::Asked;
+use super::{Action, Group, Kind};
+use crate::command::{Command, FlyCommand, LinkCommand, Selection};
+use crate::panels::{Scene, decision, emergency as banner, flight as panel, link, push};
+use flight_exec::{Command as PlanCommand, Phase};
+use flight_plan::Cause;
+use usal::contract::{GatewayRequest, GatewayState};
+
+/// What depends on the plan aboard and on what is asked: branches, emergency plans, legs to go to.
+pub fn of(scene: &Scene<'_>) -> Vec<Action> {
+    let mut actions = Vec::new();
+    let mut add = |kind: Kind, name: String, command: Command| {
+        actions.push(Action { kind, ..Action::now(Group::Flight, name, Some(command)) });
+    };
+    let fly = |command: PlanCommand| Command::Fly(FlyCommand::Plan(command));
+    if let Some((request, _)) = decision::open(scene) {
+        for option in request.options {
+            let command = PlanCommand::Decide { leg: request.leg.clone(), branch: option.branch };
+            add(Kind::Do, format!("Decide: {}", option.label), fly(command));
+        }
+    }
+    if in_the_air(scene, PlanCommand::Hold).is_ok() {
+        let aboard = scene.vehicle.aboard.as_ref();
+        for alternate in aboard.map(|aboard| aboard.plan.emergency_plans.as_slice()).unwrap_or_default() {
+            let name = format!("Emergency: fly {}", scene.vehicle.name_of(&alternate.id));
+            let plan = Some(alternate.id.clone());
+            add(Kind::Hold, name, fly(PlanCommand::Emergency { cause: Cause::Operator, plan }));
+        }
+    }
+    if let Some(Selection::Leg(leg)) = &scene.view.selection
+        && panel::is_flown(scene, leg)
+    {
+        let name = scene.vehicle.name_of(leg);
+        add(Kind::Do, format!("Fly to {name}…"), consider(PlanCommand::GoTo { leg: leg.clone() }));
+        if banner::is_flown(scene) {
+            let command = PlanCommand::ReturnToMain { leg: leg.clone() };
+            add(Kind::Do, format!("Return to the main plan at {name}…"), consider(command));
+        }
+    }
+    let proposal = scene.vehicle.proposal.as_ref().filter(|proposal| proposal.report.entry_needed);
+    for leg in proposal.iter().flat_map(|_| push::entries(scene)) {
+        let name = format!("Enter what was pushed at {}", scene.document.label(leg));
+        add(Kind::Do, name, Command::Fly(FlyCommand::EnterAt(leg.clone())));
+    }
+    for connection in link::offers(scene) {
+        let name = format!("Connect to {} at {}", connection.vehicle, connection.endpoint);
+        add(Kind::Do, name, Command::Link(link::connecting(connection)));
+    }
+    for (name, _) in scene.vehicles.choices() {
+        let is_shown = scene.vehicles.shown_name() == Some(name);
+        let command = Command::Link(LinkCommand::Show(name.clone()));
+        add(Kind::Choice(is_shown), format!("Show vehicle {}", name.as_str()), command);
+    }
+    actions
+}
+
+/// As the form would.
+pub(super) fn connect(scene: &Scene<'_>) -> Asked {
+    if scene.vehicle.open_link().is_some() {
+        return Err("A link is open: disconnect it first");
+    }
+    let made = link::default_connection(scene);
+    Ok(Command::Link(link::connecting(&made)))
+}
+
+pub(super) fn commit(scene: &Scene<'_>) -> Asked {
+    let proposal = scene.vehicle.proposal.as_ref().ok_or(NOT_PUSHED)?;
+    if !proposal.report.acceptable {
+        Err("What was pushed can't be flown: it stays a draft")
+    } else if !push::is_ready(proposal) {
+        Err("Choose the leg at which it is entered first")
+    } else {
+        Ok(Command::Fly(FlyCommand::Commit))
+    }
+}
+
+pub(super) fn keep_as_draft(scene: &Scene<'_>) -> Asked {
+    scene.vehicle.proposal.as_ref().ok_or(NOT_PUSHED)?;
+    Ok(Command::Fly(FlyCommand::DropProposal))
+}
+
+const NOT_PUSHED: &str = "Push a plan first";
+
+pub(super) fn rewind(scene: &Scene<'_>) -> Asked {
+    let why_not = "A vehicle that stands disarmed with a plan that was begun can be rewound";
+    if panel::can_rewind(scene) { plan(PlanCommand::Rewind) } else { Err(why_not) }
+}
+
+pub(super) fn skip(scene: &Scene<'_>) -> Asked {
+    flying(scene, PlanCommand::SkipLeg)?;
+    Ok(consider(PlanCommand::SkipLeg))
+}
+
+/// Where the banner of the emergency leads back to.
+pub(super) fn return_to_main(scene: &Scene<'_>) -> Asked {
+    let leg = banner::way_back_to(scene).ok_or("No emergency plan is being flown")?;
+    Ok(consider(PlanCommand::ReturnToMain { leg }))
+}
+
+fn plan(command: PlanCommand) -> Asked {
+    Ok(Command::Fly(FlyCommand::Plan(command)))
+}
+
+/// What leads elsewhere is looked at before it is given.
+fn consider(command: PlanCommand) -> Command {
+    Command::Fly(FlyCommand::Consider(command))
+}
+
+const NOT_FLYING: &str = "No plan is being flown";
+
+pub(super) fn flying(scene: &Scene<'_>, command: PlanCommand) -> Asked {
+    let flying = matches!(scene.vehicle.phase(), Phase::Flying | Phase::AwaitingDecision);
+    if flying { plan(command) } else { Err(NOT_FLYING) }
+}
+
+pub(super) fn in_the_air(scene: &Scene<'_>, command: PlanCommand) -> Asked {
+    if scene.vehicle.phase() == Phase::Holding { plan(command) } else { flying(scene, command) }
+}
+
+pub(super) fn resume(scene: &Scene<'_>) -> Asked {
+    if panel::can_resume(scene) {
+        plan(PlanCommand::Resume)
+    } else {
+        Err("The plan is being flown, or none is")
+    }
+}
+
+pub(super) fn start(scene: &Scene<'_>) -> Asked {
+    let why_not = "A vehicle on the ground with a plan aboard can be started";
+    if panel::can_launch(scene) { Ok(Command::Fly(FlyCommand::Launch)) } else { Err(why_not) }
+}
+
+pub(super) fn emergency(scene: &Scene<'_>) -> Asked {
+    in_the_air(scene, PlanCommand::Emergency { cause: Cause::Operator, plan: None })
+}
+
+pub(super) fn leave_safe(scene: &Scene<'_>) -> Asked {
+    let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
+    if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn)) {
+        Ok(Command::Fly(FlyCommand::Gateway(GatewayRequest::Recover)))
+    } else {
+        Err("The gateway is not in Safe mode")
+    }
+}
+
+pub(super) fn disconnect(scene: &Scene<'_>) -> Asked {
+    let name = scene.vehicles.shown_name().filter(|_| scene.vehicle.open_link().is_some());
+    let name = name.ok_or("No link is open")?;
+    Ok(Command::Link(LinkCommand::Disconnect(name.clone())))
+}

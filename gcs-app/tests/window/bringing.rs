@@ -1,0 +1,159 @@
+//! Maps and elevations that are dropped onto the window, by their kinds; and what lies over the map on request.
+
+use super::interchange::drop_file;
+use super::{SQUARE, Window};
+use egui::Key;
+
+fn window() -> Window {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window
+}
+
+/// A PMTiles file with the whole world as one tile; nothing in it is packed.
+fn pmtiles() -> Vec<u8> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    let picture = image::RgbaImage::from_pixel(64, 64, image::Rgba([90, 0, 200, 255]));
+    picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let tile = png.into_inner();
+    // one entry: tile 0, once, so long, at the beginning
+    let mut root = vec![1, 0, 1];
+    let mut length = tile.len();
+    while length > 127 {
+        root.push((length & 127) as u8 | 128);
+        length >>= 7;
+    }
+    root.extend([length as u8, 1]);
+    let metadata = br#"{"attribution":"Somebody"}"#;
+    let mut bytes = b"PMTiles\x03".to_vec();
+    let mut offset = 127u64;
+    for section in [root.as_slice(), metadata, &[], &tile] {
+        bytes.extend(offset.to_le_bytes());
+        bytes.extend((section.len() as u64).to_le_bytes());
+        offset += section.len() as u64;
+    }
+    bytes.extend([0; 24]);
+    // clustered, nothing packed, PNG, level 0
+    bytes.extend([1, 1, 1, 2, 0, 0]);
+    for corner in [-180.0, -85.0, 180.0, 85.0f64] {
+        bytes.extend(((corner * 1e7) as i32).to_le_bytes());
+    }
+    bytes.extend([0; 9]);
+    [bytes, root, metadata.to_vec(), tile].concat()
+}
+
+/// A GeoTIFF of 2° by 2° around the square, where all ground is as high as this.
+fn geotiff(height_m: i16) -> Vec<u8> {
+    const SIDE: u32 = 20;
+    const DATA: u32 = 8 + 2 + 13 * 12 + 4;
+    let (scale, tie, keys) = (DATA, DATA + 24, DATA + 72);
+    let pixels = keys + 32;
+    let (short, long, double) = (3u16, 4u16, 12u16);
+    let fields = [
+        (256u16, short, 1u32, SIDE),
+        (257, short, 1, SIDE),
+        (258, short, 1, 16),
+        (259, short, 1, 1),
+        (262, short, 1, 1),
+        (273, long, 1, pixels),
+        (277, short, 1, 1),
+        (278, short, 1, SIDE),
+        (279, long, 1, SIDE * SIDE * 2),
+        (339, short, 1, 2),
+        (33_550, double, 3, scale),
+        (33_922, double, 6, tie),
+        (34_735, short, 16, keys),
+    ];
+    let mut bytes = b"II\x2a\0\x08\0\0\0".to_vec();
+    bytes.extend((fields.len() as u16).to_le_bytes());
+    for (tag, kind, count, value) in fields {
+        bytes.extend(tag.to_le_bytes());
+        bytes.extend(kind.to_le_bytes());
+        bytes.extend(count.to_le_bytes());
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes.extend(0u32.to_le_bytes());
+    for number in [0.1, 0.1, 0.0, 0.0, 0.0, 0.0, -85.0, 37.0, 0.0f64] {
+        bytes.extend(number.to_le_bytes());
+    }
+    // geographic, pixels are areas, WGS84
+    for key in [1, 1, 0, 3, 1024, 0, 1, 2, 1025, 0, 1, 1, 2048, 0, 1, 4326u16] {
+        bytes.extend(key.to_le_bytes());
+    }
+    bytes.extend(height_m.to_le_bytes().repeat((SIDE * SIDE) as usize));
+    bytes
+}
+
+#[test]
+fn pmtiles_that_are_dropped_are_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("world.pmtiles");
+    std::fs::write(&path, pmtiles()).unwrap();
+    let mut window = window();
+    drop_file(&mut window, &path);
+    window.until("a tile", |app| app.layers().iter().any(|layer| app.map().pictures_of(layer.id) == 1));
+    assert!(window.paints("Somebody"), "the map is named");
+}
+
+#[test]
+fn a_geotiff_that_is_dropped_is_the_ground_that_the_plan_is_looked_at_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hills.tif");
+    std::fs::write(&path, geotiff(4000)).unwrap();
+    let mut window = window();
+    assert!(window.errors().is_empty(), "{:?}", window.errors());
+    drop_file(&mut window, &path);
+    window.until("the new ground", |app| app.analysis().problems.iter().any(|p| p.is_error()));
+    window.harness.hover_at(window.centre("Fix A"));
+    window.steps(2);
+    assert!(window.shows("ground 4000 m"));
+}
+
+#[test]
+fn graticule_and_range_rings_lie_over_the_map_when_they_are_asked_for() {
+    let mut window = window();
+    let rings = gcs_app::theme::palette(true).text.gamma_multiply(0.5);
+    assert!(!window.paints("° N") && !window.paints("′ N") && !window.paints("″ N"));
+    assert_eq!(window.lines_within("Map", rings), 0);
+    for asked in ["graticule", "range rings"] {
+        window.ask_for(asked);
+        window.press(Key::Enter);
+    }
+    assert!(window.paints("° N") || window.paints("′ N") || window.paints("″ N"));
+    assert_eq!(window.lines_within("Map", rings), 5);
+}
+
+#[test]
+fn nothing_is_fetched_from_a_server_until_one_is_added() {
+    let mut window = window();
+    assert_eq!(window.app().layers().iter().count(), 0);
+    window.ask_for("maps and elevations");
+    window.press(Key::Enter);
+    assert!(window.shows("Nothing yet. The map shows the world and the shipped elevations."));
+    window.click("From a server");
+    window.steps(20);
+    assert!(!window.is_enabled("Add the server"));
+    window.click("OpenStreetMap");
+    assert!(window.is_enabled("Add the server"));
+    assert_eq!(window.app().layers().iter().count(), 0, "its address is only filled in");
+}
+
+#[test]
+fn coordinates_that_are_nowhere_are_told_and_the_window_goes_on() {
+    let absurd = SQUARE
+        .replace(r#"id="A" lat="36.327322" lon="-84.159836""#, r#"id="A" lat="99.5" lon="1e300""#)
+        .replace(r#"id="C" lat="36.305396""#, r#"id="C" lat="NaN""#);
+    let mut window = Window::open(&absurd);
+    window.until_analysed();
+    assert!(window.app().analysis().problems.iter().any(|p| p.is_error()), "{:?}", window.errors());
+    for key in [Key::F, Key::Minus, Key::Plus] {
+        window.press(key);
+    }
+    window.click("TF side1");
+    let legs = window.plan().all_legs().len();
+    window.paste("99.5, 1e300");
+    let notice = window.app().view().notice.clone();
+    assert!(notice.is_some() && window.plan().all_legs().len() == legs, "{notice:?}");
+    window.click("TF side2");
+    assert_eq!(window.selected(), "side2");
+}
