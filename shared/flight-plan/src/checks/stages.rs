@@ -168,7 +168,7 @@ mod tests {
         let turnaround = |more: &str| {
             format!("{}{}{}{}{}{}", to("t"), way("w"), land("l", more), to("u"), way("x"), land("m", ""))
         };
-        let cases: [(&str, &[&str]); 7] = [
+        let cases: [(&str, &[&str]); 8] = [
             (&stages(&to("u")), &[]),
             (&stages(""), &["stage-order"]),
             (&stages(&format!("{}{}", way("y"), to("u"))), &["stage-order", "stage-order"]),
