@@ -171,13 +171,15 @@ fn off_the_screen(window: &Window) -> Vec<String> {
     })
 }
 
-/// Looks at a state at every size, in the dark and in the light.
+/// Looks at a state at every size, in the dark or in the light, and at the smallest in both.
 fn look(state: &str, window: &mut Window, found: &mut Vec<String>) {
     let more = ["plan", "flying"].contains(&state);
     let sizes = SIZES.into_iter().chain(MORE.into_iter().filter(|_| more));
-    for size in sizes {
+    for (number, size) in sizes.enumerate() {
         window.harness.set_size(size);
-        for theme in [egui::Theme::Dark, egui::Theme::Light] {
+        // the smallest in both themes, the others in turn: each look takes its time
+        let themes = [egui::Theme::Dark, egui::Theme::Light].into_iter().skip(number % 2);
+        for theme in themes.take(if number == 0 { 2 } else { 1 }) {
             window.harness.input_mut().system_theme = Some(theme);
             window.steps(2);
             let faults = faults(window).into_iter().chain(off_the_screen(window));
