@@ -214,7 +214,7 @@ mod tests {
         let topics = topics();
         let found = search(&topics, "hold until released");
         assert_eq!(found.first().map(|t| t.key.as_str()), Some("plan-language.md#hm-hold-until-released"));
-        assert!(search(&topics, "no such thing at all").is_empty());
+        assert!(search(&topics, "no such zebra").is_empty());
         assert_eq!(search(&topics, "").len(), topics.len());
     }
 }

@@ -264,6 +264,7 @@ fn only_the_demo_sees_agent_and_simulator() {
 /// them carries.
 const SPEAK_MAVLINK: &[&str] = &[
     "onboard-agent/src/gateway/driver/",
+    "onboard-agent/src/gateway/tests/flights/two_links.rs",
     "onboard-agent/src/gateway/tests/links.rs",
     "onboard-agent/benches/frame_to_subscriber.rs",
     "shared/autopilot-link/",

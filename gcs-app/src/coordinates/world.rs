@@ -22,27 +22,19 @@ pub(super) fn named(name: &str, world: &[Group<'_>]) -> Option<LatLon> {
     city.or_else(|| airports.iter().flat_map(Group::iter).find(is_meant)).map(Place::position)
 }
 
-/// The cities of that name and the airport of that code; if there are none, the airports of that name.
+/// The cities of that name and the airport of that code.
 pub fn exact<'a>(name: &str, world: &'a [Group<'a>]) -> Vec<Place<'a>> {
     let name = plain(name);
-    let by_name_or_code = |group: usize, full: &str| {
-        full == name || (group > 0 && full.split_once(' ').is_some_and(|(code, _)| code == name))
+    let is_it = |(group, place): &(usize, &Place<'_>)| {
+        let full = plain(place.name);
+        full == name || (*group > 0 && full.split_once(' ').is_some_and(|(code, _)| code == name))
     };
-    let by_name = |group: usize, full: &str| {
-        group > 0 && full.split_once(' ').is_some_and(|(_, of_airport)| of_airport == name)
-    };
-    let found = places_where(world, by_name_or_code);
-    if found.is_empty() { places_where(world, by_name) } else { found }
-}
-
-/// Those whose group and whole name, in small letters, are meant.
-fn places_where<'a>(world: &'a [Group<'a>], is_meant: impl Fn(usize, &str) -> bool) -> Vec<Place<'a>> {
     let of_groups =
         world.iter().enumerate().flat_map(|(group, places)| places.iter().map(move |p| (group, p)));
-    of_groups.filter(|(group, place)| is_meant(*group, &plain(place.name))).map(|(_, place)| *place).collect()
+    of_groups.filter(is_it).map(|(_, place)| *place).collect()
 }
 
-/// At most so many places in whose name a word begins like that, the most important ones first.
+/// At most so many places in whose name a word begins like that: airports of just that name, then the most important ones.
 pub fn like<'a>(name: &str, world: &'a [Group<'a>], most: usize) -> Vec<Place<'a>> {
     let name = plain(name);
     if name.chars().count() < SHORTEST {
@@ -52,7 +44,12 @@ pub fn like<'a>(name: &str, world: &'a [Group<'a>], most: usize) -> Vec<Place<'a
         let full = plain(place.name);
         full.starts_with(&name) || full.contains(&format!(" {name}"))
     };
-    world.iter().flat_map(Group::iter).filter(begins).take(most).copied().collect()
+    let mut found: Vec<Place<'a>> = world.iter().flat_map(Group::iter).filter(begins).copied().collect();
+    found.sort_by_key(|place| {
+        plain(place.name).split_once(' ').is_none_or(|(_, of_airport)| of_airport != name)
+    });
+    found.truncate(most);
+    found
 }
 
 /// Small letters without the accents of Latin scripts.

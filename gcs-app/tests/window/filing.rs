@@ -62,9 +62,10 @@ fn file_that_is_there_is_replaced_only_when_told_to() {
     let mut window = window(SQUARE);
     window.press_ctrl(egui::Key::S);
     until_listed(&mut window);
-    name(&mut window, &path);
+    name(&mut window, &folder.path().join(""));
     window.press(egui::Key::Enter);
     until_listed(&mut window);
+    name(&mut window, Path::new("old.xml"));
     assert!(window.shows("What is in it would be lost"));
     window.press(egui::Key::Enter);
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");

@@ -43,15 +43,7 @@ fn what_is_behind_the_aircraft_cannot_be_moved() {
     assert!(moves(&mut window, "Fix D", vec2(20.0, -20.0)));
     // a set with one that is behind
     window.click("TF side1");
-    let row = window.centre("TF side2");
-    window.harness.hover_at(row);
-    window.steps(1);
-    for pressed in [true, false] {
-        let (button, modifiers) = (egui::PointerButton::Primary, Modifiers::SHIFT);
-        let event = egui::Event::PointerButton { pos: row, button, pressed, modifiers };
-        window.harness.event_modifiers(event, modifiers);
-        window.steps(1);
-    }
+    window.select_row_with(("TF side2", 0), Modifiers::SHIFT);
     window.steps(2);
     assert!(!moves(&mut window, "Move what is selected", vec2(30.0, 30.0)));
     // on the ground again everything is ahead

@@ -1,7 +1,9 @@
 //! Copy, cut, paste and duplicate on the map.
 
 use super::{SQUARE, Window};
+use egui::accesskit::Role;
 use egui::{Event, OutputCommand, vec2};
+use egui_kittest::kittest::Queryable;
 use flight_plan::{Id, transform};
 
 fn window() -> Window {
@@ -100,7 +102,9 @@ fn legs_fixes_and_zones_are_one_set() {
     window.until_analysed();
     window.select_row(("TF side4", 0));
     window.steps(2);
-    for row in ["FIX E", "OUT village"] {
+    for row in ["OUT village", "FIX E"] {
+        window.harness.get_by_role_and_label(Role::TreeItem, row).scroll_to_me();
+        window.steps(10);
         window.select_row_with((row, 0), egui::Modifiers::COMMAND);
         window.steps(2);
     }

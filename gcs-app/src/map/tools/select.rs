@@ -130,6 +130,10 @@ impl Tool for Select {
         if let Some(why) = why_not(pointer, handle, canvas) {
             self.refused = true;
             queue.view(ViewCommand::Notice(why));
+            if handle.is_none() {
+                // what is selected stays so
+                return;
+            }
         } else if pointer.grip.is_some_and(|key| self.group.press(key, pointer.clicks, canvas)) {
             return;
         }

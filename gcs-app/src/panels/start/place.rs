@@ -123,9 +123,10 @@ mod tests {
 
     #[test]
     fn what_is_clear_is_not_asked_about() {
-        for typed in ["47.1, 8.2", "lowi", "Paris", "Oban", "090° 5 km from LOWI"] {
+        for typed in ["47.1, 8.2", "lowi", "Paris", "090° 5 km from LOWI"] {
             assert!(read(typed, Units::Si).is_ok(), "{typed}");
         }
+        assert_eq!(read("oban", Units::Si).unwrap_err().0[0].name, "EGEO Oban", "not Obando");
         assert!(read("nowhere at all", Units::Si).unwrap_err().0.is_empty());
     }
 }

@@ -123,7 +123,7 @@ impl Schema {
                 ("attributeGroup" | "group", _, Some(other)) => {
                     self.inside(self.named(&child.tag, other), into)
                 }
-                ("complexType" | "complexContent" | "extension" | "sequence" | "choice", ..) => {
+                ("complexType" | "complexContent" | "extension" | "sequence" | "all" | "choice", ..) => {
                     self.inside(child, into)
                 }
                 ("annotation" | "unique" | "key" | "keyref", ..) => {}

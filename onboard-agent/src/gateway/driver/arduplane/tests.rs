@@ -337,7 +337,11 @@ fn another_system_and_nonsense_in_fields_change_nothing() {
             hdg: 0,
         })
     };
-    let nan = MavMessage::ATTITUDE(ATTITUDE_DATA { roll: f32::NAN, ..ATTITUDE_DATA::DEFAULT });
+    let nan = MavMessage::ATTITUDE(ATTITUDE_DATA {
+        time_boot_ms: 1_000_000,
+        roll: f32::NAN,
+        ..ATTITUDE_DATA::DEFAULT
+    });
     let cases = [
         (stranger, position(364_905_000)),
         (own, position(910_000_000)),
