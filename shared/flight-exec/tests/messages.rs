@@ -260,7 +260,7 @@ fn legs_that_miss_one_tile_are_told_once() {
         format!(r#"<TF id="{id}" lat="{lat}" lon="-84.16" altitude="200" altitudeReference="agl"/>"#)
     };
     let legs =
-        [("c", 36.31), ("d", 36.32), ("k", 36.33), ("l", 37.05)].map(|(id, lat)| low(id, lat)).concat();
+        [("c", 36.31), ("d", 36.32), ("k", 36.33), ("x", 37.05)].map(|(id, lat)| low(id, lat)).concat();
     let problems = found_over(&document("", &legs), Arc::new(Tiles::new()), Conditions::default());
     let told: Vec<_> = problems.iter().filter(|p| p.code == "unknown-terrain").collect();
     assert_eq!(told.len(), 2, "{told:?}");

@@ -75,14 +75,17 @@ pub struct Setup {
     pub signing: Option<Signing>,
 }
 
+/// What a datagram has to be signed with, and the time since the start; `None`: nothing is signed.
+pub type SignedBy<'a> = Option<(&'a mut Signing, Time)>;
+
 /// A driver in the list of drivers.
 #[derive(Debug, Clone, Copy)]
 pub struct Registration {
     /// Its name in the configuration.
     pub name: &'static str,
     /// A datagram is from such an autopilot: its sender becomes the link's partner, or stays it. With a key, only what is signed
-    /// with it and newer than what was recognised before; with the time since the start.
-    pub recognises: fn(&[u8], Option<(&mut Signing, Time)>) -> bool,
+    /// with it and newer than what was recognised before.
+    pub recognises: fn(&[u8], SignedBy<'_>) -> bool,
     /// Makes a driver that has received nothing. It reports in [`Report::Capability`] whether it can fly the
     /// autopilot at the other end.
     pub make: fn(&Setup) -> Box<dyn Driver>,

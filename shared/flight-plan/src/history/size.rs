@@ -50,7 +50,7 @@ fn own_legs(before: &[Arc<Leg>], legs: &[Arc<Leg>]) -> usize {
     let (old, new) = (before.get(first..).unwrap_or_default(), legs.get(first..).unwrap_or_default());
     let last = old.iter().rev().zip(new.iter().rev()).take_while(is_shared).count();
     let new = new.get(..new.len() - last).unwrap_or_default();
-    let pointers = size_of::<Arc<Leg>>() * legs.len();
+    let pointers = size_of_val(legs);
     let inside = |i: usize| old.get(i).map(|leg| leg.body()).unwrap_or_default();
     pointers
         + new.iter().enumerate().map(|(i, leg)| of_leg(leg) + own_legs(inside(i), leg.body())).sum::<usize>()

@@ -12,7 +12,7 @@ use super::mission::{Mission, Outcome};
 use super::streams::Streams;
 use super::telemetry::Readings;
 use super::words::Words;
-use crate::gateway::driver::{FromLink, Setup};
+use crate::gateway::driver::{FromLink, Setup, SignedBy};
 use crate::gateway::order::{Report, Time};
 use autopilot_link::Outbox;
 use autopilot_link::frame::{Decoder, Frame, Sender};
@@ -309,7 +309,7 @@ impl Session {
 }
 
 /// A datagram has an autopilot's heartbeat in it, which is believed if there is a key.
-pub fn recognises(datagram: &[u8], mut signing: Option<(&mut Signing, Time)>) -> bool {
+pub fn recognises(datagram: &[u8], mut signing: SignedBy<'_>) -> bool {
     let mut decoder = Decoder::default();
     decoder.push_datagram(datagram);
     while let Some(frame) = decoder.next_frame() {
