@@ -6,7 +6,6 @@ import subprocess
 
 import jsonschema
 import pytest
-import zenoh
 from conftest import BIN, HOME, TOP, free_port, until
 from foxglove.messages import GeoJson, LocationFix, LocationFixPositionCovarianceType, Log, LogLevel, Timestamp
 from mcap.exceptions import McapError
@@ -126,11 +125,7 @@ def test_requests_stand_in_it_with_who_asked_and_each_plan_with_its_document(age
     folder, go = agent
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     process = go(endpoint)
-    config = zenoh.Config()
-    config.insert_json5("mode", '"client"')
-    config.insert_json5("connect/endpoints", json.dumps([endpoint]))
-    config.insert_json5("scouting/multicast/enabled", "false")
-    session = until(lambda: opened(config), 30, "the hub listens")
+    session = until(lambda: opened(endpoint), 30, "the hub listens")
     until(lambda: flown(folder), 60, "a recording with the first plan")
     plan = (TOP / "assets/plans/square.xml").read_text().replace('name="', 'name="Another ', 1)
     report = call(session, "fp-manager", "propose", {"xml": plan, "seen_revision": None}, "from=planner")
