@@ -1,19 +1,9 @@
 //! Lines on the map: waypoints out of them, rubber bands, pictures along them, and the view on what is selected.
 
-use super::{SQUARE, Window};
+use super::Window;
+use super::pasting::{legs, window};
 use egui::{Key, Pos2, vec2};
 use egui_kittest::kittest::Queryable;
-
-fn window() -> Window {
-    let mut window = Window::open(SQUARE);
-    window.until_analysed();
-    window
-}
-
-fn legs(window: &Window) -> Vec<String> {
-    let stage = window.plan().stage(&"circuit".into()).unwrap().clone();
-    stage.legs.iter().map(|leg| leg.id.to_string()).collect()
-}
 
 /// A quarter along the line to side3, where no mark is.
 fn on_line(window: &Window) -> Pos2 {

@@ -6,13 +6,15 @@ use egui::{Event, OutputCommand, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_plan::{Id, transform};
 
-fn window() -> Window {
+/// With the square circuit, looked at.
+pub fn window() -> Window {
     let mut window = Window::open(SQUARE);
     window.until_analysed();
     window
 }
 
-fn legs(window: &Window) -> Vec<String> {
+/// Those of its stage, by their identifiers.
+pub fn legs(window: &Window) -> Vec<String> {
     let stage = window.plan().stage(&"circuit".into()).unwrap().clone();
     stage.legs.iter().map(|leg| leg.id.to_string()).collect()
 }

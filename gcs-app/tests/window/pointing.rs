@@ -1,21 +1,11 @@
 //! What can be done with what is under the pointer.
 
+use super::pasting::{legs, window};
 use super::{SQUARE, Window};
 use egui::{Key, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_plan::create::LegChoice;
 use flight_plan::{Id, Place, Value};
-
-fn window() -> Window {
-    let mut window = Window::open(SQUARE);
-    window.until_analysed();
-    window
-}
-
-fn legs(window: &Window) -> Vec<String> {
-    let stage = window.plan().stage(&"circuit".into()).unwrap().clone();
-    stage.legs.iter().map(|leg| leg.id.to_string()).collect()
-}
 
 #[test]
 fn a_right_click_puts_a_leg_where_the_pointer_is() {
