@@ -1,5 +1,6 @@
 //! Which emergency plan answers where.
 
+use super::flown::Flown;
 use crate::rehearse::names_engine;
 use flight_plan::{Cause, Id, Program};
 use std::collections::HashMap;
@@ -30,23 +31,18 @@ const POWERED: [Cause; 6] =
     [Cause::Operator, Cause::Payload, Cause::Traffic, Cause::Link, Cause::Gps, Cause::Energy];
 
 impl EmergencyCoverage {
-    pub fn of(program: &Program) -> Self {
+    /// On the legs of these flights: a plan may have very many that no flight comes to.
+    pub fn of(program: &Program, flights: &[Flown]) -> Self {
         let number: HashMap<&Id, usize> =
             program.flown().emergency_plans.iter().enumerate().map(|(i, e)| (&e.id, i)).collect();
-        let answer =
-            |leg: &Id, cause| number.get(program.emergency_choice(leg, cause)?.plan_for(cause)?).copied();
-        let stages = program.flown().stages.iter().map(|s| &s.id);
-        let legs = program.flown().all_legs();
-        let main = legs.iter().filter(|c| c.section == flight_plan::Section::Main).map(|c| &c.leg.id);
-        let of = |leg: &Id| {
-            let mut powered: Vec<usize> = POWERED.iter().filter_map(|cause| answer(leg, *cause)).collect();
-            powered.sort_unstable();
-            powered.dedup();
-            let engine =
-                answer(leg, Cause::Engine).map(|plan| Engine { plan, named: names_engine(program, leg) });
-            (leg.clone(), Answers { engine, powered })
-        };
-        Self { by_leg: stages.chain(main).map(of).collect() }
+        let mut by_leg = HashMap::new();
+        for laid_out in flights.iter().flat_map(|flown| &flown.waypoints) {
+            let leg = &laid_out.waypoint.leg;
+            if !by_leg.contains_key(leg) {
+                by_leg.insert(leg.clone(), Answers::on(leg, program, &number));
+            }
+        }
+        Self { by_leg }
     }
 
     /// The plan that is flown after an engine failure on a leg.
@@ -62,5 +58,17 @@ impl EmergencyCoverage {
     /// All of them; one may come twice.
     pub fn plans(&self, leg: &Id) -> impl Iterator<Item = usize> + '_ {
         self.powered(leg).iter().copied().chain(self.engine(leg).map(|engine| engine.plan))
+    }
+}
+
+impl Answers {
+    /// `number`: the index of each emergency plan.
+    fn on(leg: &Id, program: &Program, number: &HashMap<&Id, usize>) -> Self {
+        let answer = |cause| number.get(program.emergency_choice(leg, cause)?.plan_for(cause)?).copied();
+        let mut powered: Vec<usize> = POWERED.iter().filter_map(|cause| answer(*cause)).collect();
+        powered.sort_unstable();
+        powered.dedup();
+        let engine = answer(Cause::Engine).map(|plan| Engine { plan, named: names_engine(program, leg) });
+        Self { engine, powered }
     }
 }

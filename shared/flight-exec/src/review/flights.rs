@@ -265,7 +265,7 @@ impl Flights {
 
     /// A way to a branch that was not taken yet: one that came to its intersection, but there another branch.
     fn unseen(&self, program: &Program, flown: &[(Way, HashSet<Id>)]) -> Option<Way> {
-        if flown.len() >= MAX_FLIGHTS {
+        if flown.len() >= MAX_FLIGHTS || !program.has_forks() {
             return None;
         }
         let legs = program.flown().all_legs();
@@ -287,7 +287,7 @@ impl Flights {
     /// flown, and not of these.
     fn fly_emergencies(&mut self, given: &Circumstances, used_j: f64) {
         let program = given.program;
-        let emergency_coverage = EmergencyCoverage::of(program);
+        let emergency_coverage = EmergencyCoverage::of(program, &self.main);
         for (index, plan) in program.flown().emergency_plans.iter().enumerate().take(MAX_EMERGENCY_PLANS) {
             for (home, leg, worst) in self.worst_for(program, plan, index, &emergency_coverage) {
                 let beginning = Beginning::at(&worst, used_j);
@@ -391,6 +391,9 @@ pub(super) fn points(planned: &Preview, full_j: f64, every_s: f64) -> Vec<Origin
 
 /// Flights that take each branch of the intersection with most of them.
 fn variants(program: &Program) -> u64 {
+    if !program.has_forks() {
+        return 1;
+    }
     let branches = |leg: &flight_plan::Leg| match &leg.kind {
         LegKind::Intersection { branches, .. } => branches.len() as u64,
         _ => 1,

@@ -166,8 +166,8 @@ impl<'a> View<'a> {
         variables: Variables,
         flights: Flights,
     ) -> Self {
-        let (zones, emergency_coverage) =
-            (Zones::of(program, profile, conditions), EmergencyCoverage::of(program));
+        let zones = Zones::of(program, profile, conditions);
+        let emergency_coverage = EmergencyCoverage::of(program, &flights.main);
         Self { program, profile, terrain, conditions, variables, flights, zones, emergency_coverage }
     }
 

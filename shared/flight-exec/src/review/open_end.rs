@@ -1,7 +1,6 @@
 //! What a flight goes round in for ever unless somebody or a condition ends it.
 
 use flight_plan::{Id, Leg, LegKind, LegPath, Program};
-use std::collections::HashMap;
 
 /// Around a leg, or the leg itself: the loop without a count, the holding without laps, or the intersection whose default leads
 /// back to it. `None`: it ends by itself.
@@ -26,7 +25,8 @@ pub fn open_end<'p>(program: &'p Program, leg: &Id) -> Option<&'p Leg> {
 /// The first intersection on the way that leads from a leg back to it, if nobody decides.
 fn leads_back<'p>(program: &'p Program, path: &LegPath) -> Option<&'p Leg> {
     let (list, start) = (program.list(path)?, *path.indices.last()?);
-    let known: HashMap<&Id, usize> = list.iter().enumerate().map(|(index, leg)| (&leg.id, index)).collect();
+    // `next` names a sibling
+    let known = |next: &Id| program.path(next)?.indices.pop();
     let (mut index, mut fork) = (start, None);
     for _ in 0..list.len() {
         let leg = list.get(index)?.as_ref();
@@ -37,7 +37,7 @@ fn leads_back<'p>(program: &'p Program, path: &LegPath) -> Option<&'p Leg> {
                 &ways.branches.iter().find(|branch| Some(&branch.id) == ways.default)?.next
             }
         };
-        index = next.as_ref().map_or(Some(index + 1), |next| known.get(next).copied())?;
+        index = next.as_ref().map_or(Some(index + 1), |next| known(next))?;
         if index == start {
             return fork;
         }

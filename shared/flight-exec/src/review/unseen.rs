@@ -6,7 +6,8 @@ use flight_plan::{LegKind, Problem};
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let flown = view.program.flown();
-    for context in flown.all_legs() {
+    let legs = if view.program.has_forks() { flown.all_legs() } else { Vec::new() };
+    for context in legs {
         let LegKind::Intersection { branches, .. } = &context.leg.kind else { continue };
         let leg = &context.leg.id;
         // under way, what no flight comes to is behind

@@ -100,6 +100,9 @@ impl Difference {
 /// there twice).
 pub fn changes(old: &FlightPlan, new: &FlightPlan) -> Vec<Change> {
     let mut changes = Vec::new();
+    if std::ptr::eq(old, new) {
+        return changes;
+    }
     let words = words::between(&Piece::Head(old), &Piece::Head(new));
     changes.extend((!words.is_empty()).then_some(Change {
         part: "plan",
