@@ -32,6 +32,7 @@
 
 pub mod autopilot;
 pub mod dynamics;
+pub mod glide;
 pub mod power;
 pub mod profile;
 pub mod wind;

@@ -7,6 +7,7 @@ pub mod arc;
 pub mod holding;
 pub mod intercept;
 pub mod local;
+pub mod near;
 pub mod path;
 pub mod pattern;
 mod plane;

@@ -14,8 +14,8 @@ mod situation;
 mod start;
 mod what_if;
 
-pub use glide::GlidePoint;
-pub(crate) use glide::{GlideStart, glide, names_engine, route, turn_rad};
+pub use aircraft::glide::GlidePoint;
+pub(crate) use glide::{names_engine, route};
 pub use rehearsal::{Diversion, Glide, Kept, Powered, Reach, Rehearsal, glide_instead};
 pub use scenario::{Act, Scenario, Trigger, When};
 pub use start::Start;

@@ -7,7 +7,7 @@ use super::View;
 use super::flown::Flown;
 use super::layout::LaidOut;
 use crate::layout::path::{distance_and_course, distance_m};
-use crate::rehearse::turn_rad;
+use aircraft::glide::turn_rad;
 use flight_plan::{LegKind, Problem, TurnDirection};
 use geometry::LatLon;
 

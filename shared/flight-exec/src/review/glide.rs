@@ -5,13 +5,13 @@
 //! its runway is so far away that even a glide straight there ends before it (the operator may leave out the rest of the plan),
 //! and on how much of the flight.
 //!
-//! The glide is that of `rehearse::glide`. Legs of take-off, approach and landing are left out: there the runway is ahead, or not
+//! The glide is that of `aircraft::glide`. Legs of take-off, approach and landing are left out: there the runway is ahead, or not
 //! yet out of sight. So are, for the fallback, those of departure and arrival: they climb and descend near it.
 
 use super::View;
 use super::alternates::{Alternate, Origin, alternates};
 use super::emergency_coverage::Engine;
-use crate::rehearse::{GlideStart, glide};
+use aircraft::glide::{GlideStart, glide};
 use aircraft::power::glide_sink_mps;
 use flight_plan::{Problem, StageKind};
 use geometry::{LatLon, PathElement};

@@ -9,7 +9,7 @@ use super::flown::Flown;
 use super::layout::LaidOut;
 use crate::api::Action;
 use crate::layout::path::distance_and_course;
-use crate::rehearse::turn_rad;
+use aircraft::glide::turn_rad;
 use flight_plan::{Edit, Id, LegKind, Pattern, Problem, Value};
 use geometry::LatLon;
 use geometry::turn::radius_m;

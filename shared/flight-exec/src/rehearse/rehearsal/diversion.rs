@@ -6,12 +6,11 @@
 use super::super::flight::{Circumstances, Flight};
 use super::super::scenario::{Act, Trigger, When};
 use super::super::situation::Situation;
-use super::super::{
-    GlidePoint, GlideStart, LegPassage, Preview, PreviewError, TrackPoint, glide, names_engine, route,
-};
+use super::super::{LegPassage, Preview, PreviewError, TrackPoint, names_engine, route};
 use super::{Flown, Rehearsal};
 use crate::api::{Branching, Command};
 use crate::layout::path::distance_and_course;
+use aircraft::glide::{GlidePoint, GlideStart, glide};
 use aircraft::{Profile, Winds};
 use flight_plan::{Cause, EmergencyPlan, Id, Program, Runway, StageKind, Variables};
 use geometry::{LatLon, PathElement};
