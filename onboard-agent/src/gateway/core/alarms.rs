@@ -74,6 +74,11 @@ impl Alarms {
         self.raised.iter().map(|w| self.alarm(*w)).collect()
     }
 
+    /// The engine has failed, or seems to have.
+    pub fn tell_of_engine(&self) -> bool {
+        self.raised.iter().any(|watch| matches!(watch, Watch::EngineOut | Watch::EngineSuspected))
+    }
+
     /// What is down has to be found: that alarm says where.
     fn alarm(&self, watch: Watch) -> Alarm {
         let mut alarm = watch.alarm();

@@ -189,7 +189,7 @@ impl Gateway {
             ));
         }
         let in_use = is_flying(self.state) || self.telemetry.armed;
-        let in_reach = || self.situation().is_some_and(|here| choose(&runways, &here).is_some());
+        let in_reach = || self.situation().is_some_and(|here| choose(&runways, &self.safe, &here).is_some());
         if in_use && !in_reach() {
             return Err("Safe mode needs a runway within reach from here, and the list has none: add one, or change the list on the ground.".into());
         }

@@ -181,11 +181,11 @@ impl Gateway {
     fn return_home(&mut self, out: &mut Vec<Output>) {
         self.control.safe_since = None;
         let Some(situation) = self.situation() else { return self.return_by_itself(out) };
-        let Some(runway) = safe::choose(&self.runways, &situation) else {
+        let Some(landing) = safe::choose(&self.runways, &self.safe, &situation) else {
             return self.return_by_itself(out);
         };
-        let cause = format!("returning to runway {}", runway.id);
-        let path = safe::path(runway, &self.safe, &situation);
+        let cause = format!("{} to {landing}", if situation.glides { "gliding" } else { "returning" });
+        let path = safe::path(&landing, &self.safe, &situation);
         self.feed_driver(Some(Token(0)), path, out);
         self.control.set_intent(Intent::Fly, self.telemetry.mode);
         self.change(Trigger::ReturnDue, &cause, out);
@@ -198,6 +198,8 @@ impl Gateway {
         Some(Situation {
             position: fix.position,
             altitude_amsl_m: fix.altitude_amsl_m,
+            track_deg: fix.east_mps.atan2(fix.north_mps).to_degrees(),
+            glides: self.alarms.tell_of_engine(),
             air: self.telemetry.air.map(|(_, a)| a),
             battery: self.telemetry.battery(),
             profile: &self.settings.profile,

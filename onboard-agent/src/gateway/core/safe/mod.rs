@@ -1,0 +1,121 @@
+//! Safe mode's own flight: which runway, and the waypoints to it. Needs no other service.
+
+mod ranking;
+mod way;
+
+use aircraft::{Profile, Wind};
+use geometry::LatLon;
+pub use ranking::choose;
+use terrain::Terrain;
+use usal::contract::{Air, SafeRunway};
+pub use way::path;
+
+/// Spacing at which the ground on the way is sampled, metres.
+const GROUND_STEP_M: f64 = 200.0;
+/// Most samples of the ground on one way.
+const MAX_SAMPLES: f64 = 1000.0;
+
+/// Where the aircraft is, for the choice.
+pub struct Situation<'a> {
+    /// Position.
+    pub position: LatLon,
+    /// Metres AMSL.
+    pub altitude_amsl_m: f64,
+    /// Where it flies to, degrees true.
+    pub track_deg: f64,
+    /// Wind (blows to), if known.
+    pub air: Option<Air>,
+    /// Share of the energy left.
+    pub battery: f64,
+    /// The engine has failed, or seems to: it glides.
+    pub glides: bool,
+    /// The aircraft.
+    pub profile: &'a Profile,
+    /// The ground, if known.
+    pub terrain: Option<&'a dyn Terrain>,
+}
+
+impl Situation<'_> {
+    fn wind(&self) -> Wind {
+        self.air.map_or(Wind::CALM, |a| Wind { east_mps: a.wind_east_mps, north_mps: a.wind_north_mps })
+    }
+}
+
+/// A runway, and how it is come to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Landing {
+    /// As it is landed on: perhaps from its other end.
+    pub runway: SafeRunway,
+    /// Landed on from its other end.
+    pub reversed: bool,
+    /// The way in.
+    pub approach: Approach,
+}
+
+/// A way in to a runway.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Approach {
+    /// By the initial approach point and along the extended centre line.
+    Whole,
+    /// Gliding, with no height to spare for it: to a short final.
+    Short,
+}
+
+impl std::fmt::Display for Landing {
+    /// `runway R05`, `runway R05 from its other end`, `runway R05 by a short final`.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "runway {}", self.runway.id)?;
+        if self.reversed {
+            f.write_str(" from its other end")?;
+        }
+        match self.approach {
+            Approach::Whole => Ok(()),
+            Approach::Short => f.write_str(" by a short final"),
+        }
+    }
+}
+
+/// Fit to be stored: numbers in range, long enough for the aircraft.
+pub fn is_usable(runway: &SafeRunway, profile: &Profile) -> bool {
+    let numbers = [runway.elevation_amsl_m, runway.heading_deg, runway.length_m];
+    runway.threshold.is_navigable()
+        && numbers.iter().all(|n| n.is_finite())
+        && runway.length_m >= profile.min_runway_m
+        && runway.elevation_amsl_m < profile.ceiling_amsl_m
+}
+
+/// Places along the straight way between two, both included, each with its share of the way.
+fn along(from: LatLon, to: LatLon) -> impl Iterator<Item = (f64, LatLon)> {
+    let way = from.inverse(to);
+    let steps = (way.distance_m / GROUND_STEP_M).ceil().clamp(1.0, MAX_SAMPLES) as u32;
+    (0..=steps).map(move |i| {
+        let share = f64::from(i) / f64::from(steps);
+        (share, from.destination(way.bearing_start_deg, way.distance_m * share))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    pub(super) const HOME: LatLon = LatLon::new(36.4905, -84.2710);
+
+    pub(super) fn runway(id: &str, bearing_deg: f64, km: f64, heading_deg: f64, priority: u32) -> SafeRunway {
+        let threshold = HOME.destination(bearing_deg, km * 1000.0);
+        let (elevation_amsl_m, length_m) = (322.0, 600.0);
+        SafeRunway { id: id.into(), threshold, elevation_amsl_m, heading_deg, length_m, priority }
+    }
+
+    pub(super) fn situation(profile: &Profile) -> Situation<'_> {
+        Situation {
+            position: HOME,
+            altitude_amsl_m: 600.0,
+            track_deg: 0.0,
+            air: None,
+            battery: 1.0,
+            glides: false,
+            profile,
+            terrain: None,
+        }
+    }
+}

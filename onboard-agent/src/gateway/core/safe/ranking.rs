@@ -1,0 +1,242 @@
+//! Which runway: of those within reach the one with the least cost, in seconds of flight.
+//!
+//! With its engine an aircraft reaches a runway if the energy lasts for the way in this wind, and if the ground on the way lies
+//! below its ceiling. Gliding, if it comes to the threshold with height to spare, and above all ground on the way. The cost is the
+//! time for the way, with the climb over the ground; a lower priority, a tailwind on landing, a short runway and the other end of
+//! one make it worse.
+
+use super::way::{gates, ground_to_clear_m};
+use super::{Approach, Landing, Situation, along, is_usable};
+use aircraft::glide::{GlideStart, glide};
+use geometry::LatLon;
+use geometry::near::distance_and_course;
+use usal::contract::{SafeParameters, SafeRunway};
+
+/// Share of the energy left that may be planned with.
+const USABLE: f64 = 0.8;
+/// A runway of the next lower priority has to save this share of the way.
+const PRIORITY_PENALTY: f64 = 0.25;
+/// A tailwind of 1 m/s on landing counts like so many seconds of flight.
+const TAILWIND_PENALTY_S: f64 = 20.0;
+/// So much does a runway cost that is only as long as the aircraft needs, seconds of flight; nothing one of twice that.
+const SHORT_PENALTY_S: f64 = 60.0;
+/// So much does the end of a runway cost that nobody has named, seconds of flight.
+const REVERSED_PENALTY_S: f64 = 40.0;
+/// Height above the threshold that a glide comes there with, and above the ground on the way, metres.
+const GLIDE_SPARE_M: f64 = 15.0;
+/// The ground before the other end of a runway stays below this share of the final approach's height, and a few metres
+/// that elevation models are wrong by.
+const CLEAR_SHARE: f64 = 0.5;
+const MODEL_ERROR_M: f64 = 5.0;
+
+/// The best landing of those within reach.
+pub fn choose(runways: &[SafeRunway], safe: &SafeParameters, s: &Situation) -> Option<Landing> {
+    let usable = runways.iter().filter(|runway| is_usable(runway, s.profile));
+    let ends = usable.flat_map(|runway| [Some((runway.clone(), false)), other_end(runway, safe, s)]);
+    let approaches: &[Approach] =
+        if s.glides { &[Approach::Whole, Approach::Short] } else { &[Approach::Whole] };
+    let in_reach = ends.flatten().filter_map(|(runway, reversed)| {
+        approaches.iter().find_map(|approach| {
+            let time_s = time_s(&runway, *approach, safe, s)?;
+            let landing = Landing { runway: runway.clone(), reversed, approach: *approach };
+            Some((cost_s(&landing, time_s, s), landing))
+        })
+    });
+    in_reach.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, landing)| landing)
+}
+
+fn cost_s(landing: &Landing, time_s: f64, s: &Situation) -> f64 {
+    let runway = &landing.runway;
+    let priority = 1.0 + PRIORITY_PENALTY * f64::from(runway.priority.saturating_sub(1));
+    let spare = runway.length_m / s.profile.min_runway_m.max(1.0) - 1.0;
+    time_s * priority
+        + TAILWIND_PENALTY_S * tailwind_mps(s, runway.heading_deg).max(0.0)
+        + SHORT_PENALTY_S * (1.0 - spare).clamp(0.0, 1.0)
+        + if landing.reversed { REVERSED_PENALTY_S } else { 0.0 }
+}
+
+/// Wind along a direction, m/s (tailwind positive).
+fn tailwind_mps(s: &Situation, direction_deg: f64) -> f64 {
+    s.wind().vector().dot(geometry::Vec2::from_bearing_rad(direction_deg.to_radians()))
+}
+
+/// The same runway from its other end, where the wind is better there and the ground before it is known to be low.
+fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Option<(SafeRunway, bool)> {
+    if tailwind_mps(s, runway.heading_deg) <= 0.0 {
+        return None;
+    }
+    let reversed = SafeRunway {
+        threshold: runway.threshold.destination(runway.heading_deg, runway.length_m),
+        heading_deg: geometry::geodesy::normalise_360(runway.heading_deg + 180.0),
+        ..runway.clone()
+    };
+    let [initial, last] = gates(&reversed, Approach::Whole, safe);
+    let length_m = distance_m(last.0, reversed.threshold);
+    let terrain = s.terrain?;
+    let is_low = |place: LatLon, height_m: f64| {
+        let ground_m = terrain.elevation_m(place);
+        ground_m.is_some_and(|m| m < reversed.elevation_amsl_m + CLEAR_SHARE * height_m + MODEL_ERROR_M)
+    };
+    let height_m = last.1 - reversed.elevation_amsl_m;
+    let level = along(initial.0, last.0).all(|(_, place)| is_low(place, height_m));
+    let is_clear = length_m > 0.0
+        && level
+        && along(last.0, reversed.threshold).all(|(share, place)| is_low(place, height_m * (1.0 - share)));
+    is_clear.then_some((reversed, true))
+}
+
+/// Time of the way to a landing, seconds; `None`: out of reach.
+fn time_s(runway: &SafeRunway, approach: Approach, safe: &SafeParameters, s: &Situation) -> Option<f64> {
+    let [initial, last] = gates(runway, approach, safe);
+    let way = [initial.0, last.0, runway.threshold];
+    if s.glides { gliding_s(runway, &way, s) } else { powered_s(runway, &way, s) }
+}
+
+fn powered_s(runway: &SafeRunway, way: &[LatLon; 3], s: &Situation) -> Option<f64> {
+    let speed_mps = s.profile.cruise_airspeed_mps;
+    let (mut here, mut time_s) = (s.position, 0.0);
+    for place in way {
+        let (distance_m, course_deg) = distance_and_course(here, *place);
+        time_s += distance_m / s.wind().ground_speed_mps(speed_mps, course_deg)?;
+        here = *place;
+    }
+    let [initial, ..] = way;
+    let over_m = ground_to_clear_m(s, *initial).unwrap_or(runway.elevation_amsl_m);
+    if over_m > s.profile.ceiling_amsl_m {
+        return None;
+    }
+    time_s += (over_m - s.altitude_amsl_m).max(0.0) / s.profile.max_climb_mps.max(0.1);
+    let endurance_s = USABLE * s.battery * s.profile.energy_j / s.profile.cruise_power_w.max(1.0);
+    (time_s < endurance_s).then_some(time_s)
+}
+
+fn gliding_s(runway: &SafeRunway, way: &[LatLon; 3], s: &Situation) -> Option<f64> {
+    let Situation { position, altitude_amsl_m, track_deg: course_deg, .. } = *s;
+    let start = GlideStart { position, altitude_amsl_m, course_deg };
+    let points = glide(s.profile, s.wind().into(), start, way, runway.heading_deg)?;
+    let last = points.last()?;
+    let arrives = last.altitude_amsl_m >= runway.elevation_amsl_m + GLIDE_SPARE_M;
+    let over_ground = points.windows(2).take(points.len().saturating_sub(2)).all(|pair| {
+        let [from, to] = pair else { return true };
+        let height_m =
+            |share: f64| from.altitude_amsl_m + share * (to.altitude_amsl_m - from.altitude_amsl_m);
+        along(from.position, to.position).all(|(share, place)| {
+            let ground_m = s.terrain.and_then(|terrain| terrain.elevation_m(place));
+            ground_m.is_none_or(|ground_m| height_m(share) > ground_m + GLIDE_SPARE_M)
+        })
+    });
+    (arrives && over_ground).then_some(last.time_s)
+}
+
+fn distance_m(a: LatLon, b: LatLon) -> f64 {
+    distance_and_course(a, b).0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{HOME, runway, situation};
+    use super::*;
+    use aircraft::Profile;
+    use terrain::{Flat, Terrain};
+    use usal::contract::Air;
+
+    fn wind(east_mps: f64, north_mps: f64) -> Option<Air> {
+        let (wind_east_mps, wind_north_mps) = (east_mps, north_mps);
+        Some(Air {
+            airspeed_mps: 25.0,
+            wind_east_mps,
+            wind_north_mps,
+            pressure_hpa: 970.0,
+            temperature_c: 20.0,
+        })
+    }
+
+    fn chosen(runways: &[SafeRunway], s: &Situation) -> Option<String> {
+        choose(runways, &SafeParameters::default(), s).map(|landing| landing.to_string())
+    }
+
+    #[test]
+    fn the_best_runway_is_chosen() {
+        let main = runway("main", 0.0, 8.0, 0.0, 1);
+        let near = runway("near", 180.0, 2.0, 180.0, 2);
+        let similar = runway("similar", 180.0, 7.5, 180.0, 2);
+        let downwind = runway("downwind", 0.0, 8.0, 90.0, 1);
+        let mut short = runway("short", 0.0, 1.0, 0.0, 1);
+        short.length_m = 80.0;
+        let mut tight = runway("tight", 0.0, 8.0, 0.0, 1);
+        tight.length_m = Profile::default().min_runway_m;
+        type Case<'a> = (&'a str, Vec<SafeRunway>, f64, f64, Option<&'a str>);
+        let cases: [Case; 7] = [
+            ("nothing stored", vec![], 1.0, 0.0, None),
+            ("much closer alternate", vec![main.clone(), near.clone()], 1.0, 0.0, Some("runway near")),
+            ("hardly closer alternate", vec![main.clone(), similar], 1.0, 0.0, Some("runway main")),
+            ("tailwind on landing", vec![downwind, main.clone()], 1.0, 8.0, Some("runway main")),
+            ("too short", vec![short, near], 1.0, 0.0, Some("runway near")),
+            ("just long enough", vec![tight, main.clone()], 1.0, 0.0, Some("runway main")),
+            ("out of reach", vec![main], 0.03, 0.0, None),
+        ];
+        let profile = Profile::default();
+        for (name, runways, battery, east_mps, expected) in cases {
+            let s = Situation { battery, air: wind(east_mps, 0.0), ..situation(&profile) };
+            assert_eq!(chosen(&runways, &s).as_deref(), expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn gliding_it_takes_what_the_height_allows() {
+        let profile = Profile::default();
+        let (far, near) = (runway("far", 0.0, 8.0, 0.0, 1), runway("near", 0.0, 3.0, 0.0, 2));
+        let glides = |altitude_amsl_m, air| {
+            let s = Situation { glides: true, altitude_amsl_m, air, ..situation(&profile) };
+            chosen(&[far.clone(), near.clone()], &s)
+        };
+        let reach_m = |metres: f64| 322.0 + metres / profile.glide_ratio;
+        assert_eq!(glides(reach_m(16_000.0), None).as_deref(), Some("runway near"));
+        assert_eq!(glides(reach_m(3_600.0), None).as_deref(), Some("runway near"));
+        assert_eq!(glides(reach_m(2_900.0), None), None);
+        assert_eq!(glides(reach_m(3_600.0), wind(0.0, -12.0)), None, "against the wind");
+        let behind = Situation { glides: true, altitude_amsl_m: reach_m(4_400.0), ..situation(&profile) };
+        let abeam = runway("abeam", 90.0, 3.0, 0.0, 1);
+        assert_eq!(chosen(&[abeam], &behind).as_deref(), Some("runway abeam by a short final"));
+    }
+
+    /// A wall north of a latitude.
+    struct Wall(f64);
+
+    impl Terrain for Wall {
+        fn elevation_m(&self, at: LatLon) -> Option<f64> {
+            let is_there = (self.0..self.0 + 0.003).contains(&at.lat_deg);
+            Some(if is_there { 1500.0 } else { 300.0 })
+        }
+    }
+
+    #[test]
+    fn no_glide_leads_through_a_hill_and_no_climb_above_the_ceiling() {
+        let wall = Wall(HOME.lat_deg + 0.02);
+        let (behind, here) = (runway("behind", 0.0, 8.0, 0.0, 1), runway("here", 180.0, 7.0, 180.0, 2));
+        let runways = [behind, here];
+        let profile = Profile::default();
+        let high = Situation { altitude_amsl_m: 1200.0, terrain: Some(&wall), ..situation(&profile) };
+        assert_eq!(chosen(&runways, &Situation { glides: true, ..high }).as_deref(), Some("runway here"));
+        let low = Profile { ceiling_amsl_m: 1300.0, ..profile.clone() };
+        let under_it = Situation { terrain: Some(&wall), ..situation(&low) };
+        assert_eq!(chosen(&runways, &under_it).as_deref(), Some("runway here"));
+        let over_it = Situation { terrain: Some(&wall), battery: 1.0, ..situation(&profile) };
+        assert!(chosen(&runways, &over_it).is_some());
+    }
+
+    #[test]
+    fn it_lands_against_the_wind_where_the_other_end_is_known_to_be_free() {
+        let profile = Profile::default();
+        let runways = [runway("main", 0.0, 4.0, 0.0, 1)];
+        let (flat, hilly) = (Flat(320.0), Wall(HOME.lat_deg + 0.05));
+        let landing = |terrain, north_mps| {
+            let air = wind(0.0, north_mps);
+            chosen(&runways, &Situation { terrain, air, ..situation(&profile) }).unwrap()
+        };
+        assert_eq!(landing(Some(&flat as &dyn Terrain), 9.0), "runway main from its other end");
+        assert_eq!(landing(Some(&flat), 1.0), "runway main", "hardly any wind");
+        assert_eq!(landing(None, 9.0), "runway main", "nothing is known of the ground");
+        assert_eq!(landing(Some(&hilly), 9.0), "runway main", "a hill before its other end");
+    }
+}
