@@ -265,17 +265,23 @@ impl Runner {
     async fn run(mut self) {
         loop {
             self.simulator.step();
-            if self.config.lockstep {
-                self.simulator.ask_time();
-            }
             self.answered = false;
-            self.flush();
+            self.tell_time();
             self.publish();
             self.plan_next_step();
             if !self.wait_for_leave().await {
                 return;
             }
         }
+    }
+
+    /// Sends what waits, and in lockstep the question that says how late it is. Who comes hears that first: to a partner whose clock
+    /// still stands at zero, all that it was told before would seem to be as old as the simulation.
+    fn tell_time(&mut self) {
+        if self.config.lockstep {
+            self.simulator.ask_time();
+        }
+        self.flush();
     }
 
     fn flush(&mut self) {
@@ -378,6 +384,7 @@ impl Runner {
             Event::Connected(peer) => {
                 self.decoder.restart();
                 self.simulator.connect(peer);
+                self.tell_time();
             }
             Event::Gone(peer) => {
                 self.simulator.disconnect(peer);

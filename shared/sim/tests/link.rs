@@ -147,6 +147,23 @@ fn a_lockstep_partner_that_leaves_is_not_waited_for() {
     assert!(handle.truth().lockstep);
 }
 
+/// Its clock stands at zero: what came before the time would seem to be as old as the simulation.
+#[test]
+fn who_comes_hears_first_how_late_it_is() {
+    let handle = lockstep(0.0);
+    wait_for("time to go on", || handle.truth().time_s > 0.5);
+    let mut client = Client::connect(handle.address());
+    let mut first = None;
+    wait_for("the first message", || {
+        first = client.receive().into_iter().next();
+        first.is_some()
+    });
+    assert!(
+        matches!(&first, Some(MavMessage::TIMESYNC(t)) if t.tc1 == 0 && t.ts1 > 500_000_000),
+        "{first:?}"
+    );
+}
+
 #[test]
 fn without_lockstep_time_runs_at_its_speed() {
     let handle = sim::spawn(Config { speed: 20.0, ..Config::default() }).unwrap();

@@ -12,8 +12,7 @@ use usal::contract::{Action, GatewayState};
 const RETRY: Duration = Duration::from_millis(1000);
 /// An aircraft that does not arm yet, while its autopilot still starts up, is ordered to again for so long.
 const ARMS_WITHIN: Duration = Duration::from_secs(20);
-/// What an aircraft has aboard that was met in flight is read within this, or it is in somebody else's hands. PX4's lists may wait
-/// for half a minute until it is on its line.
+/// What an aircraft has aboard that was met in flight is read within this, or it is in somebody else's hands.
 const READ_WITHIN: Duration = Duration::from_secs(60);
 /// An order of ours that was overtaken by another may still come into effect for so long.
 const OVERTAKEN: Duration = Duration::from_secs(3);

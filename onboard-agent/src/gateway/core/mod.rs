@@ -38,6 +38,8 @@ use usal::contract::{Action, GatewayEvent, GatewayState, SafeParameters, SafeRun
 
 /// Silent for so long on the ground: the autopilot is off.
 const OFF_AFTER: Duration = Duration::from_secs(10);
+/// Why an aircraft that was met in flight is somebody else's.
+const NOT_OURS: &str = "met in flight: nothing that it has aboard is ours";
 /// The gateway. See the module's text.
 pub struct Gateway {
     settings: Settings,
@@ -211,8 +213,11 @@ impl Gateway {
             self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
             self.control.set_intent(intent, self.telemetry.mode);
             out.push(Output::Save);
+        } else if self.state == GatewayState::Manual {
+            // it took long to read
+            self.cause = NOT_OURS.to_owned();
         } else if !is_flying(self.state) {
-            self.change(Trigger::PilotTook, "met in flight: nothing that it has aboard is ours", out);
+            self.change(Trigger::PilotTook, NOT_OURS, out);
         }
     }
 
@@ -291,7 +296,8 @@ impl Gateway {
         }
         let Some(waypoint) = self.buffer.current() else {
             // adopted, and nothing is known of what it flies: Safe mode will see to it
-            let unknown = !is_flying(self.state) && self.buffer.at_end();
+            let is_met = !is_flying(self.state) || self.state == GatewayState::Manual;
+            let unknown = is_met && self.buffer.at_end();
             return unknown.then_some((Trigger::Cruising, "met in flight"));
         };
         let seen = match waypoint.action {

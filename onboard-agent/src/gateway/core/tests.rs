@@ -210,3 +210,16 @@ fn an_aircraft_whose_list_cannot_be_read_is_in_somebody_elses_hands() {
     core.run(1, &flying(25.0, 25.0));
     assert!(core.raised("not-in-command"));
 }
+
+/// That none of its waypoints is known is no reason to leave it to nobody: Safe mode sees to it, until the FP Manager is back.
+#[test]
+fn an_aircraft_whose_list_is_ours_after_all_is_taken_back() {
+    let mut core = Core::new();
+    core.run(62, &flying(25.0, 25.0));
+    assert_eq!(core.gateway.state(), GatewayState::Manual);
+    let (adopt, _) = core.orders().into_iter().find(|(_, order)| matches!(order, Order::Adopt(_))).unwrap();
+    core.step(Input::Report(Report::Adopted(adopt, Some(0))));
+    core.step(Input::Report(Report::Course(Course { aboard: true, ready: true, target: Target::End })));
+    core.run(1, &flying(25.0, 25.0));
+    assert_ne!(core.gateway.state(), GatewayState::Manual);
+}

@@ -21,6 +21,9 @@ const GREATEST_ACCEPTANCE_M: f32 = 255.0;
 /// it is −L1²/(18·R), next to nothing, and depends least on s: a wind, or another T than its default, which is meant here,
 /// matter little. What was flown is in `assets/docs/flight-tests.md`.
 const ARC_LEAD_S: f64 = 0.75 * 17.0 / std::f64::consts::PI;
+/// Nor farther before it than this times the square of the airspeed, s²/m: 0.8 radii of a turn at 25° of bank. From farther away than a
+/// circle is wide, all its corners would be reached at once.
+const MOST_LEAD_S2_PER_M: f64 = 0.175;
 /// Pitch during take-off, degrees (ArduPlane's param1).
 const TAKE_OFF_PITCH_DEG: f32 = 15.0;
 /// A jump's count for "again and again".
@@ -73,8 +76,8 @@ fn acceptance_m(pass: Pass) -> f32 {
         Pass::By => 0.0,
         Pass::Over => FLY_OVER_M,
         Pass::OnArc { airspeed_mps } => {
-            let lead_m = (airspeed_mps * ARC_LEAD_S) as f32;
-            lead_m.round().clamp(FLY_OVER_M + 1.0, GREATEST_ACCEPTANCE_M)
+            let lead_m = (airspeed_mps * ARC_LEAD_S).min(airspeed_mps * airspeed_mps * MOST_LEAD_S2_PER_M);
+            (lead_m as f32).round().clamp(FLY_OVER_M + 1.0, GREATEST_ACCEPTANCE_M)
         }
     }
 }
@@ -82,7 +85,10 @@ fn acceptance_m(pass: Pass) -> f32 {
 /// The way to pass that an acceptance radius was written for.
 fn passed_within(acceptance_m: f32) -> Pass {
     match acceptance_m {
-        m if m > FLY_OVER_M => Pass::OnArc { airspeed_mps: f64::from(m) / ARC_LEAD_S },
+        m if m > FLY_OVER_M => {
+            let lead_m = f64::from(m);
+            Pass::OnArc { airspeed_mps: (lead_m / ARC_LEAD_S).max((lead_m / MOST_LEAD_S2_PER_M).sqrt()) }
+        }
         m if m > 0.0 => Pass::Over,
         _ => Pass::By,
     }
@@ -95,7 +101,9 @@ mod tests {
 
     #[test]
     fn corners_of_arcs_are_left_as_early_as_it_looks_ahead() {
-        for (airspeed_mps, acceptance) in [(25.0, 101.0), (1.0, 6.0), (90.0, 255.0)] {
+        for (airspeed_mps, acceptance) in
+            [(25.0, 101.0), (15.0, 39.0), (12.0, 25.0), (1.0, 6.0), (90.0, 255.0)]
+        {
             let kind = ItemKind::Fly(Pass::OnArc { airspeed_mps });
             let item = Item { position: LatLon::new(36.0, -84.0), altitude_amsl_m: 500.0, kind };
             assert_eq!(encode(7, &item, Peer { system: 1, component: 1 }).param2, acceptance);

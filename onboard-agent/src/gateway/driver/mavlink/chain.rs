@@ -1,6 +1,6 @@
 //! The waypoints that are still to be flown, by position.
 
-use super::item::Item;
+use super::item::{Item, matches};
 use crate::gateway::order::{Fed, Serial};
 use std::collections::VecDeque;
 use usal::contract::{Action, Token, Waypoint};
@@ -133,5 +133,65 @@ impl Chain {
             self.left_behind = false;
         }
         self.first = 0;
+    }
+}
+
+/// Of the waypoints known before, those that are really on board from position `first` on, at most so many; and how many were known
+/// up to the last of these. Those that were flown while nobody looked are left out: it goes on with the one from which most are there.
+pub fn known_on_board(
+    first: u64,
+    most: u64,
+    at: impl Fn(u64) -> Option<Item>,
+    mut waypoints: Vec<Fed>,
+) -> (usize, Vec<Fed>) {
+    let is_there = |(fed, position): (&Fed, u64)| {
+        at(position).is_some_and(|item| matches(&item, &Item::of(&fed.waypoint)))
+    };
+    let run = |from: usize| {
+        let rest = waypoints.get(from..).unwrap_or_default();
+        rest.iter().zip(first..first + most).take_while(|pair| is_there(*pair)).count()
+    };
+    let longest = |best: (usize, usize), from: usize| {
+        let count = run(from);
+        if count > best.1 { (from, count) } else { best }
+    };
+    let (from, count) = (0..waypoints.len()).fold((0, 0), longest);
+    waypoints.truncate(from + count);
+    (from + count, waypoints.split_off(from))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::LatLon;
+
+    fn fed(n: u64) -> Fed {
+        let waypoint = Waypoint {
+            token: Token(n),
+            position: LatLon::new(36.0 + n as f64 * 1e-3, -84.0),
+            altitude_amsl_m: 500.0,
+            airspeed_mps: 25.0,
+            action: Action::Fly,
+            fly_over: false,
+            on_arc: false,
+            leg: "leg".into(),
+            end_of_plan: false,
+        };
+        Fed { serial: Serial(n), waypoint }
+    }
+
+    #[test]
+    fn what_was_flown_while_nobody_looked_is_left_out() {
+        // 7 is steered to, 12 is the last on board
+        let at = |position: u64| (position <= 15).then(|| Item::of(&fed(position - 3).waypoint));
+        for (known, expected) in [((5, 20), (7, 12)), ((7, 20), (7, 12)), ((7, 9), (7, 9)), ((8, 20), (0, 0))]
+        {
+            let waypoints: Vec<Fed> = (known.0..=known.1).map(fed).collect();
+            let (up_to, found) = known_on_board(10, 40, at, waypoints);
+            let numbers: Vec<u64> = found.iter().map(|fed| fed.serial.0).collect();
+            let wanted: Vec<u64> = if expected.0 == 0 { vec![] } else { (expected.0..=expected.1).collect() };
+            assert_eq!(numbers, wanted, "{known:?}");
+            assert_eq!(up_to as u64, if expected.0 == 0 { 0 } else { expected.1 + 1 - known.0 });
+        }
     }
 }

@@ -184,11 +184,10 @@ impl Feeding for Window {
         self.entered = true;
         self.loaded = list.get(usize::from(current)).copied();
         let first = u64::from(current - 2);
-        let known = ring::known_on_board(list, first, waypoints);
-        let count = known.len();
-        self.end = first + count as u64;
+        let (up_to, known) = ring::known_on_board(list, first, waypoints);
+        self.end = first + known.len() as u64;
         self.chain = Chain::resumed(first, known);
-        Some(count)
+        Some(up_to)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The ring of slots on board: how positions, slots and list entries go together.
 
+use crate::gateway::driver::mavlink::chain;
 use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
 use crate::gateway::order::Fed;
 use geometry::LatLon;
@@ -42,14 +43,8 @@ pub fn is_ours(list: &[Item]) -> bool {
 }
 
 /// Of the waypoints known before, those that are really on board from `first` on.
-pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> Vec<Fed> {
-    let at = |p: u64| list.get(usize::from(slot(p)));
-    waypoints
-        .into_iter()
-        .zip(first..)
-        .take_while(|(w, p)| at(*p).is_some_and(|i| matches(i, &Item::of(&w.waypoint))))
-        .map(|(w, _)| w)
-        .collect()
+pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> (usize, Vec<Fed>) {
+    chain::known_on_board(first, RING, |p| list.get(usize::from(slot(p))).copied(), waypoints)
 }
 
 /// What is known to be on board.

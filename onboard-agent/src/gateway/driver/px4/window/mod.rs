@@ -99,18 +99,17 @@ impl Feeding for Window {
             return None;
         }
         let first = u64::from(current);
-        let known = ring::known_on_board(list, first, waypoints);
-        let count = known.len();
+        let (up_to, known) = ring::known_on_board(list, first, waypoints);
         *self = Self {
             lists: vec![list.to_vec()],
             installed: true,
             entered: true,
-            end: first + count as u64,
+            end: first + known.len() as u64,
             farthest: first + RING - 2,
             chain: Chain::resumed(first, known),
             ..Self::default()
         };
-        Some(count)
+        Some(up_to)
     }
 
     fn reported(&mut self, seq: u16) {

@@ -1,6 +1,7 @@
 //! The ring of entries: how positions, entries and the list go together.
 
-use crate::gateway::driver::mavlink::item::{Item, ItemKind, Pass, matches};
+use crate::gateway::driver::mavlink::chain;
+use crate::gateway::driver::mavlink::item::{Item, ItemKind, Pass};
 use crate::gateway::order::Fed;
 
 /// Entries of the ring.
@@ -97,12 +98,6 @@ pub fn is_ours(list: &[Item]) -> bool {
 }
 
 /// Of the waypoints known before, those that are really on board from `first` on.
-pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> Vec<Fed> {
-    let at = |p: u64| list.get(usize::from(entry(p)));
-    waypoints
-        .into_iter()
-        .zip(first..first + RING - 1)
-        .take_while(|(w, p)| at(*p).is_some_and(|i| matches(i, &Item::of(&w.waypoint))))
-        .map(|(w, _)| w)
-        .collect()
+pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> (usize, Vec<Fed>) {
+    chain::known_on_board(first, RING - 1, |p| list.get(usize::from(entry(p))).copied(), waypoints)
 }
