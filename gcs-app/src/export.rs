@@ -106,7 +106,8 @@ pub fn export(
             !progress.is_cancelled()
         };
         let scenario = Scenario::default();
-        forecast::fly_reporting(program, profile, &loaded.terrain, Air::default(), &scenario, &mut report)
+        let (terrain, air, scenario) = (&loaded.terrain, Air::default(), &scenario);
+        forecast::Ahead { program, profile, terrain, air, scenario }.fly_reporting(&mut report)
     })
     .map_err(|unflown| why(&sentence(&unflown)))?;
     if let Some((leg, reason)) = forecast::left_out(&preview).first() {

@@ -84,8 +84,8 @@ fn become_of(format: Format, import: &Import, lines: &mut Vec<String>) {
         format!("{:?} {} of {of}{remedy}", p.severity, p.code)
     }));
     let fly = |program: &_, profile: &_| {
-        let calm = Air::default();
-        forecast::fly_reporting(program, profile, &loaded.terrain, calm, &Scenario::default(), &mut |_| true)
+        let (terrain, air, scenario) = (&loaded.terrain, Air::default(), &Scenario::default());
+        forecast::Ahead { program, profile, terrain, air, scenario }.fly_reporting(&mut |_| true)
     };
     match flown(&loaded, None, fly) {
         Ok((program, preview)) => {

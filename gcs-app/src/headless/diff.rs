@@ -115,7 +115,9 @@ fn takeover(
     let then = vec![Act::Propose { program: update }, Act::End];
     let scenario = Scenario { triggers: vec![Trigger { at, then }] };
     // the flight ends where it reaches the place; any other end comes before that
-    let mut preview = forecast::fly(&program, profile, &before.terrain, air, &scenario)
+    let (terrain, scenario) = (&before.terrain, &scenario);
+    let mut preview = forecast::Ahead { program: &program, profile, terrain, air, scenario }
+        .fly()
         .map_err(|why| anyhow!("the old plan never reaches {place}: {why}"))?;
     if let Some((_, refusal)) = preview.refusals.first() {
         bail!("the new plan is refused there: {refusal}");

@@ -109,7 +109,7 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
     let scenario = selection.scenario(&loaded.reading.plan)?;
     let conditions = (!selection.anyway).then(|| air.conditions());
     let flown = export::flown(&loaded, conditions, |program, profile| {
-        forecast::fly(program, profile, &loaded.terrain, air, &scenario)
+        forecast::Ahead { program, profile, terrain: &loaded.terrain, air, scenario: &scenario }.fly()
     });
     match flown {
         Ok((_, preview)) if !preview.not_fired.is_empty() => {

@@ -7,7 +7,7 @@ use crate::report::{Happening, Record, Track, TrackPoint, assemble, flights};
 use aircraft::{Profile, Wind};
 use flight_exec::Event;
 use flight_exec::rehearse::{
-    Advance, Options, Preview, PreviewError, Scenario, Start, preview_as_far_as_possible, preview_with,
+    Advance, Options, Preview, PreviewError, Scenario, Start, preview_as_far_as_possible,
 };
 use flight_exec::review::{ending_conditions, open_end};
 use flight_plan::{FlightPlan, Id, Program, Variable, VariableValue};
@@ -23,85 +23,75 @@ const PROGRESS: &str = "preview {bar:30} leg {pos} of {len}, {msg}";
 /// A plan without a take-off begins so far south of its first place, metres.
 const BEFORE_FIRST_M: f64 = 1000.0;
 
-/// Flies a program; the progress shows time and leg.
-///
-/// # Errors
-/// It can't be flown to its end.
-pub fn fly(
-    program: &Arc<Program>,
-    profile: &Profile,
-    terrain: &Arc<dyn Terrain>,
-    air: Air,
-    scenario: &Scenario,
-) -> Result<Preview, PreviewError> {
-    match fly_as_far_as_possible(program, profile, terrain, air, scenario)? {
-        (preview, None) => Ok(preview),
-        (_, Some(error)) => Err(error),
+/// A flight up to its end, or as far as it comes, with the reason.
+type Flown = Result<(Preview, Option<PreviewError>), PreviewError>;
+
+/// A program to be flown ahead of time, and in what.
+#[derive(Debug, Clone, Copy)]
+pub struct Ahead<'a> {
+    /// What is flown.
+    pub program: &'a Arc<Program>,
+    /// By which aircraft.
+    pub profile: &'a Profile,
+    /// Over which ground.
+    pub terrain: &'a Arc<dyn Terrain>,
+    /// In which wind, and from where.
+    pub air: Air,
+    /// What happens on the way.
+    pub scenario: &'a Scenario,
+}
+
+impl Ahead<'_> {
+    /// Flies it; the progress shows time and leg.
+    ///
+    /// # Errors
+    /// It can't be flown to its end.
+    pub fn fly(self) -> Result<Preview, PreviewError> {
+        to_its_end(self.fly_as_far_as_possible())
+    }
+
+    /// As [`Self::fly`]; `report` is told how far it is, and gives false when the flight is no longer wanted.
+    ///
+    /// # Errors
+    /// As [`Self::fly`], and `Cancelled`.
+    pub fn fly_reporting(self, report: &mut dyn FnMut(&Advance) -> bool) -> Result<Preview, PreviewError> {
+        to_its_end(self.flown(report))
+    }
+
+    /// As [`Self::fly`]; a flight that ends too early is there up to its end, with the reason.
+    ///
+    /// # Errors
+    /// It can't be begun.
+    pub fn fly_as_far_as_possible(self) -> Flown {
+        let contexts = self.program.flown().all_legs();
+        let numbered = contexts.iter().zip(1..).map(|(context, number)| (context.leg.id.clone(), number));
+        let legs: HashMap<Id, u64> = numbered.collect();
+        let bar = progress::bar(PROGRESS);
+        bar.set_length(legs.len() as u64);
+        progress::shown(&bar, || {
+            self.flown(&mut |advance| {
+                let leg = advance.place.as_ref().map(|p| &p.leg);
+                bar.set_position(leg.and_then(|l| legs.get(l)).copied().unwrap_or(0));
+                let minutes = advance.time_s / 60.0;
+                bar.set_message(format!("{minutes:.0} min, {}", leg.map_or("", |l| l.as_str())));
+                true
+            })
+        })
+    }
+
+    fn flown(self, report: &mut dyn FnMut(&Advance) -> bool) -> Flown {
+        let Self { program, profile, terrain, air, scenario } = self;
+        let options = Options { track_every_s: TRACK_EVERY_S, ..Options::default() };
+        let start = start(program, terrain.as_ref(), air.begin);
+        preview_as_far_as_possible(program, profile, terrain, air.wind, start, scenario, &options, report)
     }
 }
 
-/// As [`fly`]; a flight that ends too early is there up to its end, with the reason.
-///
-/// # Errors
-/// It can't be begun.
-pub fn fly_as_far_as_possible(
-    program: &Arc<Program>,
-    profile: &Profile,
-    terrain: &Arc<dyn Terrain>,
-    air: Air,
-    scenario: &Scenario,
-) -> Result<(Preview, Option<PreviewError>), PreviewError> {
-    let legs: HashMap<Id, u64> = program
-        .flown()
-        .all_legs()
-        .iter()
-        .zip(1..)
-        .map(|(context, number)| (context.leg.id.clone(), number))
-        .collect();
-    let bar = progress::bar(PROGRESS);
-    bar.set_length(legs.len() as u64);
-    let (options, start) = (options(), start(program, terrain.as_ref(), air.begin));
-    progress::shown(&bar, || {
-        preview_as_far_as_possible(
-            program,
-            profile,
-            terrain,
-            air.wind,
-            start,
-            scenario,
-            &options,
-            &mut |advance| {
-                let leg = advance.place.as_ref().map(|p| &p.leg);
-                bar.set_position(leg.and_then(|l| legs.get(l)).copied().unwrap_or(0));
-                bar.set_message(format!(
-                    "{:.0} min, {}",
-                    advance.time_s / 60.0,
-                    leg.map_or("", |l| l.as_str())
-                ));
-                true
-            },
-        )
-    })
-}
-
-fn options() -> Options {
-    Options { track_every_s: TRACK_EVERY_S, ..Options::default() }
-}
-
-/// Flies a program; `report` is told how far it is, and gives false when the flight is no longer wanted.
-///
-/// # Errors
-/// It can't be flown to its end.
-pub fn fly_reporting(
-    program: &Arc<Program>,
-    profile: &Profile,
-    terrain: &Arc<dyn Terrain>,
-    air: Air,
-    scenario: &Scenario,
-    report: &mut dyn FnMut(&Advance) -> bool,
-) -> Result<Preview, PreviewError> {
-    let (options, start) = (options(), start(program, terrain.as_ref(), air.begin));
-    preview_with(program, profile, terrain, air.wind, start, scenario, &options, report)
+fn to_its_end(flown: Flown) -> Result<Preview, PreviewError> {
+    match flown? {
+        (preview, None) => Ok(preview),
+        (_, Some(error)) => Err(error),
+    }
 }
 
 /// Why a flight ahead of time came to no end; who gives the commands can choose for the plan.
@@ -228,8 +218,9 @@ mod tests {
         let loaded = source.load().unwrap();
         let (program, profile) = loaded.compile().unwrap();
         let calm = Air::default();
-        let error = fly(&program, profile, &loaded.terrain, calm, &Scenario::default()).unwrap_err();
-        let said = why(&program, &error);
+        let (program, terrain, scenario) = (&program, &loaded.terrain, &Scenario::default());
+        let error = Ahead { program, profile, terrain, air: calm, scenario }.fly().unwrap_err();
+        let said = why(program, &error);
         assert!(said.contains("--decide"), "{said}");
         assert!(!error.to_string().contains("scenario"), "{error}");
     }
@@ -261,9 +252,9 @@ mod tests {
             let loaded = source.load().unwrap();
             let (program, profile) = loaded.compile().unwrap_or_else(|problems| panic!("{problems:?}"));
             let tired = Profile { energy_j: 0.1 * profile.energy_j, ..profile.clone() };
-            let (calm, scenario) = (Air::default(), Scenario::default());
-            let flown = fly_as_far_as_possible(&program, &tired, &loaded.terrain, calm, &scenario);
-            let (preview, error) = flown.unwrap();
+            let (terrain, air, scenario) = (&loaded.terrain, Air::default(), &Scenario::default());
+            let ahead = Ahead { program: &program, profile: &tired, terrain, air, scenario };
+            let (preview, error) = ahead.fly_as_far_as_possible().unwrap();
             assert!(preview.legs.iter().any(|passage| passage.place.leg.as_str() == "hold"));
             let why = why(&program, &error.unwrap());
             assert!(why.contains(said), "{why}");

@@ -56,8 +56,9 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     // a diagram shows the geometry even if it breaks a rule
     let looks = target.diagram.is_none() && !selection.anyway;
     let forbidden = if looks { loaded.forbidden(air.conditions()) } else { Vec::new() };
-    let flown = forecast::fly_as_far_as_possible(&program, profile, &loaded.terrain, air, &scenario);
-    let (preview, cut_short) = match flown {
+    let (terrain, scenario) = (&loaded.terrain, &scenario);
+    let ahead = forecast::Ahead { program: &program, profile, terrain, air, scenario };
+    let (preview, cut_short) = match ahead.fly_as_far_as_possible() {
         Ok((preview, None)) => (preview, None),
         // the flight is as the plan says up to there, and nothing forbids it
         Ok((preview, Some(error)))

@@ -1,5 +1,6 @@
 //! Where the panels are: the default layout at every size, and what is remembered of it.
 
+use super::alone::Alone;
 use super::vehicle::{place, status};
 use super::{SQUARE, Window};
 use egui::{Pos2, Rect, Vec2, vec2};
@@ -7,7 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use flight_exec::Phase;
 use gcs_app::command::Queue;
-use gcs_app::panels::{self, Scene};
+use gcs_app::panels;
 use std::collections::BTreeMap;
 
 const SIZES: [Vec2; 3] = [vec2(960.0, 600.0), vec2(1280.0, 800.0), vec2(1920.0, 1080.0)];
@@ -154,30 +155,8 @@ fn every_panel_draws_at_every_size_with_and_without_a_vehicle() {
             fly(&mut window);
         }
         let app = window.app();
-        let terrain = gcs_app::assets::demo_terrain();
-        let recent = gcs_app::recent::Recent::default();
-        let connections = gcs_app::connections::Connections::default();
-        let (shelf, jobs) = Default::default();
-        let scene = Scene {
-            shelf: &shelf,
-            jobs: &jobs,
-            toasts: app.toasts(),
-            story: None,
-            can_undo: (false, false),
-            document: app.document(),
-            analysis: app.analysis(),
-            vehicle: app.vehicle(),
-            aboard: None,
-            vehicles: app.vehicles(),
-            view: app.view(),
-            layers: app.layers(),
-            recent: &recent,
-            connections: &connections,
-            left_behind: None,
-            ground: panels::Elevations(terrain.as_ref()),
-            now_s: 1.0,
-            utc: Default::default(),
-        };
+        let alone = Alone::default();
+        let scene = alone.scene(app, app.document(), app.analysis());
         for size in [vec2(30.0, 20.0), vec2(320.0, 240.0), vec2(1920.0, 1080.0)] {
             for mut panel in panels::all() {
                 let mut queue = Queue::default();

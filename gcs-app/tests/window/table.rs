@@ -1,5 +1,6 @@
 //! The table of the legs, and that neither it nor the tree lays out more than is to be seen.
 
+use super::alone::Alone;
 use super::{SQUARE, Window};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2, vec2};
@@ -9,7 +10,7 @@ use flight_plan::{AltitudeReference, FlightPlan, Leg, Value};
 use gcs_app::command::Queue;
 use gcs_app::document::Document;
 use gcs_app::forecast::{Analysis, Forecast, Passage, Point};
-use gcs_app::panels::{self, Panel, Scene};
+use gcs_app::panels::{self, Panel};
 use std::sync::Arc;
 
 /// The window with the table in front, all of it to be seen.
@@ -184,29 +185,8 @@ fn drawn(mut panel: Box<dyn Panel>, scrolled: f32, look: impl Fn(&Harness<'_>)) 
         ..Forecast::default()
     };
     let analysis = Analysis { forecast: Arc::new(forecast), forecast_version: 1, ..Analysis::default() };
-    let terrain = gcs_app::assets::demo_terrain();
-    let (recent, connections) = Default::default();
-    let (shelf, jobs) = Default::default();
-    let scene = Scene {
-        shelf: &shelf,
-        jobs: &jobs,
-        toasts: app.toasts(),
-        story: None,
-        can_undo: (false, false),
-        document: &document,
-        analysis: &analysis,
-        vehicle: app.vehicle(),
-        aboard: None,
-        vehicles: app.vehicles(),
-        view: app.view(),
-        layers: app.layers(),
-        recent: &recent,
-        connections: &connections,
-        left_behind: None,
-        ground: panels::Elevations(terrain.as_ref()),
-        now_s: 1.0,
-        utc: Default::default(),
-    };
+    let alone = Alone::default();
+    let scene = alone.scene(app, &document, &analysis);
     let mut queue = Queue::default();
     let builder =
         Harness::builder().with_size(vec2(900.0, 600.0)).with_context_setup(gcs_app::theme::install);

@@ -2,6 +2,9 @@
 //! hours (goal < 200 ms).
 #![expect(clippy::unwrap_used, reason = "a bench ends where it can't go on")]
 
+#[path = "../tests/common/small.rs"]
+mod small;
+
 use aircraft::{Profile, Wind};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -17,18 +20,8 @@ fn main() {
 }
 
 fn program(legs: &str) -> Arc<Program> {
-    let text = format!(
-        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="bench" aircraft="trainer">
-        <fixes><fix id="A" lat="36.52" lon="-84.18"/><fix id="B" lat="36.55" lon="-84.18"/><fix id="C" lat="36.53" lon="-84.22"/></fixes>
-        <runways><runway id="R" lat="36.5" lon="-84.2" elevation="300" heading="90" length="600" priority="1"/></runways>
-        <mainPlan>
-          <stage id="to" type="take-off" runway="R" altitude="100" altitudeReference="agl"/>
-          <stage id="m" type="mission" altitude="200" altitudeReference="agl">{legs}</stage>
-          <stage id="land" type="land" runway="R"/>
-        </mainPlan></flightPlan>"#
-    );
     let profile = Profile { energy_j: 3e7, ..Profile::default() };
-    Arc::new(compile_document(text.as_bytes(), &profile, &Flat(300.0)).unwrap())
+    Arc::new(compile_document(small::document(legs).as_bytes(), &profile, &Flat(300.0)).unwrap())
 }
 
 const LOOP: &str = r#"<TF id="a" fix="A"/><iterative id="l" form="reverse" count="1000000"><TF id="b" fix="B"/><TF id="c" fix="C"/></iterative>"#;

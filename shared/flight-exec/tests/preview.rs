@@ -1,8 +1,11 @@
 //! The shipped mission and small plans, flown ahead of time.
 #![cfg(test)]
 
+#[path = "common/small.rs"]
+mod small;
+
 use aircraft::{Profile, Wind};
-use flight_exec::rehearse::{Act, Options, Scenario, Start, Trigger, When, preview_with};
+use flight_exec::rehearse::{Act, Options, Scenario, Start, Trigger, When, preview_as_far_as_possible};
 use flight_exec::{Action, Command, Event, Preview, PreviewError, preview};
 use flight_plan::{Cause, Program, VariableValue, compile_document};
 use std::path::Path;
@@ -146,18 +149,8 @@ fn hold_and_resume_are_flown() {
     assert_eq!(legs(&flown).iter().filter(|l| **l == "o2").count(), 1);
 }
 
-fn small(legs: &str) -> Arc<Program> {
-    let text = format!(
-        r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="small" aircraft="trainer">
-        <fixes><fix id="A" lat="36.52" lon="-84.18"/><fix id="B" lat="36.55" lon="-84.18"/><fix id="C" lat="36.55" lon="-84.22"/></fixes>
-        <runways><runway id="R" lat="36.5" lon="-84.2" elevation="300" heading="90" length="600" priority="1"/></runways>
-        <mainPlan>
-          <stage id="to" type="take-off" runway="R" altitude="100" altitudeReference="agl"/>
-          <stage id="m" type="mission" altitude="200" altitudeReference="agl">{legs}</stage>
-          <stage id="land" type="land" runway="R"/>
-        </mainPlan></flightPlan>"#
-    );
-    Arc::new(compile_document(text.as_bytes(), &Profile::default(), &Flat(300.0)).unwrap())
+fn program(legs: &str) -> Arc<Program> {
+    Arc::new(compile_document(small::document(legs).as_bytes(), &Profile::default(), &Flat(300.0)).unwrap())
 }
 
 #[test]
@@ -165,7 +158,7 @@ fn flights_without_an_end_are_refused_with_the_place() {
     let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
     let fly = |legs: &str, options: &Options, energy_j: f64| {
         let profile = Profile { energy_j, ..Profile::default() };
-        preview(&small(legs), &profile, &flat, Wind::CALM, Start::Runway, &Scenario::default(), options)
+        preview(&program(legs), &profile, &flat, Wind::CALM, Start::Runway, &Scenario::default(), options)
     };
     let endless = r#"<TF id="a" fix="A"/><iterative id="l" form="forward" until="battery &lt; 0.0"><TF id="b" fix="B"/><TF id="c" fix="C"/></iterative>"#;
     let short = Options { most_s: 3600.0, ..Options::default() };
@@ -194,7 +187,7 @@ fn decision_by_default_at_its_deadline() {
     let options = Options::default();
     let scenario = Scenario::default();
     let flown =
-        preview(&small(legs), &Profile::default(), &flat, Wind::CALM, Start::Runway, &scenario, &options)
+        preview(&program(legs), &Profile::default(), &flat, Wind::CALM, Start::Runway, &scenario, &options)
             .unwrap();
     let times = |is: &dyn Fn(&Event) -> bool| -> Vec<f64> {
         flown.events.iter().filter(|(_, e)| is(e)).map(|(t, _)| *t).collect()
@@ -217,7 +210,7 @@ fn it_can_be_cancelled() {
         told += 1;
         advance.time_s < 100.0
     };
-    let flown = preview_with(
+    let flown = preview_as_far_as_possible(
         &mission(|t| t),
         &Profile::default(),
         &ground(),
@@ -227,7 +220,8 @@ fn it_can_be_cancelled() {
         &Options::default(),
         &mut progress,
     );
-    assert_eq!(flown, Err(PreviewError::Cancelled));
+    let (_, why) = flown.unwrap();
+    assert_eq!(why, Some(PreviewError::Cancelled));
     assert_eq!(told, 11);
 }
 

@@ -27,6 +27,7 @@ pub mod xml;
 pub use alternate::{Alternates, InForce};
 pub use checks::{IncrementalCache, check, check_again};
 pub use diff::{Change, ChangeKind, Difference};
+pub use edit::shape::radius_of;
 pub use edit::{Edit, EditError, Spot, Thing};
 pub use expression::{Env, EvalError, Expression, FlightState};
 pub use history::History;

@@ -2,16 +2,18 @@
 #![cfg(test)]
 
 mod made;
+#[path = "made/survey.rs"]
+mod survey;
 
 use flight_exec::Action;
 use flight_plan::{
-    Act, Altitude, AltitudeReference, Area, IterativeForm, Leg, LegAction, LegKind, Scan, ScanEntry,
-    ScanOrder, ScanStyle, Spacing, Trigger, TurnDirection, Value,
+    Act, Altitude, AltitudeReference, IterativeForm, Leg, LegAction, LegKind, Scan, Trigger, TurnDirection,
+    Value,
 };
-use geometry::LatLon;
 use interchange::{Assumptions, Export, Format, Step, Written, read, write};
 use made::{RUNWAY, leg, plan, step, to};
 use std::sync::Arc;
+use survey::{scan_over, triangle};
 
 fn on(trigger: Trigger, act: Act) -> LegAction {
     LegAction { trigger, act }
@@ -101,17 +103,7 @@ fn a_loop_that_is_all_of_another_is_told() {
 }
 
 fn survey(actions: Vec<LegAction>) -> Leg {
-    let corners =
-        [(36.33, -84.15), (36.335, -84.15), (36.335, -84.14)].map(|(lat, lon)| LatLon::new(lat, lon));
-    let kind = LegKind::Scan(Scan {
-        area: Area::Polygon { corners: corners.to_vec(), holes: Vec::new() },
-        style: ScanStyle::Parallel,
-        spacing: Spacing::Metres(Value::Constant(40.0)),
-        heading_deg: Some(Value::Constant(75.0)),
-        overshoot_m: Value::Constant(30.0),
-        entry: ScanEntry::StartRight,
-        order: ScanOrder::SideBySide,
-    });
+    let kind = LegKind::Scan(scan_over(&triangle()));
     let altitude = Altitude { metres: Value::Constant(500.0), reference: AltitudeReference::Amsl };
     Leg { altitude: Some(altitude), actions, ..leg("survey", kind) }
 }

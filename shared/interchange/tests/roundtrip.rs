@@ -2,18 +2,20 @@
 #![cfg(test)]
 
 mod made;
+#[path = "made/survey.rs"]
+mod survey;
 
 use flight_exec::Action;
 use flight_plan::{
-    Act, Altitude, AltitudeReference, Area, FlightPlan, Leg, LegAction, LegKind, Pattern, Place, Runway,
-    Scan, ScanEntry, ScanOrder, ScanStyle, Spacing, Stage, StageKind, Trigger, Value, Zone, ZoneKind,
-    ZoneShape,
+    Act, Altitude, AltitudeReference, FlightPlan, Leg, LegAction, LegKind, Pattern, Place, Runway, Scan,
+    ScanEntry, ScanStyle, Spacing, Stage, StageKind, Trigger, Value, Zone, ZoneKind, ZoneShape,
 };
 use geometry::LatLon;
 use interchange::{Assumptions, Export, Format, Import, Step, read, write};
 use made::{RUNWAY, leg, plan, step, to};
 use proptest::prelude::*;
 use std::sync::Arc;
+use survey::{scan_over, triangle};
 
 /// Formats that hold a path.
 const PATHS: [Format; 6] =
@@ -158,23 +160,14 @@ fn runways_fixes_and_zones_come_back_from_drawings() {
 
 #[test]
 fn surveys_and_corridors_come_back_as_patterns() {
-    let corners =
-        [(36.33, -84.15), (36.335, -84.15), (36.335, -84.14)].map(|(lat, lon)| LatLon::new(lat, lon));
+    let corners = triangle();
     let series = |every_m| LegAction {
         trigger: Trigger::Start,
         act: Act::PhotoSeries { every_m: Value::Constant(every_m) },
     };
     let stop = LegAction { trigger: Trigger::End, act: Act::PhotoStop };
     let altitude = Some(Altitude { metres: Value::Constant(120.0), reference: AltitudeReference::Agl });
-    let scan = Scan {
-        area: Area::Polygon { corners: corners.to_vec(), holes: Vec::new() },
-        style: ScanStyle::CrissCross,
-        spacing: Spacing::Metres(Value::Constant(40.0)),
-        heading_deg: Some(Value::Constant(75.0)),
-        overshoot_m: Value::Constant(30.0),
-        entry: ScanEntry::StartRight,
-        order: ScanOrder::SideBySide,
-    };
+    let scan = Scan { style: ScanStyle::CrissCross, ..scan_over(&corners) };
     let corridor = Pattern::Corridor {
         route: corners.iter().map(|c| Place::Position(Value::Constant(*c))).collect(),
         width_m: Value::Constant(90.0),
@@ -213,22 +206,6 @@ fn surveys_and_corridors_come_back_as_patterns() {
     // QGC makes them anew, and would forget the speed
     assert_eq!((commands, items[0]["command"].as_u64()), (vec![206, 16, 16, 206], Some(178)));
     assert_eq!(items[2]["TransectStyleComplexItem"]["Items"][0]["doJumpId"], 6);
-}
-
-fn scan_over(corners: &[LatLon]) -> Scan {
-    Scan {
-        area: Area::Polygon { corners: corners.to_vec(), holes: Vec::new() },
-        style: ScanStyle::Parallel,
-        spacing: Spacing::Metres(Value::Constant(40.0)),
-        heading_deg: Some(Value::Constant(75.0)),
-        overshoot_m: Value::Constant(30.0),
-        entry: ScanEntry::StartRight,
-        order: ScanOrder::SideBySide,
-    }
-}
-
-fn triangle() -> [LatLon; 3] {
-    [(36.33, -84.15), (36.335, -84.15), (36.335, -84.14)].map(|(lat, lon)| LatLon::new(lat, lon))
 }
 
 fn surveyed(leg: &Leg, stage_altitude: Option<Altitude>) -> (interchange::Written, FlightPlan) {

@@ -1,6 +1,6 @@
 //! Radii: of a leg's circle, and those that a variable sets.
 
-use flight_plan::{Area, Edit, FlightPlan, Id, LegKind, Pattern, Scan, Value, VariableValue};
+use flight_plan::{Edit, FlightPlan, Id, Value, VariableValue, radius_of};
 
 /// The variable that sets a radius, and what is added to it: `fire_radius + 200.0` is `(fire_radius, 200)`.
 pub fn bound_radius(source: &str) -> Option<(Id, f64)> {
@@ -17,24 +17,14 @@ pub fn radius_edit(plan: &FlightPlan, leg: &Id, radius_m: f64) -> Option<Edit> {
     if plan.zone(leg).is_some() {
         return Some(Edit::SetRadius { leg: leg.clone(), radius_m: radius_m.max(1.0).round() });
     }
-    let radius = match &plan.leg(leg)?.leg.kind {
-        LegKind::Orbit { radius_m, .. } => radius_m,
-        LegKind::Scan(Scan { area: Area::Circle { radius_m, .. }, .. })
-        | LegKind::Pattern(
-            Pattern::Contour { area: Area::Circle { radius_m, .. }, .. }
-            | Pattern::Spiral { outer_radius_m: radius_m, .. }
-            | Pattern::ExpandingSquare { radius_m, .. }
-            | Pattern::Sector { radius_m, .. }
-            | Pattern::FigureEight { radius_m, .. },
-        ) => radius_m,
-        _ => return None,
-    };
-    let Value::Expression(source) = radius else {
+    let Value::Expression(source) = radius_of(plan.leg(leg)?.leg)? else {
         return Some(Edit::SetRadius { leg: leg.clone(), radius_m: radius_m.max(1.0).round() });
     };
-    let (name, added) = bound_radius(source)?;
+    let (name, added) = bound_radius(&source)?;
     let variable = plan.variable(&name)?;
-    let value = (radius_m - added).clamp(variable.min.unwrap_or(1.0), variable.max.unwrap_or(1.0e6).max(1.0));
+    // in a draft the bounds may be the wrong way round
+    let value =
+        (radius_m - added).min(variable.max.unwrap_or(1.0e6).max(1.0)).max(variable.min.unwrap_or(1.0));
     Some(Edit::SetVariable { name, value: VariableValue::Number(value.round()) })
 }
 

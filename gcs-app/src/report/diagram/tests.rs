@@ -10,8 +10,9 @@ fn fragment(name: &str) -> (Arc<Program>, Preview) {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../assets/docs/fragments").join(name);
     let loaded = Source { file, ..Source::default() }.load().unwrap();
     let (program, profile) = loaded.compile().unwrap();
-    let calm = Air::default();
-    let preview = forecast::fly(&program, profile, &loaded.terrain, calm, &Scenario::default()).unwrap();
+    let (terrain, air, scenario) = (&loaded.terrain, Air::default(), &Scenario::default());
+    let ahead = forecast::Ahead { program: &program, profile, terrain, air, scenario };
+    let preview = ahead.fly().unwrap();
     (program, preview)
 }
 

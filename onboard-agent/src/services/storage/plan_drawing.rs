@@ -1,7 +1,8 @@
 //! A plan as a drawing for maps: its path as it would be flown, fixes, runways and zones.
 
 use aircraft::{Profile, Wind};
-use flight_exec::rehearse::{Options, Scenario, Start, preview_with};
+use flight_exec::preview;
+use flight_exec::rehearse::{Options, Scenario, Start};
 use interchange::{Export, Format, Step, write};
 use std::sync::Arc;
 use terrain::Terrain;
@@ -34,16 +35,7 @@ fn path(xml: &str, profile: &Profile, terrain: &Arc<dyn Terrain>) -> Option<Vec<
     let program = flight_plan::compile_document(xml.as_bytes(), profile, terrain.as_ref()).ok()?;
     let options = Options { most_waypoints: WAYPOINTS_MAX, ..Options::default() };
     let (program, scenario) = (Arc::new(program), Scenario::default());
-    let flown = preview_with(
-        &program,
-        profile,
-        terrain,
-        Wind::default(),
-        Start::Runway,
-        &scenario,
-        &options,
-        &mut |_| true,
-    );
+    let flown = preview(&program, profile, terrain, Wind::default(), Start::Runway, &scenario, &options);
     let reached = flown.ok()?.waypoints.into_iter().filter(|w| !w.replaced);
     Some(reached.map(|w| Step { waypoint: w.waypoint, passage: w.passage.unwrap_or(0) }).collect())
 }

@@ -234,32 +234,16 @@ pub fn preview(
     scenario: &Scenario,
     options: &Options,
 ) -> Result<Preview, PreviewError> {
-    preview_with(program, profile, terrain, winds, start, scenario, options, &mut |_| true)
+    let to_its_end = &mut |_: &Advance| true;
+    match preview_as_far_as_possible(program, profile, terrain, winds, start, scenario, options, to_its_end)?
+    {
+        (flown, None) => Ok(flown),
+        (_, Some(error)) => Err(error),
+    }
 }
 
-/// As [`preview`], reporting about every ten simulated seconds; the callback returns false to cancel.
-///
-/// # Errors
-/// As [`preview`], and `Cancelled`.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the circumstances of a flight: each is known to another part of the caller"
-)]
-pub fn preview_with(
-    program: &Arc<Program>,
-    profile: &Profile,
-    terrain: &Arc<dyn Terrain>,
-    winds: impl Into<Winds>,
-    start: Start,
-    scenario: &Scenario,
-    options: &Options,
-    progress: &mut dyn FnMut(&Advance) -> bool,
-) -> Result<Preview, PreviewError> {
-    let given = Circumstances { winds: winds.into(), scenario, options };
-    Flight::new(program, profile, terrain, start, given, false)?.flown(progress)
-}
-
-/// As [`preview_with`]; a flight that ends too early is there up to its end, with the reason.
+/// As [`preview`], reporting about every ten simulated seconds; the callback returns false to cancel. A flight that ends too early is there
+/// up to its end, with the reason.
 ///
 /// # Errors
 /// The flight can't start.

@@ -97,7 +97,7 @@ impl Rehearsal {
     /// Flies a plan. As much of it as was flown before is kept.
     ///
     /// # Errors
-    /// As [`super::preview_with`]. A flight that ends too early ([`PreviewError::TooLong`], [`PreviewError::OutOfEnergy`] and the
+    /// As [`super::preview_as_far_as_possible`], and `Cancelled`. A flight that ends too early ([`PreviewError::TooLong`], [`PreviewError::OutOfEnergy`] and the
     /// like) is there up to its end all the same.
     pub fn fly(
         &mut self,

@@ -238,6 +238,11 @@ pub(super) fn set_radius(plan: &mut FlightPlan, id: &Id, radius_m: f64) -> Resul
     Ok(())
 }
 
+/// The radius of a leg's circle or of its pattern; `None`: it has none.
+pub fn radius_of(leg: &Leg) -> Option<Value<f64>> {
+    radius_mut(&mut leg.clone()).cloned()
+}
+
 fn radius_mut(leg: &mut Leg) -> Option<&mut Value<f64>> {
     match &mut leg.kind {
         LegKind::Scan(crate::Scan { area: Area::Circle { radius_m, .. }, .. })
