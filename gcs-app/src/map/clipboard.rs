@@ -63,10 +63,12 @@ fn copy(ctx: &Context, canvas: &Canvas<'_>) -> Option<()> {
     Some(())
 }
 
+/// All of it, so that it can be pasted again: of a fix or runway more than its place.
 fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
-    let set = canvas.scene.selected_set();
-    if !set.is_empty() && copy(ctx, canvas).is_some() {
-        queue.edit(create::delete_set(canvas.scene.document.plan(), &set));
+    let (plan, set) = (canvas.scene.document.plan(), canvas.scene.selected_set());
+    if let Some(text) = clipboard::copy(plan, &set) {
+        ctx.copy_text(text);
+        queue.edit(create::delete_set(plan, &set));
     }
 }
 

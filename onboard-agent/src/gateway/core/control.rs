@@ -269,7 +269,11 @@ impl Gateway {
             // an order of ours that has been overtaken: what is wanted is ordered again
             self.control.overtaken(mode);
         } else if self.control.confirmed || Some(mode) != self.control.mode_before {
-            let by = if self.telemetry.failsafe { "by its own failsafe" } else { "and not by the gateway" };
+            let by = if self.telemetry.failsafe {
+                "while a failsafe of it is active"
+            } else {
+                "and not by the gateway"
+            };
             let cause = format!("the autopilot was switched to {}, {by}", self.telemetry.mode_name);
             self.control.set_intent(Intent::Nothing, Some(mode));
             self.change(Trigger::PilotTook, &cause, out);

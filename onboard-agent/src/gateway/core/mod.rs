@@ -38,6 +38,8 @@ use usal::contract::{Action, GatewayEvent, GatewayState, SafeParameters, SafeRun
 
 /// Silent for so long on the ground: the autopilot is off.
 const OFF_AFTER: Duration = Duration::from_secs(10);
+/// Silent for so long in the air: it has come down by now.
+const COME_DOWN_AFTER: Duration = Duration::from_secs(3600);
 /// Why an aircraft that was met in flight is somebody else's.
 const NOT_OURS: &str = "met in flight: nothing that it has aboard is ours";
 /// The gateway. See the module's text.
@@ -242,10 +244,12 @@ impl Gateway {
         out.extend(events.into_iter().map(Output::Event));
     }
 
-    /// It is in the air, or about to be, as far as is known; not once it is silent for so long that it counts as off.
+    /// It is in the air, or about to be, as far as is known; not once it is silent for so long that it is off, or has come down: a
+    /// link that is away for a while comes back to an aircraft that must have an owner.
     pub fn is_in_flight(&self) -> bool {
         let flies = self.telemetry.is_airborne() || (is_flying(self.state) && self.telemetry.armed);
-        flies && self.telemetry.last_received.is_some_and(|at| self.now.saturating_sub(at) <= OFF_AFTER)
+        let silent_at_most = if self.telemetry.on_ground == Some(true) { OFF_AFTER } else { COME_DOWN_AFTER };
+        flies && self.telemetry.last_received.is_some_and(|at| self.now.saturating_sub(at) <= silent_at_most)
     }
 
     fn flies_waypoints(&self) -> bool {
@@ -263,7 +267,9 @@ impl Gateway {
             self.change(Trigger::Heartbeat, "the autopilot is heard", out);
         } else if self.state == GatewayState::Off {
             // what it has aboard says in whose hands it is
-            self.cause = "the autopilot is heard, and flies already".into();
+            let flies = self.telemetry.flies(now);
+            let what = if flies { "flies already" } else { "has not said yet whether it stands" };
+            self.cause = format!("the autopilot is heard, and {what}");
         }
         if is_flying(self.state) && self.telemetry.is_landed() {
             return self.land(out);

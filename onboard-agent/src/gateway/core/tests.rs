@@ -172,11 +172,29 @@ fn an_aircraft_that_is_to_be_taken_back_is_written_to_again() {
 }
 
 #[test]
-fn what_is_no_longer_heard_is_not_in_flight_and_what_was_just_met_is() {
+fn what_is_no_longer_heard_on_the_ground_is_not_in_flight() {
     let mut core = Core::in_nav();
     assert!(core.gateway.is_in_flight());
+    let mut landed = flying(0.0, 0.0);
+    landed[1] = Report::OnGround(true);
+    core.run(1, &landed);
     core.run(11, &[]);
     assert!(!core.gateway.is_in_flight(), "its battery was pulled, perhaps");
+}
+
+/// An agent that is told to end waits for it, and must be there when the link is.
+#[test]
+fn what_is_no_longer_heard_in_the_air_is_in_flight_until_it_must_have_come_down() {
+    let mut core = Core::in_nav();
+    core.run(1, &flying(25.0, 25.0));
+    core.run(300, &[]);
+    assert!(core.gateway.is_in_flight());
+    core.run(3400, &[]);
+    assert!(!core.gateway.is_in_flight());
+}
+
+#[test]
+fn what_was_just_met_in_the_air_is_in_flight() {
     let mut core = Core::new();
     core.run(1, &flying(25.0, 25.0));
     assert_eq!(core.gateway.state(), GatewayState::Off, "what it has aboard is not known yet");

@@ -34,7 +34,7 @@ impl Executor {
         }
         let (carried, before, put_out) =
             (self.carried_over(&proposed, entry)?, PlanBefore::of(self), out.len());
-        carried.check_home(&proposed)?;
+        carried.check_home(&self.setup.program, &proposed)?;
         match carried {
             Carried::Enter(cursor) => {
                 self.activate(proposed, out);
@@ -232,15 +232,21 @@ enum Carried {
 
 impl Carried {
     /// In an emergency plan, altitudes go on to count from the field that the flight took off from: the new plan has to know it.
-    fn check_home(&self, new: &Program) -> Result<(), Refusal> {
+    fn check_home(&self, old: &Program, new: &Program) -> Result<(), Refusal> {
         let cursors = match self {
             Carried::Enter(cursor) => std::slice::from_ref(&**cursor),
             Carried::On { bookmarks, .. } => bookmarks.as_slice(),
         };
-        let gone = cursors.iter().filter_map(|c| c.home.as_ref()).find(|id| new.plan.runway(id).is_none());
+        // who took off from a plan's first runway does not name it
+        let first = |program: &Program| program.plan.home().map(|runway| runway.id.clone());
+        let moved = first(old).filter(|id| first(new).as_ref() != Some(id));
+        let gone = cursors.iter().find_map(|cursor| match &cursor.home {
+            Some(id) => Some(id).filter(|id| new.plan.runway(id).is_none()),
+            None => moved.as_ref().filter(|_| cursor.section.is_some()),
+        });
         gone.map_or(Ok(()), |id| {
             let reason = format!(
-                "the flight took off from runway `{id}`, which the new plan has not, and its altitudes above home count from there: keep that runway in the plan"
+                "the flight took off from runway `{id}`, and the altitudes above home of its emergency plan count from there: keep that runway in the plan, and the take-off there"
             );
             Err(refusal("home-gone", reason))
         })

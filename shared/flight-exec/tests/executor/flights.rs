@@ -257,6 +257,18 @@ fn a_plan_without_the_field_that_the_flight_took_off_from_is_refused_in_an_emerg
     assert_eq!(altitude_m(&rig, "b-df"), 600.0, "the plan before is flown on");
 }
 
+/// Of the first flight nobody names it: it is the plan's first.
+#[test]
+fn in_an_emergency_of_the_first_flight_a_plan_with_another_first_field_is_refused() {
+    let mut rig = Rig::flying(&from_a_higher_field());
+    rig.fly_to("a");
+    rig.command(Command::Emergency { cause: Cause::Operator, plan: None }).unwrap();
+    let other =
+        from_a_higher_field().replacen(r#"type="take-off" runway="R""#, r#"type="take-off" runway="S""#, 1);
+    let refusal = rig.update(&program(&other)).unwrap_err();
+    assert!(refusal.code == "home-gone" && refusal.reason.contains("`R`"), "{refusal}");
+}
+
 /// A plan of other identifiers may be entered anywhere; where it knows the present flight, only in that.
 #[test]
 fn in_the_air_a_new_plan_is_not_entered_in_another_flight() {
