@@ -99,9 +99,9 @@ fn preview(
     let mut asked_s: Vec<f64> = Vec::new();
     loop {
         let scenario = mission::scenario(steps, &program.plan, compile, &asked_s)?;
-        let preview =
-            forecast::fly(program, profile, &loaded.terrain, Air { wind, ..Air::default() }, &scenario)
-                .context("the plan can't be flown to its end")?;
+        let (terrain, air, scenario) = (&loaded.terrain, Air { wind, ..Air::default() }, &scenario);
+        let ahead = forecast::Ahead { program, profile, terrain, air, scenario };
+        let preview = ahead.fly().context("the plan can't be flown to its end")?;
         let asked: Vec<f64> = preview
             .events
             .iter()

@@ -27,7 +27,7 @@ const BEFORE_FIRST_M: f64 = 1000.0;
 type Flown = Result<(Preview, Option<PreviewError>), PreviewError>;
 
 /// A program to be flown ahead of time, and in what.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub struct Ahead<'a> {
     /// What is flown.
     pub program: &'a Arc<Program>,

@@ -7,8 +7,7 @@ mod survey;
 
 use flight_exec::Action;
 use flight_plan::{
-    Act, Altitude, AltitudeReference, IterativeForm, Leg, LegAction, LegKind, Scan, Trigger, TurnDirection,
-    Value,
+    Act, Altitude, AltitudeReference, IterativeForm, Leg, LegAction, LegKind, Trigger, TurnDirection, Value,
 };
 use interchange::{Assumptions, Export, Format, Step, Written, read, write};
 use made::{RUNWAY, leg, plan, step, to};
