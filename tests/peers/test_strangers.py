@@ -114,6 +114,9 @@ def test_a_strangers_heartbeats_do_not_hide_a_dead_fp_manager(start, endpoint, t
     flying(session)
     box = latest(session, "gateway/variable/state")
     until(lambda: state(box) == "nav", 60, "the plan is flown")
+    for caller in ("peer", "fp-manager"):
+        joined = call(session, "gateway", "join", {"last_token": 1, "plan": None}, f"from={caller}")
+        assert joined.get("accepted") is not True, "who joins would make everybody's heartbeats count"
     process.child.kill()
     process.child.wait()
     beats = itertools.count(10**9)

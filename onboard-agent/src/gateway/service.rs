@@ -127,8 +127,9 @@ impl FcsGateway {
         }
     }
 
-    fn feed(&mut self, now: Time, Request { request, reply, .. }: Request<Feed, FeedAnswer>, out: &mut Out) {
-        let answer = match self.station.ask(now, |id| CoreInput::Feed(id, request)) {
+    fn feed(&mut self, now: Time, asked: Request<Feed, FeedAnswer>, out: &mut Out) {
+        let Request { request, reply, instance, .. } = asked;
+        let answer = match self.station.ask(now, |id| CoreInput::Feed(id, request, instance)) {
             Some(Answer::Feed(fed)) => Ok(fed),
             _ => Err(unanswered()),
         };

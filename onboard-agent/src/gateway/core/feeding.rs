@@ -20,6 +20,13 @@ impl Gateway {
         from: Option<Instance>,
         out: &mut Vec<Output>,
     ) -> JoinAnswer {
+        let Some(from) = from else {
+            return self.join_answer(false, "Join as a session that names itself.".into());
+        };
+        if self.fp_manager.is_another(Some(from)) && self.fp_manager.lives(now) {
+            self.fp_manager.heard_another(now);
+            return self.join_answer(false, "Another FP Manager has joined, and lives.".into());
+        }
         if let Err(reason) = self.may_join(&join) {
             self.fp_manager.asked_to_join(now);
             return self.join_answer(false, reason);
@@ -101,7 +108,17 @@ impl Gateway {
     }
 
     /// One transaction: taken whole, or the buffer stays as it was.
-    pub(super) fn feed(&mut self, now: Time, feed: Feed, out: &mut Vec<Output>) -> FeedAnswer {
+    pub(super) fn feed(
+        &mut self,
+        now: Time,
+        feed: Feed,
+        from: Option<Instance>,
+        out: &mut Vec<Output>,
+    ) -> FeedAnswer {
+        if self.fp_manager.is_another(from) {
+            self.fp_manager.heard_another(now);
+            return FeedAnswer::NotNow("Another FP Manager has joined: join first.".into());
+        }
         if let Err(why) = self.takes_waypoints(now) {
             return FeedAnswer::NotNow(why);
         }

@@ -49,7 +49,7 @@ pub enum Input {
     /// The FP Manager presents itself; who it is, if that is said.
     Join(u64, Join, Option<Instance>),
     /// The FP Manager sends waypoints.
-    Feed(u64, Feed),
+    Feed(u64, Feed, Option<Instance>),
     /// Somebody asks for something.
     Request(u64, GatewayRequest),
 }

@@ -118,8 +118,8 @@ impl Gateway {
                 let answer = self.join(now, join, from, out);
                 out.push(Output::Answer(request, Answer::Join(answer)));
             }
-            Input::Feed(request, feed) => {
-                let answer = self.feed(now, feed, out);
+            Input::Feed(request, feed, from) => {
+                let answer = self.feed(now, feed, from, out);
                 out.push(Output::Answer(request, Answer::Feed(answer)));
             }
             Input::Request(request, asked) => {

@@ -14,6 +14,8 @@ const CLEAR_M: f64 = 40.0;
 
 /// Another FP Manager that was heard so lately is there.
 const OTHER_HEARD: Duration = Duration::from_secs(2);
+/// The one that joined lives if it was heard so lately: some of its heartbeats, and sooner than it can be started again.
+const LIVES: Duration = Duration::from_millis(600);
 
 /// What is known of the FP Manager.
 #[derive(Debug, Clone, Default)]
@@ -28,7 +30,7 @@ pub struct FpManager {
     beats: u64,
     /// The one that sends heartbeats is the one that joined.
     joined: bool,
-    /// The session of the one that joined last, if it said so: the heartbeats of others do not count.
+    /// The session of the one that joined last: the heartbeats and waypoints of others do not count.
     instance: Option<Instance>,
     /// When another one was heard last.
     other_heard: Option<Time>,
@@ -42,9 +44,8 @@ impl FpManager {
     /// A heartbeat, numbered from the start of its process. One that comes after a silence does not end Safe mode: that
     /// takes a join. And what a process says that did not join is not what is being flown.
     pub fn heartbeat(&mut self, now: Time, beats: u64, plan: Option<String>, from: Option<Instance>) {
-        if self.instance.is_some() && from != self.instance {
-            self.other_heard = Some(now);
-            return;
+        if self.is_another(from) {
+            return self.heard_another(now);
         }
         self.last_received = Some(now);
         self.joined &= beats >= self.beats;
@@ -54,9 +55,24 @@ impl FpManager {
         }
     }
 
+    /// It is not the one that joined.
+    pub fn is_another(&self, from: Option<Instance>) -> bool {
+        self.instance.is_some() && from != self.instance
+    }
+
+    /// Another one speaks in its name.
+    pub fn heard_another(&mut self, now: Time) {
+        self.other_heard = Some(now);
+    }
+
+    /// The one that joined was heard just now.
+    pub fn lives(&self, now: Time) -> bool {
+        self.joined && self.last_received.is_some_and(|at| now < at + LIVES)
+    }
+
     /// It presented itself and was accepted.
-    pub fn joined(&mut self, now: Time, plan: Option<String>, from: Option<Instance>) {
-        self.instance = from;
+    pub fn joined(&mut self, now: Time, plan: Option<String>, from: Instance) {
+        self.instance = Some(from);
         (self.other_heard, self.refused) = (None, None);
         self.last_received = Some(now);
         self.joined = true;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::gateway::order::{Fix, Target};
+use crate::gateway::tests::fp_manager;
 use usal::contract::{Air, Feed, GatewayRequest, Gps, Join};
 
 /// A core, and what came out of it.
@@ -27,7 +28,8 @@ impl Core {
         for _ in 0..10 * seconds {
             self.now += Duration::from_millis(100);
             self.beats += 1;
-            self.step(Input::Heartbeat { count: self.beats, plan: Some("plan".into()), from: None });
+            let (count, plan, from) = (self.beats, Some("plan".into()), fp_manager());
+            self.step(Input::Heartbeat { count, plan, from });
             reports.iter().for_each(|report| self.step(Input::Report(report.clone())));
             self.step(Input::Tick);
         }
@@ -64,11 +66,12 @@ impl Core {
         core.step(Input::Report(Report::Capability(Ok("a plane"))));
         core.run(1, &ground);
         let join = Join { plan: Some("plan".into()), earlier: vec![], last_token: Token(0) };
-        core.step(Input::Join(1, join, None));
+        core.step(Input::Join(1, join, fp_manager()));
         let number = |(i, w): (usize, Waypoint)| Waypoint { token: Token(i as u64 + 1), ..w };
         let waypoints =
             crate::gateway::tests::flights::zigzag(0, 10, 300.0).into_iter().enumerate().map(number);
-        core.step(Input::Feed(2, Feed { cancel_after: None, waypoints: waypoints.collect() }));
+        let feed = Feed { cancel_after: None, waypoints: waypoints.collect() };
+        core.step(Input::Feed(2, feed, fp_manager()));
         core.step(Input::Request(3, GatewayRequest::Launch));
         core.step(Input::Report(Report::Course(course(true))));
         core.run(1, &flying(25.0, 25.0));

@@ -2,6 +2,7 @@
 //! nothing in the core is MAVLink in disguise. It is also the smallest driver there can be.
 
 use super::flights::{settings, take_off, zigzag};
+use super::fp_manager;
 use crate::gateway::Station;
 use crate::gateway::core::{Answer, Input};
 use crate::gateway::driver::{Driver, FromLink, Registration, Setup};
@@ -224,8 +225,8 @@ impl Rig {
             self.station.receive(0, FromLink::Stream(piece));
             assert_eq!(self.station.process(self.now), None);
         }
-        let heartbeat =
-            Input::Heartbeat { count: self.now.as_millis() as u64, plan: Some("plan".into()), from: None };
+        let (count, plan, from) = (self.now.as_millis() as u64, Some("plan".into()), fp_manager());
+        let heartbeat = Input::Heartbeat { count, plan, from };
         self.station.input(self.now, heartbeat);
         self.station.tick(self.now);
         self.outbox.clear();
@@ -253,7 +254,7 @@ impl Rig {
 
     fn feed(&mut self, cancel_after: Option<Token>, waypoints: Vec<Waypoint>) {
         let feed = Feed { cancel_after, waypoints };
-        let answer = self.station.ask(self.now, |id| Input::Feed(id, feed));
+        let answer = self.station.ask(self.now, |id| Input::Feed(id, feed, fp_manager()));
         assert_eq!(answer, Some(Answer::Feed(FeedAnswer::Accepted)));
     }
 
@@ -278,9 +279,8 @@ fn an_autopilot_with_a_protocol_of_its_own_is_flown_by_the_same_core() {
     let mut rig = Rig { glider, station, outbox, now: Time::ZERO, events: vec![] };
     rig.run_until("heard", |r| r.state() == GatewayState::Stop);
     let join = Join { plan: Some("plan".into()), earlier: vec![], last_token: Token(0) };
-    assert!(
-        matches!(rig.station.ask(rig.now, |id| Input::Join(id, join, None)), Some(Answer::Join(a)) if a.accepted)
-    );
+    let answer = rig.station.ask(rig.now, |id| Input::Join(id, join, fp_manager()));
+    assert!(matches!(answer, Some(Answer::Join(joined)) if joined.accepted));
     let mut plan: Vec<_> = std::iter::once(take_off()).chain(zigzag(0, 9, 300.0)).collect();
     plan.iter_mut().zip(1..).for_each(|(w, n)| w.token = Token(n));
     let replaced = plan.split_off(6);

@@ -1,5 +1,6 @@
 //! Whole flights: core, window and driver against the simulator's pure core, without sockets.
 
+use super::fp_manager;
 use crate::gateway::Station;
 use crate::gateway::core::{Answer, Input, Settings, Snapshot};
 use crate::gateway::driver::{self, FromLink, Setup};
@@ -76,7 +77,7 @@ impl Flight {
             now: Time::ZERO,
             events: vec![],
             alive: true,
-            instance: None,
+            instance: fp_manager(),
             plan: "plan",
             beats: 0,
             steered: vec![],
@@ -196,8 +197,8 @@ impl Flight {
             w.token = Token(self.next);
             self.next += 1;
         }
-        let feed = Feed { cancel_after: cancel_after.map(Token), waypoints };
-        match self.station.ask(self.now, |id| Input::Feed(id, feed)) {
+        let (feed, from) = (Feed { cancel_after: cancel_after.map(Token), waypoints }, self.instance);
+        match self.station.ask(self.now, |id| Input::Feed(id, feed, from)) {
             Some(Answer::Feed(answer)) => answer,
             other => panic!("{other:?}"),
         }

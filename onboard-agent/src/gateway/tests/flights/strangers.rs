@@ -11,6 +11,8 @@ fn flying() -> Flight {
     let mut flight = Flight::on_zigzag(51, &[], 30, 300.0);
     flight.store_runway();
     flight.instance = instance("a1");
+    // the one before ends
+    flight.run(1.0);
     assert!(flight.join("plan").accepted);
     flight.run(5.0);
     flight
@@ -57,5 +59,27 @@ fn one_that_waits_to_be_let_in_is_no_silent_one() {
     flight.ask(GatewayRequest::Recover).unwrap();
     assert!(flight.join("plan").accepted);
     flight.run(5.0);
+    assert_eq!(flight.state(), GatewayState::Nav);
+}
+
+/// It would make everybody's heartbeats count.
+#[test]
+fn nobody_joins_who_does_not_name_himself() {
+    let mut flight = flying();
+    flight.instance = None;
+    assert!(!flight.join("plan").accepted);
+    flight.run_until(3.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
+}
+
+#[test]
+fn nobody_joins_or_feeds_beside_an_fp_manager_that_lives() {
+    let mut flight = flying();
+    flight.instance = instance("b2");
+    assert!(!flight.join("plan").accepted);
+    let FeedAnswer::NotNow(why) = flight.feed(None, zigzag(20, 1, 300.0)) else { panic!("taken") };
+    assert!(why.contains("join"), "{why}");
+    flight.instance = instance("a1");
+    flight.run(1.0);
+    assert!(raised(&flight), "it is told");
     assert_eq!(flight.state(), GatewayState::Nav);
 }
