@@ -16,8 +16,8 @@ use usal::contract::{SafeParameters, SafeRunway};
 const USABLE: f64 = 0.8;
 /// A runway of the next lower priority has to save this share of the way.
 const PRIORITY_PENALTY: f64 = 0.25;
-/// A tailwind of 1 m/s on landing counts like so many seconds of flight.
-const TAILWIND_PENALTY_S: f64 = 20.0;
+/// A tailwind of 1 m/s on landing counts like so many seconds of flight, and with its square, as the way that it rolls grows.
+const TAILWIND_PENALTY_S: f64 = 5.0;
 /// So much does a runway cost that is only as long as the aircraft needs, seconds of flight; nothing one of twice that.
 const SHORT_PENALTY_S: f64 = 60.0;
 /// So much does the end of a runway cost that nobody has named, seconds of flight.
@@ -50,7 +50,7 @@ fn cost_s(landing: &Landing, time_s: f64, s: &Situation) -> f64 {
     let priority = 1.0 + PRIORITY_PENALTY * f64::from(runway.priority.saturating_sub(1));
     let spare = runway.length_m / s.profile.min_runway_m.max(1.0) - 1.0;
     time_s * priority
-        + TAILWIND_PENALTY_S * tailwind_mps(s, runway.heading_deg).max(0.0)
+        + TAILWIND_PENALTY_S * tailwind_mps(s, runway.heading_deg).max(0.0).powi(2)
         + SHORT_PENALTY_S * (1.0 - spare).clamp(0.0, 1.0)
         + if landing.reversed { REVERSED_PENALTY_S } else { 0.0 }
 }

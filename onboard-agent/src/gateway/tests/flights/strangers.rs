@@ -78,8 +78,6 @@ fn nobody_joins_or_feeds_beside_an_fp_manager_that_lives() {
     assert!(!flight.join("plan").accepted);
     let FeedAnswer::NotNow(why) = flight.feed(None, zigzag(20, 1, 300.0)) else { panic!("taken") };
     assert!(why.contains("join"), "{why}");
-    flight.instance = instance("a1");
-    flight.run(1.0);
-    assert!(raised(&flight), "it is told");
     assert_eq!(flight.state(), GatewayState::Nav);
+    flight.run_until(5.0, "told", raised);
 }

@@ -4,6 +4,7 @@ use crate::gateway::driver::mavlink::chain;
 use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
 use crate::gateway::order::Fed;
 use geometry::LatLon;
+use usal::contract::Waypoint;
 
 /// Slots of the ring.
 pub const RING: u64 = 40;
@@ -44,7 +45,9 @@ pub fn is_ours(list: &[Item]) -> bool {
 
 /// Of the waypoints known before, those that are really on board from `first` on.
 pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> (usize, Vec<Fed>) {
-    chain::known_on_board(first, RING, |p| list.get(usize::from(slot(p))).copied(), waypoints)
+    let at = |p: u64| list.get(usize::from(slot(p)));
+    let is_at = |p: u64, waypoint: &Waypoint| at(p).is_some_and(|item| matches(item, &Item::of(waypoint)));
+    chain::known_on_board(first, RING, is_at, waypoints)
 }
 
 /// What is known to be on board.

@@ -221,7 +221,7 @@ impl Feeding for Window {
             return Target::None;
         }
         let Some(active) = self.chain.active() else { return Target::End };
-        let item = Item::of(&active.waypoint);
+        let item = ring::item_of(&active.waypoint);
         if self.steered_to().is_some_and(|steered| matches(&steered, &item)) {
             Target::Waypoint(active.serial)
         } else {
@@ -306,7 +306,7 @@ impl Window {
     fn wanted(&self, position: u64) -> Option<Item> {
         match self.chain.at(position) {
             Some(waypoint) if position < self.end => {
-                let item = Item::of(waypoint);
+                let item = ring::item_of(waypoint);
                 // a landing that is left for something else does not end the list
                 let is_left = item.kind == ItemKind::Land && !self.ends_at(position);
                 Some(if is_left { ring::passing(item) } else { item })

@@ -1,8 +1,9 @@
 //! The ring of entries: how positions, entries and the list go together.
 
 use crate::gateway::driver::mavlink::chain;
-use crate::gateway::driver::mavlink::item::{Item, ItemKind, Pass};
+use crate::gateway::driver::mavlink::item::{Item, ItemKind, Pass, matches};
 use crate::gateway::order::Fed;
+use usal::contract::Waypoint;
 
 /// Entries of the ring.
 pub const RING: u64 = 40;
@@ -64,6 +65,12 @@ pub fn lies_flat(first: u64, landing: u64) -> bool {
     u64::from(entry(landing)) == u64::from(entry(first)) + (landing - first)
 }
 
+/// The entry of a waypoint, as PX4 keeps it: how it is passed is not in its list, and does not come back from there.
+pub fn item_of(waypoint: &Waypoint) -> Item {
+    let item = Item::of(waypoint);
+    if matches!(item.kind, ItemKind::Fly(_)) { passing(item) } else { item }
+}
+
 /// It only leads past its place.
 pub fn passing(item: Item) -> Item {
     Item { kind: ItemKind::Fly(Pass::By), ..item }
@@ -99,5 +106,7 @@ pub fn is_ours(list: &[Item]) -> bool {
 
 /// Of the waypoints known before, those that are really on board from `first` on.
 pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> (usize, Vec<Fed>) {
-    chain::known_on_board(first, RING - 1, |p| list.get(usize::from(entry(p))).copied(), waypoints)
+    let at = |p: u64| list.get(usize::from(entry(p)));
+    let is_at = |p: u64, waypoint: &Waypoint| at(p).is_some_and(|item| matches(item, &item_of(waypoint)));
+    chain::known_on_board(first, RING - 1, is_at, waypoints)
 }
