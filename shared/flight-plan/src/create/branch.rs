@@ -4,6 +4,7 @@ use super::arrange::list_of;
 use super::kind::LegChoice;
 use super::leave::Leaving;
 use super::leg::{Drawn, leg as new_leg};
+use super::rearrange::lead_to;
 use crate::{Branch, Edit, FlightPlan, Id, Leg, LegKind, Spot};
 use aircraft::Profile;
 
@@ -16,17 +17,35 @@ pub enum Way {
     New,
 }
 
-/// Puts a leg where it goes. Behind a leg that says what follows it, the new one leads there instead.
+impl Leg {
+    /// Some way from it leads to what follows it in its list.
+    pub fn falls_through(&self) -> bool {
+        let ways = self.as_fork().map_or(&[][..], |fork| fork.branches);
+        ways.iter().any(|way| way.next.is_none()) || (ways.is_empty() && self.next.is_none())
+    }
+}
+
+/// Puts a leg where it goes. Behind a leg that says what follows it, the new one leads there instead; before one that is only led
+/// to by name, those ways lead to the new one.
 pub fn insert(plan: &FlightPlan, mut leg: Leg, at: Spot) -> Edit {
-    let before = match &at {
-        Spot::After(id) => plan.any_leg(id).filter(|before| before.next.is_some()),
-        Spot::Before(_) | Spot::EndOf(_) => None,
+    let mut edits = match &at {
+        Spot::After(id) => match plan.any_leg(id).filter(|before| before.next.is_some()) {
+            Some(before) => {
+                leg.next.clone_from(&before.next);
+                let freed = Box::new(Leg { next: None, ..before.clone() });
+                vec![Edit::ReplaceLeg { leg: before.id.clone(), with: freed }]
+            }
+            None => Vec::new(),
+        },
+        Spot::Before(id) => lead_to(plan, id, &leg.id, &|_| false),
+        Spot::EndOf(_) => Vec::new(),
     };
-    let Some(before) = before else { return Edit::InsertLeg { leg: Box::new(leg), at } };
-    leg.next.clone_from(&before.next);
-    let freed =
-        Edit::ReplaceLeg { leg: before.id.clone(), with: Box::new(Leg { next: None, ..before.clone() }) };
-    Edit::All(vec![freed, Edit::InsertLeg { leg: Box::new(leg), at }])
+    let insert = Edit::InsertLeg { leg: Box::new(leg), at };
+    if edits.is_empty() {
+        return insert;
+    }
+    edits.push(insert);
+    Edit::All(edits)
 }
 
 /// Takes a leg out. What led to it leads to what followed it.
@@ -175,6 +194,17 @@ mod tests {
         assert_eq!(ways(&both), ["a", "b", "fork1 on>o1 way2>n1", "o1>c", "n1", "c"]);
         assert_eq!(errors(&both), Vec::<String>::new());
         assert!(begin_way(&both, &"fork1".into(), &Way::Branch("no".into()), drawn("x1")).is_none());
+    }
+
+    #[test]
+    fn a_leg_before_the_first_of_a_way_becomes_the_first() {
+        let plan = plan(ROUTE);
+        let forked = begin_way(&plan, &"b".into(), &Way::New, drawn("n1")).unwrap().apply(&plan).unwrap();
+        let third = begin_way(&forked, &"fork1".into(), &Way::New, drawn("m1")).unwrap();
+        let third = third.apply(&forked).unwrap();
+        let longer = insert(&third, drawn("x1"), Spot::Before("n1".into())).apply(&third).unwrap();
+        assert_eq!(ways(&longer)[2..], ["fork1 on>c way2>x1 way3>m1", "m1>c", "x1", "n1", "c"]);
+        assert_eq!(errors(&longer), Vec::<String>::new());
     }
 
     #[test]

@@ -58,7 +58,6 @@ fn moves(moved: &[&Arc<Leg>], at: Spot) -> Vec<Edit> {
 /// What follows at a place: behind a leg that says what follows it, the last of those that come leads there instead; and to a leg
 /// that is only led to by name, those ways lead to the first of them.
 fn join(plan: &FlightPlan, moved: &[&Arc<Leg>], at: &Spot) -> Vec<Edit> {
-    let replaced = |with: Leg| Edit::ReplaceLeg { leg: with.id.clone(), with: Box::new(with) };
     let is_moved = |id: &Id| moved.iter().any(|leg| leg.id == *id);
     match at {
         Spot::EndOf(_) => Vec::new(),
@@ -71,24 +70,23 @@ fn join(plan: &FlightPlan, moved: &[&Arc<Leg>], at: &Spot) -> Vec<Edit> {
             let (freed, led) = (Leg { next: None, ..before.clone() }, before.next.clone());
             vec![replaced(freed), replaced(Leg { next: led, ..last.clone() })]
         }
-        Spot::Before(id) => {
-            let (Some((list, index)), Some(first)) = (list_of(plan, id), moved.first()) else {
-                return Vec::new();
-            };
-            let mut before = list.iter().take(index).filter(|leg| !is_moved(&leg.id));
-            if before.next_back().is_none_or(|leg| falls_through(leg)) {
-                return Vec::new();
-            }
-            let leading = list.iter().filter(|leg| !is_moved(&leg.id) && leads_to(leg).contains(&id));
-            leading.map(|leg| replaced(led_to(leg, id, &first.id))).collect()
-        }
+        Spot::Before(id) => moved.first().map_or(Vec::new(), |first| lead_to(plan, id, &first.id, &is_moved)),
     }
 }
 
-/// Some way from it leads to what follows in the list.
-fn falls_through(leg: &Leg) -> bool {
-    let ways = leg.as_fork().map_or(&[][..], |fork| fork.branches);
-    ways.iter().any(|way| way.next.is_none()) || (ways.is_empty() && leg.next.is_none())
+/// To a leg that is only led to by name, those ways lead to another one from then on.
+pub(super) fn lead_to(plan: &FlightPlan, leg: &Id, first: &Id, is_moved: &dyn Fn(&Id) -> bool) -> Vec<Edit> {
+    let Some((list, index)) = list_of(plan, leg) else { return Vec::new() };
+    let mut before = list.iter().take(index).filter(|other| !is_moved(&other.id));
+    if before.next_back().is_none_or(|other| other.falls_through()) {
+        return Vec::new();
+    }
+    let leading = list.iter().filter(|other| !is_moved(&other.id) && leads_to(other).contains(&leg));
+    leading.map(|other| replaced(led_to(other, leg, first))).collect()
+}
+
+fn replaced(with: Leg) -> Edit {
+    Edit::ReplaceLeg { leg: with.id.clone(), with: Box::new(with) }
 }
 
 /// A leg whose ways lead to another one than they did.
