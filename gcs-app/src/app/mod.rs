@@ -10,6 +10,7 @@ mod layout;
 mod links;
 mod messages;
 mod orders;
+mod press;
 mod preview;
 mod remembered;
 mod screenshot;
@@ -131,6 +132,7 @@ impl App {
     ) -> std::io::Result<Self> {
         let ctx = creation.egui_ctx.clone();
         theme::install(&ctx);
+        ctx.add_plugin(press::PressFirst::default());
         let wake: Arc<dyn Fn() + Send + Sync> = {
             let ctx = ctx.clone();
             Arc::new(move || ctx.request_repaint())
