@@ -147,3 +147,91 @@ fn a_variable_is_dragged_from_the_plan_to_what_it_says() {
     window.drag(from, to - from);
     assert!(window.plan() == before && window.shows("on its field in the inspector"));
 }
+
+/// A scan that was drawn behind the second leg, and is selected.
+fn drawn_scan(window: &mut Window) -> String {
+    window.select_row(("TF side2", 0));
+    window.press(Key::A);
+    let at = window.centre("Map");
+    for by in [egui::vec2(0.0, 0.0), egui::vec2(90.0, 0.0), egui::vec2(90.0, 60.0)] {
+        window.tap_at(at + by);
+    }
+    window.press(Key::Enter);
+    window.press(Key::V);
+    window.steps(2);
+    window.selected()
+}
+
+#[test]
+fn a_variable_is_dragged_onto_the_spacing_of_a_scan() {
+    let mut window = window();
+    let scan = drawn_scan(&mut window);
+    assert!(window.harness.query_by_label("Spacing: bind to a variable").is_some());
+    let before = window.plan();
+    let field = window.harness.get_by_role_and_label(Role::SpinButton, "Spacing").rect().center();
+    let row = window.harness.get_by_role_and_label(Role::TreeItem, "VAR fast").rect();
+    let from = row.lerp_inside(egui::vec2(0.4, 0.5));
+    window.drag(from, field - from);
+    let numbers = window.plan();
+    let numbers = numbers.leg(&scan.as_str().into()).unwrap().leg.numbers();
+    let spacing = numbers.into_iter().find(|(name, _)| *name == "spacing").and_then(|(_, value)| value);
+    assert_eq!(spacing, Some(&Value::Expression("fast".into())));
+    window.press_ctrl(Key::Z);
+    assert_eq!(window.plan(), before, "one step");
+}
+
+/// What comes from the window system when somebody types, each letter a key and a text.
+fn type_letters(window: &mut Window, letters: &[(Key, &str)]) {
+    for (key, text) in letters {
+        let key = |pressed| egui::Event::Key {
+            key: *key,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers: egui::Modifiers::NONE,
+        };
+        window.harness.input_mut().events.extend([key(true), egui::Event::Text((*text).into()), key(false)]);
+        window.harness.step();
+    }
+}
+
+#[test]
+fn letters_behind_the_formula_button_are_typed_into_its_field() {
+    let mut window = window();
+    window.select_row(("TF side2", 0));
+    window.steps(2);
+    window.click_role(Role::Button, "Own airspeed");
+    window.steps(2);
+    window.click_role(Role::Button, "Airspeed: number or formula");
+    type_letters(&mut window, &[(Key::F, "f"), (Key::A, "a"), (Key::S, "s"), (Key::T, "t")]);
+    assert!(!window.shows("Draw an area") && !window.shows("click the first corner"), "no tool was chosen");
+    window.press(Key::Enter);
+    window.steps(2);
+    assert_eq!(speed(&window, "side2"), Some(Value::Expression("fast".into())), "in the place of the number");
+}
+
+#[test]
+fn a_drag_that_leaves_the_tree_within_a_frame_does_not_move_the_map() {
+    let mut window = window();
+    let (fix, before) = (window.centre("Fix A"), window.plan());
+    let row = window.harness.get_by_role_and_label(Role::TreeItem, "VAR fire").rect();
+    let from = row.lerp_inside(egui::vec2(0.4, 0.5));
+    let to = fix + (window.centre("Fix B") - fix) * 0.5;
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    };
+    let moved = egui::Event::PointerMoved;
+    window.harness.hover_at(from);
+    window.steps(1);
+    for events in [vec![button(from, true), moved(to - egui::vec2(40.0, 30.0))], vec![moved(to)], vec![]] {
+        window.harness.input_mut().events.extend(events);
+        window.steps(1);
+    }
+    assert!(window.centre("Fix A").distance(fix) < 1.0, "the map stays");
+    window.harness.drop_at(to);
+    window.steps(3);
+    assert_ne!(window.plan(), before, "what was pressed is dragged");
+}

@@ -1,5 +1,7 @@
 //! The inspector shows and changes everything that the language has.
 
+mod fields;
+
 use super::table::Unknown;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, vec2};

@@ -10,6 +10,8 @@ use flight_plan::{Id, Use};
 
 /// Of its button, screen points.
 pub const WIDTH: f32 = 26.0;
+/// Of a number with all that stands beside it, screen points.
+pub const NUMBER_WIDTH: f32 = 146.0;
 
 /// Beside a number: the variables that can give it, or a new one.
 pub fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: f64) {
@@ -28,12 +30,15 @@ pub fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: 
     });
 }
 
-/// A variable that is dropped on the row between here and the cursor gives its number.
-pub fn drop_number(ui: &Ui, page: &mut Page<'_, '_>, property: &Property, from: Pos2) {
+/// A variable that is dropped on the row between here and the cursor gives its value.
+pub fn drop_value(ui: &Ui, page: &mut Page<'_, '_>, property: &Property, from: Pos2) {
     let plan = page.plan();
-    if let Kind::Value(_) = property.kind
-        && let Some(name) = binding::dropped(ui, row_since(ui, from), |name| binding::is_number(plan, name))
-    {
+    let fits = |name: &Id| match property.kind {
+        Kind::Value(_) => binding::is_number(plan, name),
+        Kind::Formula(used) => used == Use::Any,
+        _ => false,
+    };
+    if let Some(name) = binding::dropped(ui, row_since(ui, from), fits) {
         page.set(property, Some(format!("= {name}")));
     }
 }

@@ -4,7 +4,7 @@ use super::page::Page;
 use super::{bind, level, list, value};
 use crate::panels::field;
 use egui::Ui;
-use flight_plan::describe::{Change, OneOf, Row};
+use flight_plan::describe::{Change, Kind, OneOf, Row};
 
 /// Draws all that the part has.
 pub fn show(ui: &mut Ui, page: &mut Page<'_, '_>) {
@@ -58,7 +58,7 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     let from = ui.cursor().min;
     let (chosen, below) = field::row_with_help(ui, one.label, one.help, |ui| {
         let short = way.and_then(|way| labels.get(way)).is_some_and(|label| label.len() <= SHORT);
-        let alone = inside.split_first().filter(|_| short && !page.is_several());
+        let alone = inside.split_first().filter(|_| short && !page.is_several() && has_room(ui, inside));
         let chosen = match alone {
             Some((Row::Property(property), [])) => {
                 let chosen = within(ui, WAY_WIDTH, |ui| field::choice(ui, &name, &labels, way));
@@ -76,12 +76,21 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
         bind::drop_place(ui, page, binding, from);
     }
     match below {
-        Some((property, below)) => value::finish(ui, page, property, below),
+        Some((property, below)) => {
+            bind::drop_value(ui, page, property, from);
+            value::finish(ui, page, property, below);
+        }
         None => rows(ui, page, inside),
     }
     if let Some(way) = chosen {
         page.change(&Change::Choose(*one, way));
     }
+}
+
+/// A number with its formula and variable has room beside its way; every other value makes do with what there is.
+fn has_room(ui: &Ui, inside: &[Row]) -> bool {
+    let is_number = matches!(inside, [Row::Property(property)] if matches!(property.kind, Kind::Value(_)));
+    !is_number || ui.available_width() >= WAY_WIDTH + bind::NUMBER_WIDTH
 }
 
 fn within<R>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> R) -> R {

@@ -25,9 +25,23 @@ pub struct Typing {
     used: Use,
 }
 
+/// Of the field that is drawn next, if it is one.
+pub fn id(ui: &Ui, name: &str) -> Id {
+    ui.auto_id_with(("formula", name))
+}
+
+/// Gives a field that is drawn from the next frame on the keyboard, all of its text selected.
+pub fn begin(ui: &Ui, id: Id, text: &str) {
+    let mut state = TextEditState::default();
+    let all = CCursorRange::two(CCursor::default(), CCursor::new(text.chars().count()));
+    state.cursor.set_char_range(Some(all));
+    state.store(ui.ctx(), id);
+    ui.memory_mut(|m| m.request_focus(id));
+}
+
 /// Draws the field itself; [`Typing::finish`] draws what belongs below it.
 pub fn field(ui: &mut Ui, page: &Page<'_, '_>, name: &str, source: &str, used: Use) -> Typing {
-    let id = ui.auto_id_with(("formula", name));
+    let id = id(ui, name);
     let mut text = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| source.to_owned());
     if ui.memory(|m| m.has_focus(id)) {
         choose_by_key(ui, page, id, &mut text);

@@ -32,7 +32,7 @@ pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     match way {
         Some(0) => {
             own(ui, page, one, metres, reference);
-            bind::drop_number(ui, page, metres, from);
+            bind::drop_value(ui, page, metres, from);
         }
         _ => {
             absent(ui, page, one);

@@ -32,7 +32,7 @@ pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, property: &'static Property) {
         }
         below
     });
-    bind::drop_number(ui, page, property, from);
+    bind::drop_value(ui, page, property, from);
     finish(ui, page, property, below);
 }
 
@@ -205,20 +205,25 @@ fn number_or_formula(
     value: &str,
 ) -> Option<Typing> {
     let source = value.strip_prefix('=').map(str::trim);
+    let name = page.name(property.label);
+    // the same here for a number, so that the field that it becomes has the keyboard at once
+    let formula = formula::id(ui, &name);
     let below = match source {
-        Some(source) => Some(formula::field(ui, page, &page.name(property.label), source, Use::Number)),
+        Some(source) => Some(formula::field(ui, page, &name, source, Use::Number)),
         None => {
             number(ui, page, property, range, value);
             None
         }
     };
-    let name = page.name(&format!("{}: number or formula", property.label));
-    if field::small_button(ui, "ƒ", &name) {
+    if field::small_button(ui, "ƒ", &page.name(&format!("{}: number or formula", property.label))) {
         let other = match source {
-            None => format!("= {:?}", value.parse::<f64>().unwrap_or(range.least.max(1.0))),
+            None => format!("{:?}", value.parse::<f64>().unwrap_or(range.least.max(1.0))),
             Some(source) => result(page, source).map_or_else(|| property.first.to_owned(), |n| n.to_string()),
         };
-        page.set(property, Some(other));
+        if source.is_none() {
+            formula::begin(ui, formula, &other);
+        }
+        page.set(property, Some(if source.is_none() { format!("= {other}") } else { other }));
         return None;
     }
     let room = bind::WIDTH * if property.without.is_some() { 2.0 } else { 1.0 };
