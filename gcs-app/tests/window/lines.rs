@@ -59,6 +59,22 @@ fn every_tool_that_draws_legs_shows_what_they_lead_to() {
 }
 
 #[test]
+fn an_emergency_plan_shows_from_where_it_would_be_flown_while_it_is_drawn() {
+    let band = gcs_app::theme::palette(true).contingency;
+    let mut window = window();
+    window.press(Key::E);
+    let runway = window.centre("Runway R05");
+    window.click_at(runway);
+    let away = window.centre("Undo");
+    window.harness.hover_at(away);
+    window.steps(2);
+    let before = window.lines_within("Map", band);
+    window.harness.hover_at(window.centre("Map") + vec2(60.0, 40.0));
+    window.steps(2);
+    assert!(window.lines_within("Map", band) > before, "a band from the path");
+}
+
+#[test]
 fn pictures_along_a_leg_are_taken_from_its_menu_and_seen_on_the_map() {
     let mut window = window();
     let before = window.plan();

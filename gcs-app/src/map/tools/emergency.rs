@@ -1,5 +1,6 @@
 //! An emergency plan, drawn from the runway outwards; it is flown the other way.
 
+use super::bands::{self, Band};
 use super::pen::{Figure, Mark, Pen};
 use super::pick::runway_near;
 use super::snap::snap;
@@ -16,11 +17,13 @@ use geometry::LatLon;
 pub struct DrawEmergency {
     pen: Pen,
     runway: Option<Id>,
+    /// From where the flight may come into it.
+    bands: Vec<Band>,
 }
 
 impl Default for DrawEmergency {
     fn default() -> Self {
-        Self { pen: Pen::new(Figure::Line), runway: None }
+        Self { pen: Pen::new(Figure::Line), runway: None, bands: Vec::new() }
     }
 }
 
@@ -59,6 +62,8 @@ impl Tool for DrawEmergency {
         if self.pen.len() == 0 || self.runway.as_ref().is_some_and(gone) {
             self.leave();
         }
+        let from = self.pen.pointer().filter(|_| self.runway.is_some());
+        self.bands = from.map_or(Vec::new(), |from| bands::entries(canvas, from.at));
     }
 
     fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
@@ -108,6 +113,9 @@ impl Tool for DrawEmergency {
     }
 
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
+        if let Some(from) = self.pen.pointer() {
+            bands::paint(painter, canvas, from.at, &self.bands, p);
+        }
         self.pen.paint(painter, canvas, p);
     }
 }
