@@ -147,6 +147,7 @@ fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
         .chain(zones)
         .chain(variables)
         .chain(legs(canvas))
+        .chain(legs_of_ways(canvas))
         .chain(areas)
         .chain(emergencies)
         .chain(handles);
@@ -164,6 +165,17 @@ fn legs<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Item> + 'a {
         let at = on_path(forecast, passage, view)?;
         let name = format!("Path of {}", name_of_leg(plan, &leg));
         Some(Item { name, at, what: Selection::Leg(leg) })
+    })
+}
+
+/// Each leg of a way from a fork where its line is in view; those that are flown have been found by their path.
+fn legs_of_ways<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Item> + 'a {
+    let Canvas { view, sketch, scene, .. } = *canvas;
+    let lines = sketch.ways.iter().flat_map(|way| &way.lines).take(MOST_LEGS);
+    lines.filter_map(move |line| {
+        let at = on_outline(&[line.from, line.to], view)?;
+        let name = format!("Path of {}", name_of_leg(scene.document.plan(), &line.leg));
+        Some(Item { name, at, what: Selection::Leg(line.leg.clone()) })
     })
 }
 

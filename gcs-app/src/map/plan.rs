@@ -51,12 +51,16 @@ pub fn draw_ways(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<
     let mut placed = Labels::new(painter.clip_rect().into());
     for way in &sketch.ways {
         let selected = is_selected(scene, &way.fork);
-        let points: Vec<Mercator> = way.line.iter().map(|at| (*at).into()).collect();
+        let points: Vec<Mercator> = way.places().map(Mercator::from).collect();
         let parts = polyline::visible_parts(&points, view);
         let stroke = Stroke::new(if selected { 2.2 } else { 1.4 }, p.accent);
         polyline::draw(painter, &parts, stroke, Style::Dashed, p.halo);
-        let [from, to, ..] = way.line.as_slice() else { continue };
-        let (from, to) = (view.place(*from), view.place(*to));
+        for line in way.lines.iter().filter(|line| is_looked_at(scene, &line.leg)) {
+            let parts = polyline::visible_parts(&[line.from.into(), line.to.into()], view);
+            polyline::draw(painter, &parts, Stroke::new(3.2, p.text), Style::Dashed, p.halo);
+        }
+        let Some(first) = way.lines.first() else { continue };
+        let (from, to) = (view.place(first.from), view.place(first.to));
         let at = from + (to - from) * 0.5 + vec2(0.0, 6.0);
         let name = if way.is_default { format!("{} (default)", way.label) } else { way.label.clone() };
         let size = vec2(name.chars().count() as f32 * 6.5, 13.0);
@@ -65,6 +69,11 @@ pub fn draw_ways(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<
             placed.take(text::haloed(painter, at, Align2::CENTER_TOP, &name, 11.5, p.text, p).into());
         }
     }
+}
+
+/// Selected, or pointed out; where it is flown, the path shows it, too.
+fn is_looked_at(scene: &Scene<'_>, leg: &Id) -> bool {
+    is_selected(scene, leg) || scene.view.pointed.as_ref() == Some(leg)
 }
 
 /// Emergency plans: grey and dotted; the one in force is named.

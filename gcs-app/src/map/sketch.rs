@@ -2,6 +2,7 @@
 //! plans. Broken drafts give what can be made of them.
 
 mod axes;
+mod calls;
 mod handle;
 pub mod numbers;
 pub mod photos;
@@ -14,7 +15,7 @@ pub use radius::{bound_radius, radius_edit};
 pub use ways::Way;
 
 use flight_plan::{
-    Area, Env, FlightPlan, FlightState, Id, Leg, LegContext, LegKind, Pattern, Place, Scan, Section, Value,
+    Area, Env, FlightPlan, FlightState, Id, Leg, LegKind, Pattern, Place, Scan, Section, Value,
     VariableValue, Variables, Zone, ZoneShape, expression,
 };
 use geometry::LatLon;
@@ -90,14 +91,16 @@ impl Sketch {
         for fix in plan.fixes.iter().filter(|f| f.position.is_valid()) {
             sketch.handles.push(Handle { what: Handled::Fix(fix.id.clone()), at: fix.position });
         }
+        let mut arrivals = ways::Arrivals::default();
         for context in plan.all_legs() {
             sketch.add_leg(context.leg, &reader);
-            sketch.add_middle(&context, &reader);
+            let from = arrivals.take(&context, &reader);
+            sketch.add_middle(context.leg, from, &reader);
         }
         plan.zones.iter().for_each(|zone| sketch.add_zone(zone));
         sketch.add_lines(plan, &reader);
         sketch.add_variables();
-        sketch.ways = ways::of(plan, &reader);
+        sketch.ways = ways::of(&arrivals, &reader);
         sketch
     }
 
@@ -127,15 +130,13 @@ impl Sketch {
     }
 
     /// The line and the middle of a straight leg, if both of its ends are known.
-    fn add_middle(&mut self, context: &LegContext<'_>, reader: &Reader<'_>) {
-        let is_straight = matches!(context.leg.kind, LegKind::Tf(_) | LegKind::Df { .. });
-        let before = context.index.checked_sub(1).and_then(|i| context.siblings.get(i));
-        let place = |leg: &Leg| leg.place().and_then(|place| reader.place(place));
-        let ends = before.and_then(|before| place(before)).zip(place(context.leg)).filter(|_| is_straight);
+    fn add_middle(&mut self, leg: &Leg, from: Option<LatLon>, reader: &Reader<'_>) {
+        let is_straight = matches!(leg.kind, LegKind::Tf(_) | LegKind::Df { .. });
+        let ends = from.zip(reader.place_of(leg)).filter(|_| is_straight);
         let Some((from, to)) = ends else { return };
-        let what = Handled::Between { leg: context.leg.id.clone(), gap_m: from.distance_m(to) as u32 };
+        let what = Handled::Between { leg: leg.id.clone(), gap_m: from.distance_m(to) as u32 };
         self.handles.push(Handle { what, at: from.interpolate(to, 0.5) });
-        self.lines.push(Line { leg: context.leg.id.clone(), from, to });
+        self.lines.push(Line { leg: leg.id.clone(), from, to });
     }
 
     fn add_zone(&mut self, zone: &Zone) {

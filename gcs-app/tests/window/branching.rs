@@ -88,3 +88,60 @@ fn a_leg_is_dragged_out_of_a_branch_into_the_stage_and_back() {
         assert_eq!(ways(&window), step, "one step each");
     }
 }
+
+/// The square with a way past side3 that is not flown unless somebody decides so: a leg, a call, an area, a leg.
+fn beside() -> Window {
+    let procedure = r#"<procedures><procedure id="look" reference="36.3205 -84.1650">
+        <TF id="p1" lat="36.3205" lon="-84.1650"/><TF id="p2" lat="36.3180" lon="-84.1680"/></procedure></procedures>"#;
+    let fork = r#"<intersection id="ask" default="on"><branch id="on" label="Straight on" next="side3"/>
+        <branch id="by" label="Another way" next="n1"/></intersection>
+        <TF id="n1" lat="36.3225" lon="-84.1600"/><call id="n2" procedure="look"/>
+        <orbit id="n3" radius="250" turns="1" turn="right"><centre lat="36.3160" lon="-84.1640"/></orbit>
+        <TF id="n4" lat="36.3130" lon="-84.1700" next="side3"/><TF id="side3""#;
+    let text =
+        SQUARE.replace("<mainPlan", &format!("{procedure}<mainPlan")).replace("<TF id=\"side3\"", fork);
+    let mut window = Window::open(&text);
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+    window
+}
+
+#[test]
+fn every_leg_of_a_way_that_is_not_flown_is_on_the_map() {
+    let mut window = beside();
+    for leg in ["n1", "n2", "n3", "n4"] {
+        let name = format!("Path of {leg}");
+        assert!(window.harness.query_by_label(&name).is_some(), "{leg}");
+        let at = window.centre(&name);
+        window.click_at(at);
+        assert_eq!(window.selected(), leg, "a click on its line selects it");
+        let line = gcs_app::theme::palette(true).text;
+        assert!(window.lines_within("Map", line) > 0);
+    }
+    assert!(window.paints("Another way"));
+}
+
+#[test]
+fn a_waypoint_is_dragged_out_of_the_first_line_of_a_way() {
+    let mut window = beside();
+    let before = ways(&window);
+    let at = window.centre("Fix B").lerp(window.centre("Waypoint n1"), 0.25);
+    window.drag(at, vec2(20.0, 25.0));
+    let longer =
+        ["side1", "side2", "ask on>side3 by>leg1", "leg1", "n1", "n2", "n3", "n4>side3", "side3", "side4"];
+    assert_eq!(ways(&window), longer, "the way begins there");
+    window.click("Undo");
+    assert_eq!(ways(&window), before, "one step");
+}
+
+#[test]
+fn places_and_names_stay_on_the_map_while_a_tool_is_on() {
+    let mut window = beside();
+    assert!(window.paints("n1") && window.paints("B"));
+    for tool in [Key::T, Key::A, Key::Z, Key::E, Key::M] {
+        window.press(tool);
+        assert!(window.paints("n1") && window.paints("B") && window.paints("Another way"), "{tool:?}");
+        let colour = window.colour_within("Map", "n1").unwrap();
+        assert_ne!(colour, gcs_app::theme::palette(true).text, "fainter: {tool:?}");
+    }
+}

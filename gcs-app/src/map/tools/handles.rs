@@ -14,6 +14,8 @@ use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 const MOST: usize = 1000;
 /// A leg that is shorter on the screen shows no middle to be dragged, screen points.
 const GAP: f64 = 90.0;
+/// How much is left of a place that can't be grabbed.
+const FAINT: f32 = 0.6;
 
 /// Handles on the screen, with their numbers in the sketch; those of an outline only where it is selected.
 pub fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle, Pos2)> {
@@ -38,6 +40,24 @@ pub fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle,
         .filter(move |(_, _, at)| view.rect.contains(*at))
         .filter(move |(_, handle, _)| is_shown(handle))
         .take(MOST)
+}
+
+/// The plan's places with their names, faint, where the tool in use offers none of them to be grabbed.
+pub fn draw_faint(painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
+    let mut painter = painter.clone();
+    painter.multiply_opacity(FAINT);
+    let is_place = |handle: &Handle| {
+        matches!(
+            handle.what,
+            Handled::Fix(_) | Handled::Variable(_) | Handled::Waypoint(_) | Handled::Centre(_)
+        )
+    };
+    let mut labels = Vec::new();
+    for (_, handle, at) in near(canvas).filter(|(_, handle, _)| is_place(handle)) {
+        draw(&painter, at, handle, false, false, p);
+        labels.extend(label(handle, at, canvas, false));
+    }
+    draw_labels(&painter, labels, p);
 }
 
 /// What a handle that is hovered or dragged has come to.

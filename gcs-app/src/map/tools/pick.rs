@@ -37,8 +37,19 @@ pub fn lines_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
     let written = |leg: Id| Selection::Leg(canvas.scene.document.written(&leg));
     let mut things: Vec<Selection> =
         path::legs_near(at, canvas.view, canvas.scene).into_iter().map(written).collect();
+    if things.is_empty() {
+        things.extend(ways_near(at, canvas));
+    }
     things.extend(outlines_near(at, canvas));
     without_repeats(things)
+}
+
+/// The legs of ways from forks under the pointer, also of those that the flight does not take.
+fn ways_near<'a>(at: Pos2, canvas: &Canvas<'a>) -> impl Iterator<Item = Selection> + use<'a> {
+    let view = canvas.view;
+    let lines = canvas.sketch.ways.iter().flat_map(|way| &way.lines);
+    let near = lines.filter(move |line| is_near(at, view.place(line.from), view.place(line.to)));
+    near.map(|line| Selection::Leg(line.leg.clone()))
 }
 
 fn without_repeats(things: Vec<Selection>) -> Vec<Selection> {

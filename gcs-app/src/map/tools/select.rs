@@ -76,7 +76,7 @@ impl Select {
                 let new = create::leg(plan, &Profile::default(), LegChoice::Tf, &place, None, None);
                 let Some(new) = new else { return };
                 let becomes = Handled::Waypoint(new.id.clone());
-                (Edit::InsertLeg { leg: Box::new(new), at: Spot::Before(leg.clone()) }, becomes)
+                (create::insert(plan, new, Spot::Before(leg.clone())), becomes)
             }
             _ => return,
         };

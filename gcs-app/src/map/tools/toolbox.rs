@@ -3,7 +3,7 @@
 use super::new_leg::Side;
 use super::sweep::Sweep;
 use super::typed::Typed;
-use super::{Asked, Canvas, Card, Grip, Pointer, Tool, Touch, all, guided, is_guided, track};
+use super::{Asked, Canvas, Card, Grip, Pointer, Tool, Touch, all, guided, handles, is_guided, track};
 use crate::command::Queue;
 use crate::panels::Scene;
 use crate::theme::Palette;
@@ -184,6 +184,9 @@ impl Toolbox {
         }
         if let Some(area) = self.sweep.follow(map) {
             tool.sweep(area, canvas, queue);
+        }
+        if self.is_guided || self.current != 0 {
+            handles::draw_faint(ui.painter(), canvas, p);
         }
         tool.paint(ui.painter(), canvas, touch, p);
         self.sweep.paint(ui.painter(), p);
