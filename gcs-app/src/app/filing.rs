@@ -1,16 +1,15 @@
 //! The document and its files: opening, saving, asking where, and what was never saved.
 
 use super::App;
-use crate::command::{Replacement, Selection};
+use crate::command::Replacement;
 use crate::document::Document;
 use crate::export::Exported;
 use crate::files::{Choices, Content, Entry, FileEvent, Over, Purpose, Stamp, Writing};
 use crate::layers::{LayerCommand, Source};
-use crate::map::drawings;
+use crate::map::{clipboard, drawings};
 use crate::panels::browse::Browsing;
 use crate::recovery::{Keeper, LeftBehind};
 use crate::state::Level;
-use flight_plan::clipboard::Pasted;
 use interchange::{Format, Note};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -157,12 +156,14 @@ impl App {
         let plan = self.document.plan();
         let areas = imported.choices.areas;
         let added = drawings::add(&imported.features, areas, plan, self.view.selection.as_ref());
-        let done = added.and_then(|Pasted { legs, edit, .. }| self.document.edit(&edit).map(|()| legs));
+        let done =
+            added.and_then(|added| self.document.edit(&added.edit).map(|()| clipboard::selections(&added)));
         match done {
-            Ok(legs) => {
-                let mut legs = legs.into_iter();
-                self.view.select(legs.next().map(Selection::Leg));
-                self.view.also.extend(legs.map(Selection::Leg));
+            Ok(made) => {
+                made.first().into_iter().for_each(|first| self.map.reveal(first));
+                let mut made = made.into_iter();
+                self.view.select(made.next());
+                self.view.also.extend(made);
                 let name = imported.path.file_name().unwrap_or_default().to_string_lossy();
                 self.toasts.add(now_s, Level::Info, format!("Added what {name} draws"));
             }

@@ -184,7 +184,7 @@ impl App {
         match command {
             ViewCommand::Select(selection) => {
                 if let Some(selection) = &selection {
-                    self.map.reveal(selection, self.document.plan());
+                    self.map.reveal(selection);
                 }
                 self.view.select(selection);
             }

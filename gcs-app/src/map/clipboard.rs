@@ -56,7 +56,9 @@ fn copy(ctx: &Context, canvas: &Canvas<'_>) -> Option<()> {
     };
     let place = place.filter(|_| scene.view.also.is_empty()).map(crate::units::position);
     let set: Vec<Id> = match &scene.view.selection {
-        Some(Selection::Stage(id)) => plan.stage(id)?.legs.iter().map(|leg| leg.id.clone()).collect(),
+        Some(Selection::Stage(id)) => {
+            plan.stage(id)?.legs.iter().map(|leg| leg.id.clone()).collect()
+        }
         _ => scene.selected_set(),
     };
     ctx.copy_text(place.or_else(|| clipboard::copy(plan, &set))?);
@@ -113,18 +115,23 @@ fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Que
 /// Puts what was pasted into the plan and selects it, or says why that can't be.
 fn put(pasted: Result<Pasted, String>, queue: &mut Queue) {
     match pasted {
-        Ok(Pasted { legs, things, edit }) => {
-            queue.edit(edit);
-            let things = things.into_iter().filter_map(|thing| match thing {
-                Thing::Fix(fix) => Some(Selection::Fix(fix.id)),
-                Thing::Zone(zone) => Some(Selection::Zone(zone.id)),
-                Thing::Runway(runway) => Some(Selection::Runway(runway.id)),
-                Thing::Variable(_) | Thing::Procedure(_) | Thing::EmergencyPlan(_) => None,
-            });
-            let mut made = legs.into_iter().map(Selection::Leg).chain(things);
+        Ok(pasted) => {
+            let mut made = selections(&pasted).into_iter();
+            queue.edit(pasted.edit);
             queue.view(ViewCommand::Select(made.next()));
             made.for_each(|other| queue.view(ViewCommand::Toggle(other)));
         }
         Err(why) => queue.view(ViewCommand::Notice(why)),
     }
+}
+
+/// What was pasted or added, as something to be selected.
+pub fn selections(pasted: &Pasted) -> Vec<Selection> {
+    let things = pasted.things.iter().filter_map(|thing| match thing {
+        Thing::Fix(fix) => Some(Selection::Fix(fix.id.clone())),
+        Thing::Zone(zone) => Some(Selection::Zone(zone.id.clone())),
+        Thing::Runway(runway) => Some(Selection::Runway(runway.id.clone())),
+        Thing::Variable(_) | Thing::Procedure(_) | Thing::EmergencyPlan(_) => None,
+    });
+    pasted.legs.iter().cloned().map(Selection::Leg).chain(things).collect()
 }

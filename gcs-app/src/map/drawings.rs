@@ -48,24 +48,25 @@ pub fn add(
 ) -> Result<Pasted, String> {
     may_add(features)?;
     let mut with = plan.clone();
-    let (mut flown, mut edits) = (Vec::new(), Vec::new());
+    let (mut flown, mut edits, mut things) = (Vec::new(), Vec::new(), Vec::new());
     for feature in features.iter().filter(|feature| !is_of_a_flight(feature)) {
         match thing(feature, areas, &with) {
             Some(thing) => {
-                let edit = Edit::Add(Box::new(thing));
+                let edit = Edit::Add(Box::new(thing.clone()));
                 with = edit.apply(&with).map_err(|error| error.to_string())?;
                 edits.push(edit);
+                things.push(thing);
             }
             None => flown.push(feature.clone()),
         }
     }
     if flown.is_empty() {
-        return Ok(Pasted { legs: Vec::new(), things: Vec::new(), edit: Edit::All(edits) });
+        return Ok(Pasted { legs: Vec::new(), things, edit: Edit::All(edits) });
     }
     let Some(Aim::Spot(at)) = new_leg::aim(&with, selected, &Side::Behind) else {
         return Err("This plan has no stage to add legs to: add one in the plan's list (＋).".into());
     };
-    let Pasted { legs, things, edit } = legs(&flown, at, None, &with)?;
+    let Pasted { legs, edit, .. } = legs(&flown, at, None, &with)?;
     edits.push(edit);
     Ok(Pasted { legs, things, edit: Edit::All(edits) })
 }

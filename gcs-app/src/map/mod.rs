@@ -4,7 +4,7 @@
 pub mod aircraft;
 pub mod basemap;
 mod chips;
-mod clipboard;
+pub mod clipboard;
 pub mod coverage;
 pub mod drawings;
 pub mod footprints;
@@ -22,6 +22,7 @@ pub mod places;
 pub mod plan;
 pub mod polyline;
 pub mod rasters;
+mod reveal;
 pub mod sketch;
 pub mod text;
 pub mod tools;
@@ -72,8 +73,8 @@ pub struct MapState {
     relief: Option<Raster>,
     /// Maps that users brought, by the number of their layer.
     rasters: BTreeMap<u64, Raster>,
-    /// A place to be brought into view, if it is not.
-    reveal: Option<LatLon>,
+    /// What is to be brought into view, if it is not.
+    reveal: Option<Selection>,
     /// A box to be shown in the next frame.
     fit_to: Option<[LatLon; 2]>,
     path: path::Layer,
@@ -113,11 +114,6 @@ impl MapState {
         }
     }
 
-    /// Brings what was selected into the middle, if it is not in view.
-    pub fn reveal(&mut self, selection: &Selection, plan: &flight_plan::FlightPlan) {
-        self.reveal = self.place_of(selection, plan);
-    }
-
     /// Shows where a new plan begins, some kilometres around it.
     pub fn begin_at(&mut self, at: LatLon) {
         self.begin = Some(at);
@@ -154,27 +150,6 @@ impl MapState {
     /// Puts the tool that draws legs to use, for a new way from the selected leg.
     pub fn draw_way(&mut self) {
         self.tools.draw_legs(Side::Way(Way::New));
-    }
-
-    /// Where something selectable is, if it is anywhere.
-    pub fn place_of(&self, selection: &Selection, plan: &flight_plan::FlightPlan) -> Option<LatLon> {
-        let of_leg = |leg| self.sketch.handles.iter().find(|h| h.what.leg() == Some(leg)).map(|h| h.at);
-        match selection {
-            Selection::Leg(id) => of_leg(id).or_else(|| plan.leg(id).and_then(|c| place_of_leg(plan, c.leg))),
-            Selection::Stage(id) => plan
-                .stage(id)?
-                .legs
-                .iter()
-                .find_map(|leg| place_of_leg(plan, leg).or_else(|| of_leg(&leg.id))),
-            Selection::Emergency(id) => {
-                self.sketch.emergencies.iter().find(|(e, _)| e == id)?.1.first().copied()
-            }
-            Selection::Fix(id) => plan.fix(id).map(|f| f.position),
-            Selection::Runway(id) => plan.runway(id).map(|r| r.threshold),
-            Selection::Zone(id) => plan.zone(id).and_then(zones::middle),
-            Selection::Variable(id) => self.sketch.variables.iter().find(|v| v.name == *id).map(|v| v.at),
-            Selection::Procedure(_) => None,
-        }
     }
 
     /// Shows a box in the next frame.
@@ -251,10 +226,9 @@ impl MapState {
         if follows && memory.detached().is_some() {
             queue.view(ViewCommand::Follow(false));
         }
-        if let Some(at) = self.reveal.take().filter(|_| !scene.view.follow)
-            && !shown.inner.rect.contains(shown.inner.place(at))
+        if let Some(selection) = self.reveal.take().filter(|_| !scene.view.follow)
+            && self.come_to(&selection, &shown.inner, scene, &mut memory)
         {
-            memory.center_at(lat_lon(at.lat_deg, at.lon_deg));
             ui.ctx().request_repaint();
         }
         furniture::buttons(ui, &mut memory, scene, queue);
@@ -392,13 +366,4 @@ fn live_variables<'a>(scene: &Scene<'a>) -> Option<&'a PlanVariables> {
     let hash = scene.analysis.hash_of(scene.document.version())?;
     let active = scene.vehicle.active_hash().is_some_and(|h| *h == *hash);
     active.then(|| scene.vehicle.variables.as_ref().map(|v| &v.value)).flatten()
-}
-
-fn place_of_leg(plan: &flight_plan::FlightPlan, leg: &flight_plan::Leg) -> Option<LatLon> {
-    use flight_plan::Place;
-    match leg.place() {
-        Some(Place::Fix(id)) => plan.fix(id).map(|f| f.position),
-        Some(Place::Position(_)) => None,
-        None => leg.body().iter().find_map(|inner| place_of_leg(plan, inner)),
-    }
 }

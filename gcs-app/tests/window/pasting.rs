@@ -189,6 +189,24 @@ fn a_drawing_of_another_program_becomes_legs() {
 }
 
 #[test]
+fn the_map_comes_to_what_is_pasted_out_of_its_view() {
+    let mut window = window();
+    window.click("TF side4");
+    let map = window.harness.get_by_label("Map").rect();
+    let route = "-83.1,36.9,0 -83.0,36.95,0";
+    window.paste(&format!(
+        r#"<kml xmlns="http://www.opengis.net/kml/2.2"><Placemark><name>Road</name><LineString><coordinates>{route}</coordinates></LineString></Placemark></kml>"#
+    ));
+    window.steps(3);
+    let made = window.selected();
+    let leg = window.plan().leg(&made.as_str().into()).unwrap().leg.clone();
+    assert_eq!(leg.name, "Road");
+    for mark in ["Waypoint Road", "Corner 2 of Road"] {
+        assert!(map.contains(window.centre(mark)), "{mark}");
+    }
+}
+
+#[test]
 fn what_is_typed_into_a_field_is_pasted_there() {
     use egui_kittest::kittest::Queryable;
     let mut window = window();

@@ -1,0 +1,69 @@
+//! Where things are, and bringing what is out of view into it.
+
+use super::view::View;
+use super::{MapState, zones};
+use crate::command::Selection;
+use crate::panels::Scene;
+use flight_plan::{FlightPlan, Leg, Place, transform};
+use geometry::LatLon;
+use walkers::{MapMemory, lat_lon};
+
+impl MapState {
+    /// Brings what was selected into the middle, if it is not in view; in the next frame, for it may be new.
+    pub fn reveal(&mut self, selection: &Selection) {
+        self.reveal = Some(selection.clone());
+    }
+
+    /// Where something selectable is, if it is anywhere.
+    pub fn place_of(&self, selection: &Selection, plan: &FlightPlan) -> Option<LatLon> {
+        let of_leg = |leg| self.sketch.handles.iter().find(|h| h.what.leg() == Some(leg)).map(|h| h.at);
+        match selection {
+            Selection::Leg(id) => of_leg(id).or_else(|| plan.leg(id).and_then(|c| place_of_leg(plan, c.leg))),
+            Selection::Stage(id) => plan
+                .stage(id)?
+                .legs
+                .iter()
+                .find_map(|leg| place_of_leg(plan, leg).or_else(|| of_leg(&leg.id))),
+            Selection::Emergency(id) => {
+                self.sketch.emergencies.iter().find(|(e, _)| e == id)?.1.first().copied()
+            }
+            Selection::Fix(id) => plan.fix(id).map(|f| f.position),
+            Selection::Runway(id) => plan.runway(id).map(|r| r.threshold),
+            Selection::Zone(id) => plan.zone(id).and_then(zones::middle),
+            Selection::Variable(id) => self.sketch.variables.iter().find(|v| v.name == *id).map(|v| v.at),
+            Selection::Procedure(_) => None,
+        }
+    }
+
+    /// True: it was out of view. Of several places the map shows all.
+    pub(super) fn come_to(
+        &self,
+        what: &Selection,
+        view: &View,
+        scene: &Scene<'_>,
+        memory: &mut MapMemory,
+    ) -> bool {
+        let plan = scene.document.plan();
+        let Some(at) = self.place_of(what, plan).filter(|at| !view.rect.contains(view.place(*at))) else {
+            return false;
+        };
+        let all = transform::places_of(plan, &scene.selected_set());
+        match View::fit(&all, view.rect.size()).filter(|_| all.len() > 1) {
+            Some((middle, zoom)) => {
+                memory.center_at(middle);
+                // never nearer than it was, and fit keeps within the map's range
+                let _ = memory.set_zoom(zoom.min(memory.zoom()));
+            }
+            None => memory.center_at(lat_lon(at.lat_deg, at.lon_deg)),
+        }
+        true
+    }
+}
+
+fn place_of_leg(plan: &FlightPlan, leg: &Leg) -> Option<LatLon> {
+    match leg.place() {
+        Some(Place::Fix(id)) => plan.fix(id).map(|f| f.position),
+        Some(Place::Position(_)) => None,
+        None => leg.body().iter().find_map(|inner| place_of_leg(plan, inner)),
+    }
+}
