@@ -1,5 +1,5 @@
-//! Colours and spacing, light and dark. Red is warning, amber is caution, and neither is used for
-//! anything else; what colour says, shape or line style says too.
+//! Colours and spacing, light and dark. Red is warning (and, fainter, what is forbidden), amber is caution, and
+//! neither is used for anything else; what colour says, shape or line style says too.
 
 use egui::{Color32, CornerRadius, Margin, Shadow, Stroke, TextStyle, Theme, Ui, Vec2, Visuals, vec2};
 use serde::{Deserialize, Serialize};
@@ -29,7 +29,7 @@ pub struct Palette {
     pub good: Color32,
     /// Cautions, nothing else.
     pub caution: Color32,
-    /// Warnings, nothing else.
+    /// Warnings, and fainter where the flight must not be; nothing else.
     pub warning: Color32,
     /// Emergency plans and other contingencies.
     pub contingency: Color32,

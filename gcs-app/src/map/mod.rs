@@ -13,6 +13,7 @@ pub mod furniture;
 pub mod graticule;
 pub mod guard;
 mod items;
+mod kin;
 mod left_out;
 pub mod marks;
 mod menu;
@@ -285,12 +286,13 @@ impl MapState {
 
     /// The plan, the paths that will be, would be and were flown.
     fn draw_plan(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
-        zones::draw(painter, view, scene, p);
-        plan::draw_areas(painter, view, &self.sketch, scene, p);
+        let kin = kin::Kin::of(scene);
+        zones::draw(painter, view, scene, &kin, p);
+        plan::draw_areas(painter, view, &self.sketch, (scene, &kin), p);
         variables::draw(painter, view, &self.sketch, scene, p);
-        plan::draw_emergencies(painter, view, &self.sketch, scene, p);
+        plan::draw_emergencies(painter, view, &self.sketch, (scene, &kin), p);
         footprints::draw(painter, view, &self.sketch, scene, p);
-        plan::draw_ways(painter, view, &self.sketch, scene, p);
+        plan::draw_ways(painter, view, &self.sketch, (scene, &kin), p);
         self.path.draw(painter, view, scene, &self.sketch, p);
         let place_of_leg = |id: &Id| self.place_of(&Selection::Leg(id.clone()), scene.document.plan());
         left_out::draw(painter, view, scene, place_of_leg, p);

@@ -1,5 +1,6 @@
 //! The plan's areas, runways and emergency plans.
 
+use super::kin::Kin;
 use super::polyline::{self, Style};
 use super::sketch::{Circle, Sketch};
 use super::text;
@@ -12,16 +13,23 @@ use egui::{Align2, Painter, Pos2, Shape, Stroke, vec2};
 use flight_plan::{FlightPlan, Id};
 
 /// Areas to be scanned and orbits.
-pub fn draw_areas(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<'_>, p: &Palette) {
+pub fn draw_areas(
+    painter: &Painter,
+    view: &View,
+    sketch: &Sketch,
+    (scene, kin): (&Scene<'_>, &Kin),
+    p: &Palette,
+) {
     for circle in &sketch.circles {
-        draw_circle(painter, view, circle, is_selected(scene, &circle.leg), p);
+        draw_circle(&kin.painter(painter, &circle.leg), view, circle, is_selected(scene, &circle.leg), p);
     }
     for (leg, rings) in &sketch.polygons {
         let width = if is_selected(scene, leg) { 2.2 } else { 1.4 };
+        let painter = kin.painter(painter, leg);
         for ring in rings {
             let closed: Vec<Mercator> = ring.iter().chain(ring.first()).map(|at| (*at).into()).collect();
             let parts = polyline::visible_parts(&closed, view);
-            polyline::draw(painter, &parts, Stroke::new(width, p.text), Style::Dashed, p.halo);
+            polyline::draw(&painter, &parts, Stroke::new(width, p.text), Style::Dashed, p.halo);
         }
     }
 }
@@ -47,10 +55,18 @@ fn draw_circle(painter: &Painter, view: &View, circle: &Circle, selected: bool, 
 }
 
 /// The ways on from forks, each with its name; the flown path is drawn over the one that is taken.
-pub fn draw_ways(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<'_>, p: &Palette) {
+pub fn draw_ways(
+    painter: &Painter,
+    view: &View,
+    sketch: &Sketch,
+    (scene, kin): (&Scene<'_>, &Kin),
+    p: &Palette,
+) {
     let mut placed = Labels::new(painter.clip_rect().into());
     for way in &sketch.ways {
         let selected = is_selected(scene, &way.fork);
+        let of = way.lines.iter().map(|line| &line.leg).find(|leg| kin.has(leg)).unwrap_or(&way.fork);
+        let painter = &kin.painter(painter, of);
         let points: Vec<Mercator> = way.places().map(Mercator::from).collect();
         let parts = polyline::visible_parts(&points, view);
         let stroke = Stroke::new(if selected { 2.2 } else { 1.4 }, p.accent);
@@ -77,18 +93,25 @@ fn is_looked_at(scene: &Scene<'_>, leg: &Id) -> bool {
 }
 
 /// Emergency plans: grey and dotted; the one in force is named.
-pub fn draw_emergencies(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<'_>, p: &Palette) {
+pub fn draw_emergencies(
+    painter: &Painter,
+    view: &View,
+    sketch: &Sketch,
+    (scene, kin): (&Scene<'_>, &Kin),
+    p: &Palette,
+) {
     let in_force = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency_in_force.as_ref());
     for (id, line) in &sketch.emergencies {
         let points: Vec<Mercator> = line.iter().map(|at| (*at).into()).collect();
         let emphasised =
             in_force == Some(id) || matches!(&scene.view.selection, Some(Selection::Emergency(e)) if e == id);
+        let painter = if in_force == Some(id) { painter.clone() } else { kin.painter(painter, id) };
         let width = if emphasised { 3.0 } else { 2.0 };
         let parts = polyline::visible_parts(&points, view);
-        polyline::draw(painter, &parts, Stroke::new(width, p.contingency), Style::Dotted, p.halo);
+        polyline::draw(&painter, &parts, Stroke::new(width, p.contingency), Style::Dotted, p.halo);
         if let (true, Some(first)) = (emphasised, line.first()) {
             text::haloed(
-                painter,
+                &painter,
                 view.place(*first) + vec2(8.0, -8.0),
                 Align2::LEFT_BOTTOM,
                 &format!("⚑ {}", scene.document.plan().label(id)),

@@ -1,5 +1,6 @@
-//! Zones: hatched where the flight must not be, a double line around where it must stay.
+//! Zones: hatched in red where the flight must not be, a double line around where it must stay.
 
+use super::kin::Kin;
 use super::polyline::{self, Style};
 use super::text;
 use super::view::View;
@@ -9,22 +10,29 @@ use crate::command::Selection;
 use crate::panels::Scene;
 use crate::theme::Palette;
 use crate::units::Units;
-use egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, pos2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, vec2};
 use flight_plan::{Altitude, Value, Zone, ZoneKind, ZoneShape};
 use geometry::LatLon;
 use std::convert::Infallible;
 
 /// Every zone of the plan.
-pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, kin: &Kin, p: &Palette) {
     let faulty = scene.faulty();
     for zone in &scene.document.plan().zones {
-        let selected = matches!(&scene.view.selection, Some(Selection::Zone(id)) if *id == zone.id);
-        let colour = if faulty.contains(&zone.id) { p.warning } else { p.contingency };
-        draw_zone(painter, view, zone, (selected, colour), scene.units(), p);
+        let selected = scene.is_selected(&Selection::Zone(zone.id.clone()));
+        let (painter, colour) = match (faulty.contains(&zone.id), zone.kind) {
+            (true, _) => (painter.clone(), p.warning),
+            (_, ZoneKind::KeepOut) => (kin.painter(painter, &zone.id), p.warning.gamma_multiply(FORBIDDEN)),
+            (_, ZoneKind::KeepIn) => (kin.painter(painter, &zone.id), p.contingency),
+        };
+        draw_zone(&painter, view, zone, (selected, colour), scene.units(), p);
     }
 }
 
-/// `colour`: red, where the path breaks it.
+/// How much of the red of a fault is left for where the flight must not be.
+const FORBIDDEN: f32 = 0.75;
+
+/// `colour`: all of the red, where the path breaks it.
 fn draw_zone(
     painter: &Painter,
     view: &View,
@@ -38,16 +46,37 @@ fn draw_zone(
     if ring.len() < 3 || !bounds.intersects(view.rect) {
         return;
     }
-    chart::paint(
-        &mut Screen { painter, view },
-        &ring,
-        &style(zone.kind, selected, colour, p),
-        bounds.intersect(view.rect).into(),
-    );
-    let at = pos2(bounds.center().x, bounds.top() + 4.0);
-    if view.is_near(at) && bounds.width() > 40.0 {
-        text::haloed(painter, at, Align2::CENTER_TOP, &label(zone, units), 11.5, colour, p);
+    let seen = bounds.intersect(view.rect);
+    chart::paint(&mut Screen { painter, view }, &ring, &style(zone.kind, selected, colour, p), seen.into());
+    if bounds.width() > 40.0 {
+        let corners: Vec<Pos2> = match &zone.shape {
+            ZoneShape::Polygon(corners) => corners.iter().map(|at| view.place(*at)).collect(),
+            ZoneShape::Circle { .. } => Vec::new(),
+        };
+        let text = label(zone, units);
+        let galley = painter.layout_no_wrap(text.clone(), FontId::proportional(LABEL), colour);
+        let (at, anchor) = label_at(seen, galley.size(), &corners);
+        text::haloed(painter, at, anchor, &text, LABEL, colour, p);
     }
+}
+
+/// Size of a zone's name, points.
+const LABEL: f32 = 11.5;
+
+/// The name of a zone is at its upper edge, its middle or its lower edge: where it is clear of the corners and of what tools write
+/// beside them.
+fn label_at(seen: Rect, size: Vec2, corners: &[Pos2]) -> (Pos2, Align2) {
+    let beside = |corner: &Pos2| Rect::from_min_max(*corner - vec2(12.0, 12.0), *corner + vec2(160.0, 30.0));
+    let places = [
+        (seen.center_top() + vec2(0.0, 4.0), Align2::CENTER_TOP),
+        (seen.center(), Align2::CENTER_CENTER),
+        (seen.center_bottom() - vec2(0.0, 4.0), Align2::CENTER_BOTTOM),
+    ];
+    let is_clear = |(at, anchor): &(Pos2, Align2)| {
+        let rect = anchor.anchor_size(*at, size);
+        corners.iter().all(|corner| !beside(corner).intersects(rect))
+    };
+    places.into_iter().find(is_clear).unwrap_or(places[0])
 }
 
 /// A line on the map and the colour of its halo.
@@ -57,7 +86,7 @@ fn style(kind: ZoneKind, selected: bool, colour: Color32, p: &Palette) -> ZoneSt
     let width = if selected { 2.4 } else { 1.6 };
     let (hatching, outlines) = match kind {
         ZoneKind::KeepOut => {
-            let hatching = (Stroke::new(0.8, colour), p.halo);
+            let hatching = (Stroke::new(1.0, colour), p.halo);
             (Some(hatching), vec![(Stroke::new(width, colour), p.halo)])
         }
         ZoneKind::KeepIn => {
@@ -127,5 +156,26 @@ pub fn middle(zone: &Zone) -> Option<LatLon> {
     match &zone.shape {
         ZoneShape::Circle { centre, .. } => Some(*centre).filter(|c| c.is_valid()),
         ZoneShape::Polygon(corners) => geometry::LocalFrame::around(corners).map(|frame| frame.origin()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    #[test]
+    fn the_name_of_a_zone_is_clear_of_its_corners_and_of_what_is_said_there() {
+        let size = vec2(130.0, 14.0);
+        let corners =
+            |rect: Rect| [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom()];
+        let wide = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 300.0));
+        assert_eq!(label_at(wide, size, &corners(wide)).1, Align2::CENTER_TOP);
+        let narrow = Rect::from_min_size(pos2(0.0, 0.0), vec2(200.0, 150.0));
+        assert_eq!(label_at(narrow, size, &corners(narrow)).1, Align2::CENTER_CENTER);
+        assert_eq!(label_at(narrow, size, &[]).1, Align2::CENTER_TOP, "a circle has no corners");
+        // too small for all of it: where it always was
+        let small = Rect::from_min_size(pos2(0.0, 0.0), vec2(60.0, 40.0));
+        assert_eq!(label_at(small, size, &corners(small)).1, Align2::CENTER_TOP);
     }
 }

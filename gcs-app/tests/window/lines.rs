@@ -2,6 +2,7 @@
 
 use super::Window;
 use super::pasting::{legs, window};
+use egui::accesskit::Role;
 use egui::{Key, Pos2, vec2};
 use egui_kittest::kittest::Queryable;
 
@@ -72,6 +73,23 @@ fn an_emergency_plan_shows_from_where_it_would_be_flown_while_it_is_drawn() {
     window.harness.hover_at(window.centre("Map") + vec2(60.0, 40.0));
     window.steps(2);
     assert!(window.lines_within("Map", band) > before, "a band from the path");
+}
+
+#[test]
+fn what_does_not_go_with_the_selection_is_fainter() {
+    let zone = r#"<zones><keepOut id="quarry" lat="36.3141" lon="-84.1567" radius="150"/></zones><mainPlan"#;
+    let mut window = Window::open(&super::SQUARE.replacen("<mainPlan", zone, 1));
+    window.until_analysed();
+    let colour = |window: &Window| window.colour_within("Map", "quarry").unwrap();
+    let alone = colour(&window);
+    window.click("TF side3");
+    window.steps(2);
+    assert!(colour(&window).a() < alone.a(), "{alone:?}");
+    window.harness.get_by_role_and_label(Role::TreeItem, "OUT quarry").scroll_to_me();
+    window.steps(10);
+    window.select_row(("OUT quarry", 0));
+    window.steps(2);
+    assert_eq!(colour(&window), alone);
 }
 
 #[test]

@@ -154,7 +154,8 @@ fn alternates(canvas: &Canvas<'_>, context: &LegContext<'_>, bands: &mut Vec<Ban
     }
 }
 
-fn in_force<'a>(plan: &'a FlightPlan, context: &LegContext<'a>) -> &'a EmergencyChoice {
+/// The emergency plans that are in force on a leg.
+pub fn in_force<'a>(plan: &'a FlightPlan, context: &LegContext<'a>) -> &'a EmergencyChoice {
     let loops = context.loops.iter().rev().map(|leg| &leg.emergency);
     let mut choices = std::iter::once(&context.leg.emergency).chain(loops).chain([&context.stage.emergency]);
     choices.find(|choice| !choice.by_cause.is_empty()).unwrap_or(&plan.emergency)

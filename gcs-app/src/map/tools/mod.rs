@@ -24,6 +24,7 @@ mod track;
 mod trial;
 mod typed;
 
+pub(super) use bands::in_force;
 pub use toolbox::Toolbox;
 
 use super::sketch::Sketch;

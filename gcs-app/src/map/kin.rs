@@ -1,0 +1,98 @@
+//! What goes with the selection. While something is selected, the rest is a little fainter.
+
+use super::tools::in_force;
+use crate::command::Selection;
+use crate::panels::Scene;
+use egui::Painter;
+use flight_plan::{EmergencyChoice, FlightPlan, Id, Leg, Stage};
+use std::collections::HashSet;
+
+/// How much is left of the rest.
+const FAINT: f32 = 0.6;
+
+/// The selection with what goes with it: the legs of a stage, the alternates of a leg, the legs inside a loop.
+#[derive(Debug)]
+pub struct Kin {
+    /// `None`: nothing is selected.
+    ids: Option<HashSet<Id>>,
+}
+
+impl Kin {
+    /// What goes with the present selection.
+    pub fn of(scene: &Scene<'_>) -> Self {
+        let plan = scene.document.plan();
+        let mut ids = HashSet::new();
+        for what in scene.view.selection.iter().chain(&scene.view.also) {
+            ids.insert(what.id().clone());
+            add(plan, what, &mut ids);
+        }
+        Self { ids: scene.view.selection.is_some().then_some(ids) }
+    }
+
+    /// It is selected, goes with what is, or nothing is selected.
+    pub fn has(&self, id: &Id) -> bool {
+        self.ids.as_ref().is_none_or(|ids| ids.contains(id))
+    }
+
+    /// Paints it as it is, or fainter.
+    pub fn painter(&self, painter: &Painter, id: &Id) -> Painter {
+        let mut painter = painter.clone();
+        if !self.has(id) {
+            painter.multiply_opacity(FAINT);
+        }
+        painter
+    }
+}
+
+fn add(plan: &FlightPlan, what: &Selection, ids: &mut HashSet<Id>) {
+    match what {
+        Selection::Leg(id) => {
+            let Some(context) = plan.leg(id) else { return };
+            add_alternates(in_force(plan, &context), ids);
+            add_legs(context.leg, ids);
+        }
+        Selection::Stage(id) => plan.stage(id).into_iter().for_each(|stage| add_stage(stage, ids)),
+        Selection::Emergency(id) => {
+            let stages = plan.emergency_plan(id).map_or(&[][..], |emergency| &emergency.stages);
+            stages.iter().for_each(|stage| add_stage(stage, ids));
+        }
+        _ => {}
+    }
+}
+
+fn add_stage(stage: &Stage, ids: &mut HashSet<Id>) {
+    add_alternates(&stage.emergency, ids);
+    stage.legs.iter().for_each(|leg| add_legs(leg, ids));
+}
+
+fn add_legs(leg: &Leg, ids: &mut HashSet<Id>) {
+    ids.insert(leg.id.clone());
+    leg.body().iter().for_each(|inner| add_legs(inner, ids));
+}
+
+fn add_alternates(choice: &EmergencyChoice, ids: &mut HashSet<Id>) {
+    ids.extend(choice.by_cause.iter().map(|(_, plan)| plan.clone()));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assets;
+
+    fn kin(what: &Selection) -> HashSet<Id> {
+        let plan = flight_plan::read(assets::FIRE_WATCH.as_bytes()).plan;
+        let mut ids = HashSet::from([what.id().clone()]);
+        add(&plan, what, &mut ids);
+        ids
+    }
+
+    #[test]
+    fn a_stage_has_its_legs_and_a_leg_its_alternates() {
+        let plan = flight_plan::read(assets::FIRE_WATCH.as_bytes()).plan;
+        let look = kin(&Selection::Leg("look".into()));
+        assert!(look.contains("return") && !look.contains("regroup"));
+        let stage = plan.leg(&"look".into()).unwrap().stage.id.clone();
+        let of_stage = kin(&Selection::Stage(stage));
+        assert!(["look", "regroup"].iter().all(|leg| of_stage.contains(*leg)));
+    }
+}
