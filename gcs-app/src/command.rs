@@ -150,7 +150,7 @@ pub enum ViewCommand {
     Select(Option<Selection>),
     /// Point out something (a leg, a stage) without selecting it, or nothing any more.
     PointOut(Option<Id>),
-    /// Add a leg, fix, zone or runway to what is selected, or take it out.
+    /// Add a leg, stage, fix, zone or runway to what is selected, or take it out.
     Toggle(Selection),
     /// Select every leg from the selected one to this one.
     Extend(Id),
@@ -308,9 +308,9 @@ pub enum Selection {
 }
 
 impl Selection {
-    /// It can be selected together with others: it has a place of its own.
+    /// It can be selected together with others: it, or what is in it, has a place of its own.
     pub fn is_in_sets(&self) -> bool {
-        matches!(self, Self::Leg(_) | Self::Fix(_) | Self::Zone(_) | Self::Runway(_))
+        matches!(self, Self::Leg(_) | Self::Stage(_) | Self::Fix(_) | Self::Zone(_) | Self::Runway(_))
     }
 
     /// The identifier it stands for.

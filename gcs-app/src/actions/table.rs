@@ -257,7 +257,7 @@ fn delete(scene: &Scene<'_>) -> Asked {
 fn clip(scene: &Scene<'_>, clip: Clip) -> Asked {
     let is_stage = matches!(scene.view.selection, Some(Selection::Stage(_)));
     if scene.selected_set().is_empty() && !(clip == Clip::Copy && is_stage) {
-        return Err("Select legs, fixes, zones or runways first");
+        return Err("Select legs, fixes, zones, runways or several stages first");
     }
     view(ViewCommand::Clip(clip))
 }

@@ -56,7 +56,8 @@ fn copy(ctx: &Context, canvas: &Canvas<'_>) -> Option<()> {
     };
     let place = place.filter(|_| scene.view.also.is_empty()).map(crate::units::position);
     let set: Vec<Id> = match &scene.view.selection {
-        Some(Selection::Stage(id)) => {
+        // alone it is no set
+        Some(Selection::Stage(id)) if scene.view.also.is_empty() => {
             plan.stage(id)?.legs.iter().map(|leg| leg.id.clone()).collect()
         }
         _ => scene.selected_set(),

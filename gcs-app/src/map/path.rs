@@ -72,8 +72,10 @@ fn draft(painter: &Painter, view: &View, sketch: &Sketch, colour: Color32, p: &P
 fn is_looked_at(scene: &Scene<'_>, leg: &Id, stage: &Id) -> bool {
     let pointed = scene.view.pointed.as_ref();
     let selected = match &scene.view.selection {
-        Some(selected) if selected.is_in_sets() => scene.is_selected(&Selection::Leg(leg.clone())),
-        Some(Selection::Stage(id)) => id == stage,
+        Some(selected) if selected.is_in_sets() => {
+            scene.is_selected(&Selection::Leg(leg.clone()))
+                || scene.is_selected(&Selection::Stage(stage.clone()))
+        }
         _ => false,
     };
     selected || pointed == Some(leg) || pointed == Some(stage)

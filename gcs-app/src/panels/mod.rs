@@ -221,7 +221,7 @@ impl ViewState {
         self.selection = selection;
         self.also.clear();
     }
-    /// Adds a leg, fix, zone or runway to what is selected, or takes it out.
+    /// Adds a leg, stage, fix, zone or runway to what is selected, or takes it out.
     pub fn toggle(&mut self, what: Selection) {
         match &self.selection {
             Some(first) if *first == what => self.selection = self.also.pop_first(),
@@ -355,7 +355,7 @@ impl<'a> Scene<'a> {
     pub fn is_selected(&self, selection: &Selection) -> bool {
         self.view.selection.as_ref() == Some(selection) || self.view.also.contains(selection)
     }
-    /// The legs that are selected and still in the plan, in its order.
+    /// The legs that are selected and still in the plan, in its order; in a set, those of a stage are selected with it.
     pub fn selected_legs(&self) -> Vec<Id> {
         let plan = self.document.plan();
         match &self.view.selection {
@@ -364,13 +364,17 @@ impl<'a> Scene<'a> {
             }
             Some(first) if first.is_in_sets() && !self.view.also.is_empty() => {
                 let legs = plan.all_legs();
-                let ids = legs.iter().map(|context| context.leg.id.clone());
-                ids.filter(|id| self.is_selected(&Selection::Leg(id.clone()))).collect()
+                let chosen = legs.iter().filter(|c| {
+                    let (leg, stage) =
+                        (Selection::Leg(c.leg.id.clone()), Selection::Stage(c.stage.id.clone()));
+                    self.is_selected(&leg) || (c.loops.is_empty() && self.is_selected(&stage))
+                });
+                chosen.map(|context| context.leg.id.clone()).collect()
             }
             _ => Vec::new(),
         }
     }
-    /// All legs, fixes, zones and runways that are selected and still in the plan.
+    /// All legs, stages, fixes, zones and runways that are selected and still in the plan, with the legs of those stages.
     pub fn selected_set(&self) -> Vec<Id> {
         let plan = self.document.plan();
         let all = self.view.selection.iter().chain(&self.view.also);
@@ -378,6 +382,7 @@ impl<'a> Scene<'a> {
             Selection::Fix(id) => plan.fix(id).is_some(),
             Selection::Zone(id) => plan.zone(id).is_some(),
             Selection::Runway(id) => plan.runway(id).is_some(),
+            Selection::Stage(id) => !self.view.also.is_empty() && plan.stage(id).is_some(),
             _ => false,
         });
         self.selected_legs().into_iter().chain(things.map(|what| what.id().clone())).collect()

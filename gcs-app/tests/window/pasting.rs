@@ -207,6 +207,33 @@ fn the_map_comes_to_what_is_pasted_out_of_its_view() {
 }
 
 #[test]
+fn stages_are_moved_and_copied_as_one_set() {
+    let more = r#"<stage id="more" type="en-route" altitude="150" altitudeReference="home">
+        <TF id="m1" lat="36.3150" lon="-84.1900"/><TF id="m2" lat="36.3180" lon="-84.1850"/></stage>
+        <stage id="land""#;
+    let mut window = Window::open(&SQUARE.replacen(r#"<stage id="land""#, more, 1));
+    window.until_analysed();
+    window.select_row(("ENR circuit", 0));
+    window.steps(2);
+    window.select_row_with(("ENR more", 0), egui::Modifiers::COMMAND);
+    window.steps(2);
+    let before = window.plan();
+    let grip = window.centre("Move what is selected");
+    window.drag(grip, vec2(-20.0, 15.0));
+    let moved = window.plan();
+    let places = |plan: &flight_plan::FlightPlan, leg: &str| {
+        transform::places(plan, plan.leg(&Id::new(leg)).unwrap().leg)
+    };
+    for leg in ["side1", "side3", "m1", "m2"] {
+        assert_ne!(places(&moved, leg), places(&before, leg), "{leg}");
+    }
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+    let text = taken(&mut window, Event::Copy);
+    assert!(text.contains("side1") && text.contains("m2"), "{text}");
+}
+
+#[test]
 fn what_is_typed_into_a_field_is_pasted_there() {
     use egui_kittest::kittest::Queryable;
     let mut window = window();

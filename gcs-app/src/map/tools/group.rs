@@ -1,4 +1,4 @@
-//! Several selected legs, fixes, zones and runways as one: a box around them, and handles that move, turn and scale them together.
+//! Several selected legs, stages, fixes, zones and runways as one: a box around them, and handles that move, turn and scale them together.
 
 use super::pen::way;
 use super::{Canvas, Grip};
