@@ -167,6 +167,8 @@ fn a_variable_is_dragged_onto_the_spacing_of_a_scan() {
     let mut window = window();
     let scan = drawn_scan(&mut window);
     assert!(window.harness.query_by_label("Spacing: bind to a variable").is_some());
+    window.harness.get_by_role_and_label(Role::SpinButton, "Spacing").scroll_to_me();
+    window.steps(10);
     let before = window.plan();
     let field = window.harness.get_by_role_and_label(Role::SpinButton, "Spacing").rect().center();
     let row = window.harness.get_by_role_and_label(Role::TreeItem, "VAR fast").rect();
