@@ -12,6 +12,7 @@ mod leg;
 mod rearrange;
 mod thing;
 mod trial;
+mod ways;
 
 pub use arrange::{
     delete_legs, delete_set, duplicate, fork_around, loop_around, procedure_of, shift, unloop,
@@ -30,6 +31,7 @@ pub use thing::{
 };
 pub(crate) use thing::{every_leg, legs_in};
 pub use trial::{RUN_UP_M, is_tried, trial};
+pub use ways::{delete_branch, rename_branch, shift_branch, ways};
 
 use crate::edit::lists;
 use crate::{FlightPlan, Id};
