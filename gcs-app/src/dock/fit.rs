@@ -18,8 +18,13 @@ pub struct Wanted(HashMap<TileId, (f32, f32)>);
 
 impl Wanted {
     /// What a tile with this share is to have; a share that was not given here is what the operator wants.
-    fn of(&self, tile: TileId, share: f32) -> f32 {
+    pub fn of(&self, tile: TileId, share: f32) -> f32 {
         self.0.get(&tile).filter(|(_, given)| *given == share).map_or(share, |(wanted, _)| *wanted)
+    }
+
+    /// It has the share that it was given.
+    pub fn is_given(&self, tile: TileId, share: f32) -> bool {
+        self.0.get(&tile).is_none_or(|(_, given)| *given == share)
     }
 }
 

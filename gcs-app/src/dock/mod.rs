@@ -3,6 +3,7 @@
 
 mod content;
 mod fit;
+mod grow;
 mod layout;
 mod stops;
 
@@ -33,6 +34,8 @@ pub struct Dock {
     /// Panels that the operator has hidden; they keep their places.
     hidden: BTreeSet<PanelId>,
     wanted: fit::Wanted,
+    /// How many times as wide the sides of the default layout are in a wide window; `None`: the operator has a layout of his own.
+    grown: Option<f32>,
     /// The map and the panels that were drawn last.
     stops: Vec<Stop>,
 }
@@ -49,17 +52,20 @@ impl Dock {
             tree: PanelTree::empty(egui::Id::unique("dock")),
             hidden: BTreeSet::new(),
             wanted: Default::default(),
+            grown: None,
             stops: Vec::new(),
         };
         // a test shows that it is sound
-        Self::of(&Stored::default_of(panels), panels).unwrap_or_else(empty)
+        let sound = Self::of(&Stored::default_of(panels), panels);
+        sound.map_or_else(empty, |dock| Self { grown: Some(1.0), ..dock })
     }
 
     fn of(stored: &Stored, panels: &[Box<dyn Panel>]) -> Option<Self> {
         let ids = || panels.iter().map(|panel| panel.id());
         let known: Vec<PanelId> = std::iter::once(MAP).chain(ids()).collect();
         let hidden = ids().filter(|id| stored.hidden.contains(*id)).collect();
-        Some(Self { tree: stored.tree(&known)?, hidden, wanted: Default::default(), stops: Vec::new() })
+        let tree = stored.tree(&known)?;
+        Some(Self { tree, hidden, wanted: Default::default(), grown: None, stops: Vec::new() })
     }
 
     /// Stores the layout for the next run.
@@ -91,6 +97,7 @@ impl Dock {
 
     /// Draws everything. Returns where the map is, if no other tile is in front of it.
     pub fn show(&mut self, ui: &mut Ui, content: &mut Content<'_>) -> Option<Rect> {
+        self.grown = grow::grown(&mut self.tree, ui.available_width(), self.grown, &self.wanted);
         for (tile, panel) in self.panes() {
             self.tree.set_visible(tile, self.shows(panel) && content.is_relevant(panel));
         }
