@@ -6,6 +6,8 @@ use crate::guide::Answer;
 use crate::layers::LayerCommand;
 use crate::map::furniture::Edge;
 use crate::panels::PanelId;
+pub use crate::panels::selecting::BranchId;
+use crate::panels::tree::Renamed;
 use crate::state::VehicleName;
 use crate::units::Units;
 use flight_exec::Command as PlanCommand;
@@ -152,8 +154,12 @@ pub enum ViewCommand {
     PointOut(Option<Id>),
     /// Add a leg, stage, fix, zone or runway to what is selected, or take it out.
     Toggle(Selection),
-    /// Select every leg from the selected one to this one.
-    Extend(Id),
+    /// Select all of these together; what can't be selected with others is left out.
+    SelectTogether(Vec<Selection>),
+    /// Select every leg of the plan.
+    SelectAllLegs,
+    /// Select all that is flown, and type by how much its altitudes are raised.
+    RaiseAll,
     /// Select it and bring it into the map's middle.
     JumpTo(Selection),
     /// Show the whole plan.
@@ -185,7 +191,9 @@ pub enum ViewCommand {
     /// Show the plan and type what to search in it.
     Search,
     /// Show it in the plan and type another name for it.
-    Rename(Selection),
+    Rename(Renamed),
+    /// Select a branch of a fork in the plan's tree.
+    SelectBranch(BranchId),
     /// Take the keyboard to the next panel, or (`-1`) the one before.
     StepPanel(isize),
     /// Show a panel, or hide it.

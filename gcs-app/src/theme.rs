@@ -106,9 +106,9 @@ impl Scale {
         ((window / LEAST_WINDOW).min_elem() * 10.0).floor().max(10.0) / 10.0
     }
 
-    /// A scale from 0.8 to 3; `None` for any other number.
+    /// A scale from 0.5 to 3; `None` for any other number.
     pub fn new(scale: f32) -> Option<Self> {
-        (0.8..=3.0).contains(&scale).then_some(Self(scale))
+        (0.5..=3.0).contains(&scale).then_some(Self(scale))
     }
     /// As a number.
     pub fn get(self) -> f32 {

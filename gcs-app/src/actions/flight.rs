@@ -12,7 +12,7 @@ use usal::contract::{GatewayRequest, GatewayState};
 pub fn of(scene: &Scene<'_>) -> Vec<Action> {
     let mut actions = Vec::new();
     let mut add = |kind: Kind, name: String, command: Command| {
-        actions.push(Action { kind, ..Action::now(Group::Flight, name, Some(command)) });
+        actions.push(Action { kind, ..Action::now(Group::Flight, name, Ok(command)) });
     };
     let fly = |command: PlanCommand| Command::Fly(FlyCommand::Plan(command));
     if let Some((request, _)) = decision::open(scene) {

@@ -14,7 +14,7 @@ mod table;
 use crate::command::{Command, ViewCommand};
 use crate::map::tools::{Card, is_guided};
 use crate::panels::{PanelId, Scene};
-use egui::{Context, KeyboardShortcut, ModifierNames, Modifiers};
+use egui::{Context, Event, KeyboardShortcut, ModifierNames, Modifiers};
 use std::borrow::Cow;
 
 /// Where an action stands in menus, and what it is about.
@@ -105,8 +105,8 @@ pub struct Action {
 }
 
 impl Action {
-    /// Something of the moment, without a key; without a command it can't be done.
-    fn now(group: Group, name: String, command: Option<Command>) -> Self {
+    /// Something of the moment, without a key.
+    fn now(group: Group, name: String, command: Result<Command, &'static str>) -> Self {
         Self {
             id: format!("{} {name}", group.name()).into(),
             name: name.into(),
@@ -114,7 +114,7 @@ impl Action {
             kind: Kind::Do,
             keys: Vec::new(),
             while_typing: false,
-            command: command.ok_or("Not possible here".into()),
+            command: command.map_err(Into::into),
         }
     }
 
@@ -163,6 +163,15 @@ pub fn keys() -> impl Iterator<Item = (&'static str, String)> {
     let written = |key: &KeyboardShortcut| key.format(&ModifierNames::NAMES, cfg!(target_os = "macos"));
     let keys = move |entry: &table::Entry| entry.keys.iter().map(written).collect::<Vec<_>>().join(" or ");
     table::ENTRIES.iter().filter(|entry| !entry.keys.is_empty()).map(move |entry| (entry.name, keys(entry)))
+}
+
+/// A key that opens the palette.
+pub fn opens_palette(event: &Event) -> bool {
+    let Event::Key { key, modifiers, pressed: true, .. } = event else { return false };
+    let opens = |shortcut: &KeyboardShortcut| {
+        shortcut.logical_key == *key && modifiers.matches_logically(shortcut.modifiers)
+    };
+    table::ENTRIES.iter().any(|entry| entry.id == "palette" && entry.keys.iter().any(opens))
 }
 
 fn tool(card: &'static Card, in_use: bool, guided: bool) -> Action {

@@ -35,7 +35,7 @@ fn of_selection(scene: &Scene<'_>) -> Vec<Action> {
     {
         let kinds = menu::other_kinds(scene, context.leg).into_iter();
         actions.extend(kinds.map(|(choice, edit)| {
-            let edit = edit.map(|edit| Command::Document(DocumentCommand::Edit(edit)));
+            let edit = edit.map(|edit| Command::Document(DocumentCommand::Edit(edit))).ok_or(menu::NOT_THAT);
             Action::now(Group::Edit, format!("Change the kind of {of} to {}", choice.name()), edit)
         }));
     }
@@ -47,7 +47,7 @@ fn new_parts(scene: &Scene<'_>) -> Vec<Action> {
     let plan = scene.document.plan();
     let mut actions = Vec::new();
     let mut add = |name: String, command: Command| {
-        actions.push(Action::now(Group::Edit, name, Some(command)));
+        actions.push(Action::now(Group::Edit, name, Ok(command)));
     };
     for (kind, name) in make::STAGES {
         add(format!("Add a stage: {name}"), make::stage(plan, kind));
@@ -74,7 +74,7 @@ fn speeds(scene: &Scene<'_>) -> impl Iterator<Item = Action> {
     SPEEDS.into_iter().map(move |speed| {
         let command = Command::Preview(PreviewCommand::Speed(speed));
         let name = format!("Play the preview {speed:.0}× as fast");
-        Action { kind: Kind::Choice(now == speed), ..Action::now(Group::View, name, Some(command)) }
+        Action { kind: Kind::Choice(now == speed), ..Action::now(Group::View, name, Ok(command)) }
     })
 }
 
@@ -82,6 +82,6 @@ fn recent(scene: &Scene<'_>) -> impl Iterator<Item = Action> {
     scene.recent.paths().iter().map(|path| {
         let open = DocumentCommand::Replace(Replacement::Open(path.clone()));
         let name = format!("Open recent: {}", path.display());
-        Action::now(Group::File, name, Some(Command::Document(open)))
+        Action::now(Group::File, name, Ok(Command::Document(open)))
     })
 }

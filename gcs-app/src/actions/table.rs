@@ -2,11 +2,12 @@
 
 use super::{Action, Group, Kind, bindings, flight};
 use crate::command::{
-    Clip, Command, DocumentCommand, FlyCommand, PreviewCommand, Replacement, Selection, ViewCommand,
+    BranchId, Clip, Command, DocumentCommand, FlyCommand, PreviewCommand, Replacement, Selection, ViewCommand,
 };
 use crate::guide::Answer;
 use crate::help::topic_of;
 use crate::map::furniture::Edge;
+use crate::panels::tree::Renamed;
 use crate::panels::{Scene, bar, start};
 use crate::theme::Scale;
 use crate::units::Units;
@@ -122,6 +123,8 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Edit, "later", "Move what is selected down", &[ctrl(Key::ArrowDown), alt(Key::ArrowDown)], |scene| shift(scene, 1)),
     entry(Group::Edit, "new-way", "Draw a new way from the selected leg", &[plain(Key::W)], new_way),
     entry(Group::Edit, bindings::ID, "Bind the selected leg to a variable…", &[plain(Key::B)], bind),
+    entry(Group::Edit, "select-all-legs", "Select all legs", &[ctrl(Key::A)], |s| has_legs(s).and_then(|()| view(ViewCommand::SelectAllLegs))),
+    entry(Group::Edit, "raise-all", "Raise or lower all altitudes…", &[], raise_all),
     choice(Group::Edit, "lock", "Lock the plan against dragging", |s| Kind::Switch(s.view.locked), |s| view(ViewCommand::Lock(!s.view.locked))).with_keys(&[ctrl(Key::L)]),
     entry(Group::Edit, "select-nothing", "Close help, tour or card, or select nothing", &[plain(Key::Escape)], escape),
     entry(Group::View, "search", "Search in the plan", &[ctrl(Key::F)], |_| view(ViewCommand::Search)),
@@ -154,7 +157,10 @@ pub const ENTRIES: &[Entry] = &[
 
     entry(Group::Size, "larger", "Larger", &[ctrl(Key::Plus), ctrl(Key::Equals)], |s| scale(s, 1.0, "It can't be larger")),
     entry(Group::Size, "smaller", "Smaller", &[ctrl(Key::Minus)], |s| scale(s, -1.0, "It can't be smaller")),
-    entry(Group::Size, "normal-size", "Normal size", &[ctrl(Key::Num0)], |_| view(ViewCommand::Scale(Scale::default()))),
+    choice(Group::Size, "normal-size", "Normal size: 100 %", |s| is_scale(s, 1.0), |s| scale_to(s, 1.0)).with_keys(&[ctrl(Key::Num0)]),
+    choice(Group::Size, "size-150", "Size 150 %", |s| is_scale(s, 1.5), |s| scale_to(s, 1.5)),
+    choice(Group::Size, "size-200", "Size 200 %", |s| is_scale(s, 2.0), |s| scale_to(s, 2.0)),
+    choice(Group::Size, "size-300", "Size 300 %", |s| is_scale(s, 3.0), |s| scale_to(s, 3.0)),
 
     entry(Group::Flight, "connect", "Connect as before", &[], flight::connect),
     entry(Group::Flight, "disconnect", "Disconnect", &[], flight::disconnect),
@@ -239,6 +245,11 @@ const NOTHING: &str = "Select something of the plan first";
 
 fn delete(scene: &Scene<'_>) -> Asked {
     let plan = scene.document.plan();
+    if let Some(BranchId { fork, branch }) = scene.selected_branch() {
+        let edit = create::delete_branch(plan, &fork, &branch)
+            .ok_or("A fork keeps its last branch: delete the fork")?;
+        return document(DocumentCommand::Edit(edit));
+    }
     let edit = match &scene.view.selection {
         Some(_) if !scene.view.also.is_empty() => create::delete_set(plan, &scene.selected_set()),
         Some(Selection::Leg(first)) => {
@@ -253,6 +264,17 @@ fn delete(scene: &Scene<'_>) -> Asked {
     document(DocumentCommand::Edit(edit))
 }
 
+fn has_legs(scene: &Scene<'_>) -> Result<(), &'static str> {
+    let has = scene.document.plan().all_stages().any(|(_, stage)| !stage.legs.is_empty());
+    has.then_some(()).ok_or("The plan has no legs yet")
+}
+
+/// By how much is typed in the inspector.
+fn raise_all(scene: &Scene<'_>) -> Asked {
+    has_legs(scene)?;
+    view(ViewCommand::RaiseAll)
+}
+
 /// What is selected, or all legs of a stage, to the clipboard.
 fn clip(scene: &Scene<'_>, clip: Clip) -> Asked {
     let is_stage = matches!(scene.view.selection, Some(Selection::Stage(_)));
@@ -263,7 +285,10 @@ fn clip(scene: &Scene<'_>, clip: Clip) -> Asked {
 }
 
 fn rename(scene: &Scene<'_>) -> Asked {
-    view(ViewCommand::Rename(scene.view.selection.clone().ok_or(NOTHING)?))
+    if let Some(branch) = scene.selected_branch() {
+        return view(ViewCommand::Rename(Renamed::Branch(branch)));
+    }
+    view(ViewCommand::Rename(Renamed::Part(scene.view.selection.clone().ok_or(NOTHING)?)))
 }
 
 /// A leg of the flight, alone.
@@ -290,6 +315,10 @@ fn bind(scene: &Scene<'_>) -> Asked {
 fn shift(scene: &Scene<'_>, offset: isize) -> Asked {
     const NO_NEIGHBOUR: &str = "It has no neighbour there";
     let plan = scene.document.plan();
+    if let Some(BranchId { fork, branch }) = scene.selected_branch() {
+        let moved = create::shift_branch(plan, &fork, &branch, offset).ok_or(NO_NEIGHBOUR)?;
+        return document(DocumentCommand::Edit(moved));
+    }
     let moved = match &scene.view.selection {
         Some(Selection::Stage(stage)) => create::shift_stage(plan, stage, offset),
         Some(Selection::Leg(leg)) => match scene.selected_legs() {
@@ -315,8 +344,20 @@ fn theme_is(scene: &Scene<'_>, theme: ThemePreference) -> Kind {
     Kind::Choice(scene.view.theme == theme)
 }
 
+const NO_ROOM: &str = "The window has no room for that: make it larger";
+
+fn is_scale(scene: &Scene<'_>, scale: f32) -> Kind {
+    Kind::Choice((scene.view.scale.get() - scale).abs() < 0.01)
+}
+
+fn scale_to(scene: &Scene<'_>, to: f32) -> Asked {
+    let has_room = to <= scene.view.most_scale.unwrap_or(f32::INFINITY);
+    let scale = Scale::new(to).filter(|_| has_room || to <= 1.0).ok_or(NO_ROOM)?;
+    view(ViewCommand::Scale(scale))
+}
+
+/// So many tenths larger.
 fn scale(scene: &Scene<'_>, tenths: f32, why_not: &'static str) -> Asked {
-    const NO_ROOM: &str = "The window has no room for that: make it larger";
     let most = scene.view.most_scale.unwrap_or(f32::INFINITY);
     let now = Scale::new(scene.view.scale.get().min(most)).unwrap_or_default();
     let next = now.larger(tenths).ok_or(why_not)?;

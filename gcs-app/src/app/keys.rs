@@ -1,6 +1,6 @@
 //! Keys that work wherever the pointer is: those of the actions.
 
-use crate::actions::{Action, Fittings, all};
+use crate::actions::{Action, Fittings, all, opens_palette};
 use crate::command::Queue;
 use crate::panels::{Scene, field, table};
 use egui::{Context, Event, Key, KeyboardShortcut};
@@ -29,6 +29,18 @@ pub fn read(ctx: &Context, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Q
             _ => {}
         }
     }
+}
+
+/// Takes what was typed in this frame after a key that opens the palette: it is for the palette, in the next frame.
+pub fn typed_for_palette(ctx: &Context) -> Vec<Event> {
+    let later = ctx.input_mut(|input| match input.events.iter().position(opens_palette) {
+        Some(opens) => input.events.split_off(opens + 1),
+        None => Vec::new(),
+    });
+    if !later.is_empty() {
+        ctx.request_repaint();
+    }
+    later
 }
 
 /// Most bytes that are pasted into a field.

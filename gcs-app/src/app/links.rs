@@ -3,6 +3,7 @@
 use super::App;
 use crate::link::{Call, Order};
 use crate::state::{Outcome, Ticket, Vehicle, VehicleName};
+use usal::contract::GatewayRequest;
 
 impl App {
     /// Opens a link to a vehicle and shows that one; an older link to the same vehicle is closed.
@@ -38,5 +39,20 @@ impl App {
             asked.requests.settle(ticket, Outcome::Refused(why.into()), now_s);
         }
         Some(ticket)
+    }
+}
+
+/// A request, for people.
+pub(super) fn gateway_label(request: &GatewayRequest) -> &'static str {
+    match request {
+        GatewayRequest::Launch => "Launch",
+        GatewayRequest::Hold => "Hold (gateway)",
+        GatewayRequest::Resume => "Resume (gateway)",
+        GatewayRequest::Direct { .. } => "Direct",
+        GatewayRequest::Safe => "Enter Safe mode",
+        GatewayRequest::Recover => "Leave Safe mode",
+        GatewayRequest::SetRunways { .. } => "Store runways",
+        GatewayRequest::SetSafe(_) => "Set Safe mode",
+        GatewayRequest::Terminate { .. } => "Terminate",
     }
 }

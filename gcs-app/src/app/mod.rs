@@ -32,7 +32,7 @@ use crate::link::Links;
 use crate::map::MapState;
 use crate::panels::help::Help;
 use crate::panels::palette::CommandPalette;
-use crate::panels::{self, Elevations, Panel, Scene, ViewState, field, tree};
+use crate::panels::{self, Elevations, Panel, Scene, ViewState, field, inspector, tree};
 use crate::recent::Recent;
 use crate::recovery::Keeper;
 use crate::shelf::Shelf;
@@ -53,6 +53,8 @@ pub struct App {
     vehicles: Vehicles,
     view: ViewState,
     palette: CommandPalette,
+    /// What was typed before the palette was there.
+    typed_ahead: Vec<egui::Event>,
     help: Help,
     analysis: Analysis,
     map: MapState,
@@ -145,6 +147,7 @@ impl App {
             vehicles: Vehicles::default(),
             view: remembered.view(),
             palette: CommandPalette::default(),
+            typed_ahead: Vec::new(),
             help: Help::default(),
             analysis: Analysis::default(),
             map: MapState::default(),
@@ -298,6 +301,9 @@ impl App {
         if let Some(what) = self.view.rename.take() {
             tree::rename(ctx, what);
         }
+        if std::mem::take(&mut self.view.raise) {
+            inspector::focus_raise(ctx);
+        }
     }
 }
 
@@ -323,11 +329,14 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let now = Now::read(&ctx);
+        let typed_ahead = std::mem::take(&mut self.typed_ahead);
+        ctx.input_mut(|input| drop(input.events.splice(0..0, typed_ahead)));
         self.play(&ctx);
         self.view.notice = keys::refuse_long_paste(&ctx).or_else(|| self.view.notice.take());
         let mut queue = std::mem::take(&mut self.queue);
         // a menu takes Escape for itself
         if !self.scene(now).is_asking() && !egui::Popup::is_any_open(&ctx) {
+            self.typed_ahead = keys::typed_for_palette(&ctx);
             self.map.keys(&ctx);
             keys::read(&ctx, &self.scene(now), &self.fittings(), &mut queue);
         }

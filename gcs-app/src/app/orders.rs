@@ -1,6 +1,7 @@
 //! Carrying out commands, one function per owner.
 
 use super::App;
+use super::links::gateway_label;
 use crate::airfields::Ground;
 use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
@@ -15,7 +16,7 @@ use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
 use flight_plan::{Edit, Id, Place, Thing, create, diff};
 use geometry::LatLon;
-use usal::contract::{GatewayRequest, Propose};
+use usal::contract::Propose;
 
 impl App {
     /// Carries out a command; one to a vehicle goes to `shown`, the one that was drawn when it was given.
@@ -190,7 +191,12 @@ impl App {
             }
             ViewCommand::PointOut(what) => self.view.pointed = what,
             ViewCommand::Toggle(what) => self.view.toggle(what),
-            ViewCommand::Extend(leg) => self.view.extend(leg, self.document.plan()),
+            ViewCommand::SelectTogether(all) => self.view.select_together(all),
+            ViewCommand::SelectAllLegs => self.view.select_all_legs(self.document.plan()),
+            ViewCommand::RaiseAll => {
+                self.dock.show_panel(crate::panels::inspector::ID, true);
+                self.view.raise_all(self.document.plan());
+            }
             ViewCommand::JumpTo(selection) => self.jump_to(selection),
             ViewCommand::Fit => {
                 self.view.follow = false;
@@ -222,6 +228,7 @@ impl App {
                 self.dock.show_panel(crate::panels::tree::ID, true);
                 self.view.rename = Some(what);
             }
+            ViewCommand::SelectBranch(branch) => self.view.select_branch(branch),
             ViewCommand::StepPanel(by) => self.view.panel_step = by,
             ViewCommand::ShowPanel(panel, shown) => self.dock.show_panel(panel, shown),
             ViewCommand::Maps(open) => self.view.maps = open,
@@ -381,19 +388,5 @@ pub(crate) fn plan_label(command: &PlanCommand, vehicle: &Vehicle) -> String {
         PlanCommand::Rewind => "Rewind to the start".into(),
         PlanCommand::AbortToSafe => "Abort: Safe mode".into(),
         PlanCommand::Commit { .. } => "Commit plan".into(),
-    }
-}
-
-fn gateway_label(request: &GatewayRequest) -> &'static str {
-    match request {
-        GatewayRequest::Launch => "Launch",
-        GatewayRequest::Hold => "Hold (gateway)",
-        GatewayRequest::Resume => "Resume (gateway)",
-        GatewayRequest::Direct { .. } => "Direct",
-        GatewayRequest::Safe => "Enter Safe mode",
-        GatewayRequest::Recover => "Leave Safe mode",
-        GatewayRequest::SetRunways { .. } => "Store runways",
-        GatewayRequest::SetSafe(_) => "Set Safe mode",
-        GatewayRequest::Terminate { .. } => "Terminate",
     }
 }

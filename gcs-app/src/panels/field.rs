@@ -65,6 +65,15 @@ pub fn name(ui: &mut Ui, name: &str, width: f32) {
     });
 }
 
+fn focus_asked() -> Id {
+    Id::unique("the next number gets the keyboard")
+}
+
+/// The number that is drawn next gets the keyboard.
+pub fn focus_next(ctx: &Context) {
+    ctx.data_mut(|d| d.insert_temp(focus_asked(), true));
+}
+
 /// A number in a unit, stored in SI.
 pub fn number(ui: &mut Ui, name: &str, si: f64, unit: Unit, least_si: f64) -> Change<f64> {
     number_between(ui, name, si, unit, least_si..=f64::MAX)
@@ -92,6 +101,9 @@ pub fn number_between(
         .update_while_editing(false)
         .custom_parser(|text| typed.read(unit, text));
     let response = ui.add_sized([78.0, 24.0], drag);
+    if ui.data_mut(|d| d.remove_temp::<bool>(focus_asked())).is_some() {
+        response.request_focus();
+    }
     named(&response, name, shown);
     typed.tell(ui, &response);
     // a field that was only entered and left gives the number back as it is shown
@@ -199,10 +211,16 @@ pub fn text(ui: &mut Ui, name: &str, current: &str) -> Option<String> {
 
 /// The same; the hint stands there as long as nothing else does.
 pub fn text_or_hint(ui: &mut Ui, name: &str, current: &str, hint: &str) -> Option<String> {
+    let width = ui.available_width() - 30.0;
+    text_of_width(ui, name, current, hint, width)
+}
+
+/// The same, so many screen points wide.
+pub fn text_of_width(ui: &mut Ui, name: &str, current: &str, hint: &str, width: f32) -> Option<String> {
     let id = ui.auto_id_with(("field", name));
     let mut draft = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| current.to_owned());
     let edit = egui::TextEdit::singleline(&mut draft).id(id).hint_text(hint);
-    let edit = edit.desired_width(ui.available_width() - 30.0);
+    let edit = edit.desired_width(width);
     let response = ui.add(edit);
     let label = name.to_owned();
     response.widget_info(|| {
@@ -250,6 +268,10 @@ pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool
     let held = response.is_pointer_button_down_on()
         || (response.has_focus() && ui.input(|i| i.key_down(Key::Space)));
     let progress = progress(ui, response.id, held);
+    // pressed and let go between two frames
+    if response.clicked() && !held {
+        ui.data_mut(|d| d.insert_temp(too_short(response.id), ui.input(|i| i.time)));
+    }
     let p = theme::of(ui);
     let painter = ui.painter();
     painter.rect(rect, 5.0, colour.gamma_multiply(0.14), Stroke::new(1.4, colour), egui::StrokeKind::Inside);
@@ -262,7 +284,7 @@ pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool
         if progress > 0.0 { p.text } else { colour },
     );
     if was_let_go(ui, response.id) {
-        response.show_tooltip_text(format!("Nothing was done. Keep it pressed for {HOLD_S:.0} s."));
+        response.show_tooltip_text(format!("Nothing was done: hold it. Keep it pressed for {HOLD_S:.0} s."));
     } else {
         response.on_hover_text(format!("Hold for {HOLD_S:.0} s"));
     }

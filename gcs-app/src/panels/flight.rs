@@ -251,7 +251,13 @@ fn emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Alternate"));
         ui.data_mut(|d| d.insert_temp(id, chosen.clone()));
     }
-    if field::hold_button(ui, &format!("Emergency: fly {name}"), p.warning, 0.0) {
+    let flown = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency.as_ref());
+    let flown = flown.filter(|flown| chosen.as_ref().is_none_or(|chosen| chosen == *flown));
+    let text = match flown {
+        Some(flown) => format!("Emergency: flying {}", scene.vehicle.name_of(flown)),
+        None => format!("Emergency: fly {name}"),
+    };
+    if field::hold_button(ui, &text, p.warning, 0.0) {
         queue.plan(Command::Emergency { cause: Cause::Operator, plan: chosen });
     }
 }

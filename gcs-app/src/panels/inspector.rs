@@ -10,6 +10,7 @@ pub mod inherited;
 mod level;
 mod list;
 mod page;
+mod raise;
 mod runway;
 mod together;
 mod value;
@@ -23,14 +24,18 @@ use egui::{RichText, ScrollArea, Ui};
 use flight_plan::Edit;
 use flight_plan::describe::{Draft, Subject};
 use page::Page;
+pub use raise::focus as focus_raise;
 
 /// The panel.
 #[derive(Debug)]
 pub struct Inspector;
 
+/// Of the panel.
+pub const ID: PanelId = "inspector";
+
 impl Panel for Inspector {
     fn id(&self) -> PanelId {
-        "inspector"
+        ID
     }
     fn name(&self) -> &'static str {
         "Inspector"
@@ -51,8 +56,8 @@ fn selected(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let plan = scene.document.plan();
     let legs = scene.selected_legs();
     let set = scene.selected_set();
-    if set.len() > 1 && set.len() > legs.len() {
-        return together::mixed(ui, plan, &set, queue);
+    if set.len() > 1 && (set.len() > legs.len() || set.len() > together::MOST) {
+        return together::mixed(ui, scene, &set, queue);
     }
     if legs.len() > 1 {
         let drafts: Vec<Draft> =
@@ -101,7 +106,9 @@ fn heading(ui: &mut Ui, scene: &Scene<'_>, draft: &Draft) {
     let id = element.attribute("id").unwrap_or("");
     let name = element.attribute("name").filter(|name| !name.is_empty()).unwrap_or(id);
     let mut kind = draft.description().label.to_lowercase();
-    if let Subject::Leg(_) = draft.subject() {
+    if let Subject::Leg(_) = draft.subject()
+        && !same_words(&element.name, &kind)
+    {
         kind = format!("{} {kind}", element.name);
     }
     if let Subject::Leg(leg) = draft.subject()
@@ -109,11 +116,25 @@ fn heading(ui: &mut Ui, scene: &Scene<'_>, draft: &Draft) {
     {
         kind = format!("{kind}, in procedure {}", procedure.id);
     }
-    let rest = if id.is_empty() || name == id { kind } else { format!("{kind} · {id}") };
+    let rest = beside(name, &kind, id);
     ui.horizontal(|ui| {
         ui.label(RichText::new(name).size(15.0).strong());
         ui.add(egui::Label::new(RichText::new(rest).color(p.weak)).truncate());
     });
+}
+
+/// Each thing is said once: what it is, unless it is called so, and its identifier where that is neither.
+fn beside(name: &str, kind: &str, id: &str) -> String {
+    let kind = Some(kind).filter(|kind| !same_words(kind, name));
+    let id =
+        Some(id).filter(|id| !id.is_empty() && *id != name && kind.is_none_or(|kind| !same_words(kind, id)));
+    kind.into_iter().chain(id).collect::<Vec<_>>().join(" · ")
+}
+
+/// The same but for capitals, spaces and dashes: `figureEight` is a figure eight.
+fn same_words(one: &str, other: &str) -> bool {
+    let letters = |text: &str| text.to_lowercase().replace([' ', '-', '_'], "");
+    letters(one) == letters(other)
 }
 
 /// What will be flown, when nothing is selected.
@@ -140,4 +161,24 @@ fn summary(ui: &mut Ui, scene: &Scene<'_>) {
 fn hint(ui: &mut Ui) {
     let text = "Select something in the tree or on the map to change it.";
     ui.label(RichText::new(text).size(12.0).color(theme::of(ui).weak));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_head_says_each_thing_once() {
+        assert!(same_words("figureEight", "figure-eight") && !same_words("TF", "track to fix"));
+        for (name, kind, id, expected) in [
+            ("scan", "scan", "scan", ""),
+            ("orbit1", "orbit", "orbit1", "orbit"),
+            ("Power line", "corridor", "corridor1", "corridor · corridor1"),
+            ("Scan the pylons", "scan", "scan", "scan"),
+            ("side1", "TF track to fix", "side1", "TF track to fix"),
+            ("Plan", "plan", "", ""),
+        ] {
+            assert_eq!(beside(name, kind, id), expected);
+        }
+    }
 }

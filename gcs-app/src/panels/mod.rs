@@ -26,6 +26,7 @@ pub mod problems;
 pub mod profile;
 pub mod push;
 pub mod recover;
+pub mod selecting;
 pub mod services;
 pub mod start;
 pub mod story;
@@ -58,7 +59,7 @@ pub use aged::{age_of, aged_row, value_with_age};
 use browse::Browsing;
 use egui::{RichText, Ui};
 use flight_exec::rehearse::{Diversion, WhatIf};
-use flight_plan::{Cause, FlightPlan, Id, Problem};
+use flight_plan::{Cause, Id, Problem};
 use std::collections::{BTreeSet, HashSet};
 use std::sync::Arc;
 use terrain::Terrain;
@@ -164,11 +165,15 @@ pub struct ViewState {
     /// The plan's search is about to get the keyboard.
     pub search: bool,
     /// What is about to be renamed in the plan's tree.
-    pub rename: Option<Selection>,
+    pub rename: Option<tree::Renamed>,
+    /// By how much altitudes are raised is about to be typed.
+    pub raise: bool,
     /// What is selected.
     pub selection: Option<Selection>,
-    /// Legs, fixes, zones and runways that are selected besides one of these.
+    /// Legs, stages, fixes, zones and runways that are selected besides one of these.
     pub also: BTreeSet<Selection>,
+    /// The branch that is selected of the selected fork; `None`: the fork itself.
+    pub branch: Option<Id>,
     /// Whose problem the pointer is on.
     pub pointed: Option<Id>,
     /// The dialog of the maps is open.
@@ -219,10 +224,12 @@ impl ViewState {
     /// Selects this, and nothing else.
     pub fn select(&mut self, selection: Option<Selection>) {
         self.selection = selection;
+        self.branch = None;
         self.also.clear();
     }
     /// Adds a leg, stage, fix, zone or runway to what is selected, or takes it out.
     pub fn toggle(&mut self, what: Selection) {
+        self.branch = None;
         match &self.selection {
             Some(first) if *first == what => self.selection = self.also.pop_first(),
             Some(first) if first.is_in_sets() => {
@@ -232,21 +239,6 @@ impl ViewState {
             }
             _ => self.select(Some(what)),
         }
-    }
-    /// Selects every leg from the selected one to this one, where they are neighbours; else adds it.
-    pub fn extend(&mut self, leg: Id, plan: &FlightPlan) {
-        match self.between(&leg, plan) {
-            Some(legs) => self.also.extend(legs.into_iter().map(Selection::Leg)),
-            None => self.toggle(Selection::Leg(leg)),
-        }
-    }
-    fn between(&self, leg: &Id, plan: &FlightPlan) -> Option<Vec<Id>> {
-        let Some(Selection::Leg(first)) = &self.selection else { return None };
-        let context = plan.leg(first)?;
-        let other = context.siblings.iter().position(|sibling| sibling.id == *leg)?;
-        let range = context.index.min(other)..=context.index.max(other);
-        let legs = context.siblings.get(range)?.iter().map(|sibling| sibling.id.clone());
-        Some(legs.filter(|id| id != first).collect())
     }
 }
 

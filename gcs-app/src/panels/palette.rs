@@ -19,6 +19,8 @@ pub struct CommandPalette {
     query: String,
     /// The row that Enter takes.
     current: usize,
+    /// That row was chosen with the arrows.
+    walked: bool,
     /// An action that must be held.
     held: Option<Action>,
     is_open: bool,
@@ -54,6 +56,8 @@ impl CommandPalette {
         let mut state = TextEditState::default();
         state.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(text.chars().count()))));
         state.store(ui.ctx(), field_id());
+        // before it is drawn: what was typed since the palette was asked for is for the field
+        ui.memory_mut(|m| m.request_focus(field_id()));
     }
 
     fn contents(&mut self, ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
@@ -79,12 +83,15 @@ impl CommandPalette {
         });
         typed.request_focus();
         if typed.changed() {
-            self.current = 0;
+            (self.current, self.walked) = (0, false);
         }
+        self.walked |= up + down > 0;
         let found = find(&self.query, scene, fittings);
         self.current = (self.current + down).saturating_sub(up).min(found.len().saturating_sub(1));
         let clicked = self.rows(ui, &found, up + down > 0 || typed.changed());
-        let chosen = clicked.or(entered.then_some(self.current)).and_then(|i| found.get(i));
+        // nobody has asked for what happens to stand first
+        let means_it = self.walked || !self.query.trim().is_empty();
+        let chosen = clicked.or((entered && means_it).then_some(self.current)).and_then(|i| found.get(i));
         if let Some(action) = chosen {
             self.choose(action, queue);
         }

@@ -155,15 +155,31 @@ impl Table {
     fn walk(&mut self, by: isize, extends: bool, scene: &Scene<'_>, queue: &mut Queue) {
         let to = self.cursor.row.saturating_add_signed(by).min(self.rows.len().saturating_sub(1));
         self.cursor = Cursor { row: to, moved: true, ..self.cursor };
-        match self.current(scene) {
-            Some(Selection::Leg(leg)) if extends => queue.view(ViewCommand::Extend(leg)),
-            _ => self.select(scene, queue),
+        match self.range(scene).filter(|_| extends) {
+            Some(range) => queue.view(ViewCommand::SelectTogether(range)),
+            None => self.select(scene, queue),
         }
+    }
+
+    /// All legs from the selected row to the one that the keyboard is at, the former first. `None`: that row is not there.
+    fn range(&self, scene: &Scene<'_>) -> Option<Vec<Selection>> {
+        let first = self.selected.as_ref().filter(|selected| selected.is_in_sets())?;
+        let to = self.cursor.row;
+        let is_first = |row: &usize| self.of_row(*row, scene).as_ref() == Some(first);
+        // of several passages the nearest
+        let from = (0..self.rows.len()).filter(is_first).min_by_key(|row| row.abs_diff(to))?;
+        let flown = (from.min(to)..=from.max(to)).filter(|row| self.entry(*row, scene).is_some());
+        let flown = flown.filter_map(|row| self.of_row(row, scene));
+        Some(std::iter::once(first.clone()).chain(flown).collect())
     }
 
     /// What the keyboard is at.
     fn current(&self, scene: &Scene<'_>) -> Option<Selection> {
-        match self.rows.get(self.cursor.row)? {
+        self.of_row(self.cursor.row, scene)
+    }
+
+    fn of_row(&self, row: usize, scene: &Scene<'_>) -> Option<Selection> {
+        match self.rows.get(row)? {
             Row::Stage(stage) => Some(Selection::Stage(stage.clone())),
             row => Some(part(scene, &row.entry(scene.forecast())?)),
         }
@@ -333,9 +349,11 @@ impl Table {
     /// With Ctrl or Shift, legs are selected together.
     fn choose(&mut self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let modifiers = ui.input(|i| i.modifiers);
-        match (self.current(scene), modifiers.command, modifiers.shift) {
-            (Some(leg @ Selection::Leg(_)), true, _) => queue.view(ViewCommand::Toggle(leg)),
-            (Some(Selection::Leg(leg)), _, true) => queue.view(ViewCommand::Extend(leg)),
+        match (self.current(scene), self.range(scene).filter(|_| modifiers.shift)) {
+            (Some(what), _) if modifiers.command && what.is_in_sets() => {
+                queue.view(ViewCommand::Toggle(what))
+            }
+            (_, Some(range)) => queue.view(ViewCommand::SelectTogether(range)),
             _ => self.select(scene, queue),
         }
     }

@@ -15,10 +15,11 @@ use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
 use drag::{Asking, Drag, STEP, View};
 use egui::{EventFilter, Rect, ScrollArea, Ui, pos2, vec2};
+use flight_exec::Phase;
 use flight_plan::{FlightPlan, Problem};
 use keyboard::Step;
 use rename::Renaming;
-pub use rename::begin as rename;
+pub use rename::{Renamed, begin as rename};
 use row::{Done, HEIGHT, Look};
 use rows::{Row, rows};
 pub use rows::{leg_tag, title};
@@ -41,6 +42,8 @@ pub struct Tree {
     view: Option<View>,
     /// How far it is to be scrolled.
     scroll: Option<f32>,
+    /// What is selected next is not scrolled to.
+    stays: bool,
     renaming: Option<Renaming>,
     drag: Option<Drag>,
     asking: Option<Asking>,
@@ -88,7 +91,12 @@ impl Panel for Tree {
         self.problems.refresh(scene);
         self.follow(ui, scene);
         self.keys(ui, queue);
-        self.renaming = rename::asked(ui, &self.rows).or(self.renaming.take());
+        if let Some(renaming) = rename::asked(ui, &self.rows) {
+            if let Some(index) = self.rows.iter().position(|row| renaming.is_of(row)) {
+                self.reveal(index);
+            }
+            self.renaming = Some(renaming);
+        }
         ui.spacing_mut().item_spacing.y = STEP - HEIGHT;
         let mut area = ScrollArea::vertical().id_salt("tree").auto_shrink(false);
         if let Some(offset) = self.scroll.take() {
@@ -120,7 +128,15 @@ impl Tree {
             return;
         }
         let had_focus = self.has_focus(ui);
-        self.rows = self.rows_of(scene.document.plan());
+        let rows = self.rows_of(scene.document.plan());
+        let before = std::mem::replace(&mut self.rows, rows);
+        // what legs were made into stands far away from them
+        self.stays = match &scene.view.selection {
+            Some(selected @ Selection::Procedure(_)) => {
+                before.iter().all(|row| row.selection.as_ref() != Some(selected))
+            }
+            _ => false,
+        };
         self.version = Some(scene.document.version());
         let index = match self.rows.iter().position(|row| row.key == self.cursor.key) {
             Some(index) => index,
@@ -158,7 +174,10 @@ impl Tree {
         if let Some(index) = found {
             let had_focus = self.has_focus(ui);
             self.put_cursor(index);
-            self.reveal(index);
+            // in flight the leg that is being flown stays in view
+            if !std::mem::take(&mut self.stays) && !is_in_flight(scene) {
+                self.reveal(index);
+            }
             if had_focus {
                 self.focus(ui);
             }
@@ -215,14 +234,30 @@ impl Tree {
         self.put_cursor(index);
         self.focus(ui);
         self.reveal(index);
-        let Some(row) = self.rows.get(index) else { return };
-        match row.leg().filter(|_| extends) {
-            Some(leg) => queue.view(ViewCommand::Extend(leg.clone())),
-            None => {
-                self.selected.clone_from(&row.selection);
-                queue.view(ViewCommand::Select(row.selection.clone()));
-            }
+        if let Some(range) = self.range_to(index).filter(|_| extends) {
+            return queue.view(ViewCommand::SelectTogether(range));
         }
+        let Some(row) = self.rows.get(index) else { return };
+        self.selected.clone_from(&row.selection);
+        queue.view(row.select());
+    }
+
+    /// What can be selected together from the selected row to this one, the former first. `None`: that row is not there.
+    fn range_to(&self, index: usize) -> Option<Vec<Selection>> {
+        let first = self.selected.as_ref().filter(|selected| selected.is_in_sets())?;
+        let from =
+            self.rows.iter().position(|row| row.branch.is_none() && row.selection.as_ref() == Some(first))?;
+        let (least, most) = (from.min(index), from.max(index));
+        // a stage stands for all that is in it
+        let is_whole =
+            |row: &usize| *row == index || drop::end(&self.rows, *row) <= most + 1 || !self.is_stage(*row);
+        let rows = (least..=most).filter(is_whole).filter_map(|row| self.rows.get(row));
+        let others = rows.filter(|row| row.branch.is_none()).filter_map(|row| row.selection.clone());
+        Some(std::iter::once(first.clone()).chain(others).collect())
+    }
+
+    fn is_stage(&self, row: usize) -> bool {
+        self.rows.get(row).is_some_and(|row| matches!(row.selection, Some(Selection::Stage(_))))
     }
 
     fn put_cursor(&mut self, index: usize) {
@@ -284,14 +319,21 @@ impl Tree {
     fn take(&mut self, ui: &Ui, index: usize, done: Done, scene: &Scene<'_>, queue: &mut Queue) {
         match done {
             Done::Folded => self.fold(index),
-            Done::Dragged => self.drag = self.rows.get(index).and_then(|row| Drag::begin(row, scene)),
+            Done::Dragged => {
+                let Some(row) = self.rows.get(index) else { return };
+                if row.branch.is_some() {
+                    queue.view(ViewCommand::Notice(BRANCH_STAYS.into()));
+                }
+                self.drag = Drag::begin(row, scene);
+            }
             Done::Chosen => {
                 self.put_cursor(index);
                 self.focus(ui);
                 let Some(row) = self.rows.get(index) else { return };
-                let chosen = chosen(ui, row);
-                if let ViewCommand::Select(selection) = &chosen {
-                    self.selected.clone_from(selection);
+                let range = self.range_to(index).filter(|_| ui.input(|i| i.modifiers.shift));
+                let chosen = range.map_or_else(|| chosen(ui, row), ViewCommand::SelectTogether);
+                if let ViewCommand::Select(_) | ViewCommand::SelectBranch(_) = &chosen {
+                    self.selected.clone_from(&row.selection);
                 }
                 queue.view(chosen);
             }
@@ -329,12 +371,21 @@ impl Problems {
     }
 }
 
-/// What a click does: with Ctrl, what has a place is selected together, with Shift legs.
+/// A plan is being flown, as far as is known.
+fn is_in_flight(scene: &Scene<'_>) -> bool {
+    let phase = scene.vehicle.phase();
+    let flies = matches!(phase, Phase::Flying | Phase::Holding | Phase::AwaitingDecision);
+    flies && scene.vehicle.open_link().is_some()
+}
+
+const BRANCH_STAYS: &str = "A branch stays with its fork: drag its legs, or move it among the other branches with Ctrl+Up and Ctrl+Down.";
+
+/// What a click does: with Ctrl, what has a place is selected together.
 fn chosen(ui: &Ui, row: &Row) -> ViewCommand {
-    let modifiers = ui.input(|i| i.modifiers);
     match &row.selection {
-        Some(what) if modifiers.command && what.is_in_sets() => ViewCommand::Toggle(what.clone()),
-        Some(Selection::Leg(id)) if modifiers.shift => ViewCommand::Extend(id.clone()),
-        other => ViewCommand::Select(other.clone()),
+        Some(what) if ui.input(|i| i.modifiers.command) && what.is_in_sets() => {
+            ViewCommand::Toggle(what.clone())
+        }
+        _ => row.select(),
     }
 }

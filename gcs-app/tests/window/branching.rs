@@ -145,3 +145,36 @@ fn places_and_names_stay_on_the_map_while_a_tool_is_on() {
         assert_ne!(colour, gcs_app::theme::palette(true).text, "fainter: {tool:?}");
     }
 }
+
+
+#[test]
+fn a_branch_has_its_legs_below_it_and_is_renamed_moved_and_deleted_by_its_row() {
+    let mut window = Window::open_with(SQUARE, vec2(1280.0, 1000.0), None);
+    window.until_analysed();
+    window.row_menu(("TF side2", 0), "Draw a new way from it");
+    window.steps(3);
+    let at = window.centre("Map");
+    window.click_at(at + vec2(40.0, 90.0));
+    window.click_at(at + vec2(-30.0, 120.0));
+    window.press(Key::V);
+    let drawn = ways(&window);
+    window.click("TF leg2");
+    window.press(Key::ArrowLeft);
+    window.press(Key::F2);
+    window.harness.event(egui::Event::Text("Close look".into()));
+    window.steps(2);
+    window.press(Key::Enter);
+    let fork = Id::new("fork1");
+    assert_eq!(window.plan().branch_label(&fork, &Id::new("way2")), "Close look");
+    assert!(window.shows("▸ Close look") && window.plan().any_leg(&fork).unwrap().name.is_empty());
+    window.press_ctrl(Key::ArrowUp);
+    assert_eq!(ways(&window)[2], "fork1 way2>leg1 on>side3");
+    window.click("Undo");
+    assert_eq!(ways(&window), drawn);
+    window.press(Key::Delete);
+    assert_eq!(ways(&window), ["side1", "side2", "fork1 on>side3", "side3", "side4"]);
+    window.click("Undo");
+    assert_eq!(ways(&window), drawn, "one step");
+    window.row_menu(("▸ Close look", 0), "Delete it and its legs");
+    assert_eq!(ways(&window).len(), 5);
+}

@@ -50,6 +50,7 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     for text in ["EMERGENCY: flying", "because the engine failed", "to runway R05"] {
         assert!(window.shows(text), "{text}");
     }
+    assert!(window.shows("Emergency: flying return (hold)") && !window.shows("Emergency: fly return"));
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     assert!(window.shows("lands in 6"));
     window.click("Return to the main plan at side3");

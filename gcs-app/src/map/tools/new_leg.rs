@@ -8,7 +8,7 @@ use aircraft::Profile;
 use egui::{ComboBox, Response, Role, Ui, WidgetInfo};
 use flight_plan::create::{self, Approach, Drawn, LegChoice, Shape, Way};
 use flight_plan::{
-    Altitude, FlightPlan, Id, Leg, LegContext, LegKind, Place, Spot, StageKind, TurnDirection, Value,
+    Altitude, FlightPlan, Id, Leg, LegContext, LegKind, Place, Section, Spot, StageKind, TurnDirection, Value,
 };
 use geometry::LatLon;
 use geometry::geodesy::normalise_360;
@@ -112,6 +112,21 @@ pub fn words(aim: &Aim, plan: &FlightPlan) -> String {
             format!("on “{label}” from {}", plan.label(from))
         }
     }
+}
+
+/// Whose place that is, for people: `Main plan > Survey`.
+pub fn whose(aim: &Aim, plan: &FlightPlan) -> Option<String> {
+    let (Aim::Spot(Spot::Before(id) | Spot::After(id) | Spot::EndOf(id)) | Aim::Way { from: id, .. }) = aim;
+    if let Some((procedure, _)) = plan.procedure_leg(id) {
+        return Some(format!("procedure {}", plan.label(&procedure.id)));
+    }
+    let of_leg = plan.leg(id).map(|context| (context.section, context.stage));
+    let (section, stage) = of_leg.or_else(|| plan.all_stages().find(|(_, stage)| stage.id == *id))?;
+    let stage = plan.label(&stage.id);
+    Some(match section {
+        Section::Main => format!("Main plan > {stage}"),
+        Section::Emergency(emergency) => format!("emergency plan {} > {stage}", plan.label(&emergency.id)),
+    })
 }
 
 /// Lets the side be chosen, where there is a choice.

@@ -1,7 +1,7 @@
 //! A procedure, put where it is wanted: a click is its anchor, a second one says its bearing.
 
 use super::bands::{self, Band};
-use super::new_leg::{self, Aim, Side, choose_side, words};
+use super::new_leg::{self, Aim, Side, choose_side, whose, words};
 use super::pen::{Figure, Mark, Pen};
 use super::trial::Trials;
 use super::{Canvas, Card, Tool, Touch};
@@ -90,7 +90,8 @@ impl Tool for PlaceProcedure {
                 "Procedure: there is none. Right-click legs and make a procedure of them first.".into(),
             );
         };
-        let place = words(&aim, scene.document.plan());
+        let (plan, mut place) = (scene.document.plan(), words(&aim, scene.document.plan()));
+        place.extend(whose(&aim, plan).map(|whose| format!(", in {whose}")));
         let next = match (self.pen.last(), self.pen.pointer()) {
             (None, _) => "click its anchor".into(),
             (Some(_), None) => "click where it points; Enter leaves it as it was written".into(),

@@ -4,7 +4,7 @@ use super::page::Page;
 use super::{bind, level, list, value};
 use crate::panels::field;
 use egui::Ui;
-use flight_plan::describe::{Change, Kind, OneOf, Row};
+use flight_plan::describe::{Change, Kind, OneOf, Property, Row};
 
 /// Draws all that the part has.
 pub fn show(ui: &mut Ui, page: &mut Page<'_, '_>) {
@@ -60,7 +60,7 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
         let short = way.and_then(|way| labels.get(way)).is_some_and(|label| label.len() <= SHORT);
         let alone = inside.split_first().filter(|_| short && !page.is_several() && has_room(ui, inside));
         let chosen = match alone {
-            Some((Row::Property(property), [])) => {
+            Some((Row::Property(property), [])) if !is_position(property) => {
                 let chosen = within(ui, WAY_WIDTH, |ui| field::choice(ui, &name, &labels, way));
                 let room = ui.available_width() - if binding.is_some() { bind::WIDTH } else { 0.0 };
                 (chosen, Some((property, within(ui, room, |ui| value::field(ui, page, property)))))
@@ -99,6 +99,11 @@ fn within<R>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
         add(ui)
     })
     .inner
+}
+
+/// It needs a row of its own: both numbers are to be seen.
+fn is_position(property: &Property) -> bool {
+    matches!(property.kind, Kind::LatLon(_) | Kind::Position)
 }
 
 /// Bytes of a way that has room beside its value.

@@ -1,33 +1,59 @@
 //! What can be done to several legs at once, beside what each property offers.
 
 use super::page::Page;
-use super::{inherited, value};
+use super::{raise, value};
 use crate::command::{Queue, ViewCommand};
 use crate::panels::{Scene, field};
 use crate::theme;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, RichText, Ui};
 use flight_plan::describe::{Kind, Property, Range, add as add_to};
-use flight_plan::{Altitude, Edit, FlightPlan, Id, Value, create};
+use flight_plan::{FlightPlan, Id, create};
+
+/// Of more than so many together the properties are not shown.
+pub const MOST: usize = 300;
+/// So many are named.
+const NAMED: usize = 40;
 
 /// Above the properties that they have in common.
 pub fn head(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
-    let p = theme::of(ui);
     ui.label(RichText::new(format!("{} legs", legs.len())).size(15.0).strong());
-    let names: Vec<&str> = legs.iter().map(|leg| scene.document.label(leg)).collect();
-    ui.add(egui::Label::new(RichText::new(names.join(", ")).color(p.weak)).truncate());
+    ui.add(named(ui, scene, legs).truncate());
     ui.add_space(4.0);
-    raise(ui, scene, legs, queue);
+    raise::show(ui, scene, legs, queue);
 }
 
-/// Of legs, fixes, zones and runways.
-pub fn mixed(ui: &mut Ui, plan: &FlightPlan, set: &[Id], queue: &mut Queue) {
-    let p = theme::of(ui);
-    ui.label(RichText::new(format!("{} together", set.len())).size(15.0).strong());
-    let names: Vec<&str> = set.iter().map(|id| plan.label(id)).collect();
-    ui.add(egui::Label::new(RichText::new(names.join(", ")).color(p.weak)).wrap());
+fn named(ui: &Ui, scene: &Scene<'_>, set: &[Id]) -> egui::Label {
+    let mut names: Vec<&str> = set.iter().take(NAMED).map(|id| scene.document.label(id)).collect();
+    names.extend(Some("…").filter(|_| set.len() > NAMED));
+    egui::Label::new(RichText::new(names.join(", ")).color(theme::of(ui).weak))
+}
+
+/// Of legs, stages, fixes, zones and runways, or of very many legs.
+pub fn mixed(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue) {
+    let plan = scene.document.plan();
+    let legs = scene.selected_legs().len();
+    let stages = set.iter().filter(|id| plan.stage(id).is_some()).count();
+    ui.label(RichText::new(counted(set.len(), legs, stages)).size(15.0).strong());
+    ui.add(named(ui, scene, set).wrap());
+    if legs + stages > 0 {
+        raise::show(ui, scene, set, queue);
+    }
     if ui.button("Delete them").clicked() {
         queue.edit(create::delete_set(plan, set));
+    }
+}
+
+/// `2 stages and 5 legs`.
+fn counted(all: usize, legs: usize, stages: usize) -> String {
+    let stages = if stages == 1 { "1 stage".into() } else { format!("{stages} stages") };
+    match (all - legs, stages) {
+        (0, _) => format!("{legs} legs"),
+        (others, stages) if stages.starts_with(&format!("{others} ")) && legs == 0 => stages,
+        (others, stages) if stages.starts_with(&format!("{others} ")) => {
+            format!("{stages} and {legs} leg{}", if legs == 1 { "" } else { "s" })
+        }
+        _ => format!("{all} together"),
     }
 }
 
@@ -69,34 +95,4 @@ fn adding(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, range: Rang
             ui.close();
         }
     });
-}
-
-fn raise(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
-    const USUAL_M: f64 = 30.0;
-    let id = egui::Id::unique("raise legs by");
-    let mut by_m = ui.data(|d| d.get_temp(id)).unwrap_or(USUAL_M);
-    field::row_with_help(ui, "Raise by", "Above what each leg has or inherits.", |ui| {
-        match field::number(ui, "Raise by", by_m, scene.units().altitude(), f64::MIN) {
-            field::Change::Moving(m) | field::Change::Set(m) => by_m = m,
-            field::Change::None | field::Change::Ended => {}
-        }
-        if ui.button("Raise them").on_hover_text("Less than nothing lowers them").clicked() {
-            queue.edit(Edit::All(legs.iter().filter_map(|leg| raised(scene, leg, by_m)).collect()));
-        }
-    });
-    ui.data_mut(|d| d.insert_temp(id, by_m));
-}
-
-/// A leg at its present altitude, its own or inherited, and so much more.
-fn raised(scene: &Scene<'_>, of: &Id, by_m: f64) -> Option<Edit> {
-    let own = scene.document.plan().leg(of)?.leg.altitude.clone();
-    let Altitude { metres, reference } = match own {
-        Some(own) => own,
-        None => inherited::altitude(scene, of)?.value,
-    };
-    let metres = match metres {
-        Value::Constant(metres) => Value::Constant(metres + by_m),
-        Value::Expression(formula) => Value::Expression(format!("({formula}) + {by_m:?}").into()),
-    };
-    Some(Edit::SetAltitude { of: of.clone(), altitude: Some(Altitude { metres, reference }) })
 }

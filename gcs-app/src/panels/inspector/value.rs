@@ -244,10 +244,15 @@ fn result(page: &Page<'_, '_>, source: &str) -> Option<f64> {
     }
 }
 
+/// Of a small button with its gap, screen points.
+const BUTTON_WIDTH: f32 = 26.0;
+
 fn position(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) {
     let name = page.name(property.label);
     let shown = coordinates::position(value).map_or_else(|| value.to_owned(), units::position);
-    if let Some(typed) = field::text(ui, &name, &shown) {
+    let beside = if property.without.is_some() { BUTTON_WIDTH } else { 0.0 };
+    let width = ui.available_width() - beside;
+    if let Some(typed) = field::text_of_width(ui, &name, &shown, "", width) {
         // what is no position is refused by the document, in words
         let exact = coordinates::position(&typed).map(|at| format!("{} {}", at.lat_deg, at.lon_deg));
         page.set(property, Some(exact.unwrap_or(typed)));

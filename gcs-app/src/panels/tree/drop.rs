@@ -46,7 +46,8 @@ pub(super) fn for_legs(rows: &[Row], at: At) -> Found<LegSpot> {
     let selection = row.selection.as_ref().ok_or(NOWHERE)?;
     if let Some(branch) = &row.branch {
         let fork = selection.id().clone();
-        return match is_last(rows, at.row) && at.down > 0.75 {
+        let is_open = end(rows, at.row) > at.row + 1;
+        return match is_last(rows, at.row) && !is_open && at.down > 0.75 {
             true => Ok(behind(rows, parent(rows, at.row).ok_or(NOWHERE)?, at.depth)),
             false => Ok((Mark::Onto(at.row), LegSpot::Branch { fork, branch: branch.clone() })),
         };
@@ -158,7 +159,7 @@ pub(super) fn for_thing(rows: &[Row], at: At, thing: &Selection) -> Found<Option
 }
 
 /// After a row and all that is in it.
-fn end(rows: &[Row], row: usize) -> usize {
+pub(super) fn end(rows: &[Row], row: usize) -> usize {
     let depth = rows.get(row).map_or(0, |row| row.depth);
     let inside = rows.iter().skip(row + 1).take_while(|next| next.depth > depth).count();
     row + 1 + inside

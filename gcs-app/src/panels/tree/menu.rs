@@ -1,7 +1,7 @@
 //! What a right click on a row of the tree offers. What cannot be done there is shown, but cannot be chosen.
 
-use super::alternates;
-use crate::command::{Command, DocumentCommand, Queue, Selection, ViewCommand};
+use super::{Renamed, alternates};
+use crate::command::{BranchId, Command, DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::footprints;
 use crate::panels::{Scene, binding};
 use aircraft::Profile;
@@ -9,34 +9,53 @@ use egui::{Button, Ui};
 use flight_plan::create::{self, LegChoice, Shape};
 use flight_plan::{Edit, FlightPlan, Id, Leg, LegKind};
 
-/// One row of the menu; `edit` is `None` where it cannot be done.
+/// One row of the menu.
 #[derive(Debug)]
 pub struct Entry {
     /// For people.
     pub name: &'static str,
     /// The key of the action that does the same; empty: there is none.
     pub keys: &'static str,
-    edit: Option<Edit>,
+    /// What it does, or why it can't be done.
+    edit: Result<Edit, &'static str>,
     /// What is selected after it.
     selects: Option<Selection>,
 }
 
+const NO_NEIGHBOUR: &str = "It has no neighbour there";
+const GONE: &str = "It is no longer in the plan";
+const NOT_ONE_LIST: &str = "They are in several stages or loops: select legs of one";
+const NOT_IN_A_ROW: &str = "They do not follow each other in one list: select legs that do";
+
 impl Entry {
-    fn new(name: &'static str, keys: &'static str, edit: Option<Edit>) -> Self {
-        Self { name, keys, edit, selects: None }
+    fn new(name: &'static str, keys: &'static str, edit: Edit) -> Self {
+        Self { name, keys, edit: Ok(edit), selects: None }
     }
 
-    /// An entry that makes something, which is selected then.
-    fn making(name: &'static str, made: Option<(Id, Edit)>, select: fn(Id) -> Selection) -> Self {
+    /// Among its neighbours, one up or down.
+    fn shifting(name: &'static str, keys: &'static str, edit: Option<Edit>) -> Self {
+        Self { name, keys, edit: edit.ok_or(NO_NEIGHBOUR), selects: None }
+    }
+
+    /// An entry that makes something, which is selected then; or why it can't.
+    fn making(
+        name: &'static str,
+        made: Option<(Id, Edit)>,
+        select: fn(Id) -> Selection,
+        why_not: &'static str,
+    ) -> Self {
         let (id, edit) = made.unzip();
-        Self { name, keys: "", edit, selects: id.map(select) }
+        Self { name, keys: "", edit: edit.ok_or(why_not), selects: id.map(select) }
     }
 
-    /// What it asks for; `None`: it cannot be done.
-    pub fn command(self) -> Option<Command> {
+    /// What it asks for.
+    ///
+    /// # Errors
+    /// Why it can't be done.
+    pub fn command(self) -> Result<Command, &'static str> {
         let select = self.selects.map(|made| Command::View(ViewCommand::Select(Some(made))));
         let edit = Command::Document(DocumentCommand::Edit(self.edit?));
-        Some(Command::Each([edit].into_iter().chain(select).collect()))
+        Ok(Command::Each([edit].into_iter().chain(select).collect()))
     }
 }
 
@@ -64,15 +83,37 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
         });
     }
     if ui.add(Button::new("Rename").shortcut_text("F2")).clicked() {
-        queue.view(ViewCommand::Rename(of.clone()));
+        queue.view(ViewCommand::Rename(Renamed::Part(of.clone())));
     }
     on_map(ui, scene, of, queue);
-    for entry in entries(scene, of) {
-        let button = Button::new(entry.name).shortcut_text(entry.keys);
-        if ui.add_enabled(entry.edit.is_some(), button).clicked() {
-            entry.command().into_iter().for_each(|command| queue.push(command));
-        }
+    entries(scene, of).into_iter().for_each(|entry| show_entry(ui, entry, queue));
+}
+
+/// One that can't be done says why.
+fn show_entry(ui: &mut Ui, entry: Entry, queue: &mut Queue) {
+    let button = Button::new(entry.name).shortcut_text(entry.keys);
+    let response = ui.add_enabled(entry.edit.is_ok(), button);
+    match entry.command() {
+        Ok(command) if response.clicked() => queue.push(command),
+        Ok(_) => {}
+        Err(why_not) => drop(response.on_disabled_hover_text(why_not)),
     }
+}
+
+/// The menu of a branch of a fork.
+pub fn of_branch(ui: &mut Ui, plan: &FlightPlan, of: BranchId, queue: &mut Queue) {
+    let BranchId { fork, branch } = &of;
+    let delete =
+        create::delete_branch(plan, fork, branch).ok_or("A fork keeps its last branch: delete the fork");
+    let entries = [
+        Entry::shifting("Move up", "Ctrl+Up", create::shift_branch(plan, fork, branch, -1)),
+        Entry::shifting("Move down", "Ctrl+Down", create::shift_branch(plan, fork, branch, 1)),
+        Entry { name: "Delete it and its legs", keys: "Del", edit: delete, selects: None },
+    ];
+    if ui.add(Button::new("Rename").shortcut_text("F2")).clicked() {
+        queue.view(ViewCommand::Rename(Renamed::Branch(of)));
+    }
+    entries.into_iter().for_each(|entry| show_entry(ui, entry, queue));
 }
 
 /// What is done on the map, with it or beside it.
@@ -104,13 +145,16 @@ fn is_flown_itself(choice: LegChoice) -> bool {
 fn kinds(ui: &mut Ui, scene: &Scene<'_>, leg: &Leg, queue: &mut Queue) {
     for (choice, changed) in other_kinds(scene, leg) {
         let button = ui.add_enabled(changed.is_some(), Button::new(choice.name()));
-        let button = button.on_hover_text(choice.about());
+        let button = button.on_hover_text(choice.about()).on_disabled_hover_text(NOT_THAT);
         if let Some(edit) = changed.filter(|_| button.clicked()) {
             queue.edit(edit);
             ui.close();
         }
     }
 }
+
+/// Why a leg can't become another kind.
+pub const NOT_THAT: &str = "Its place and course are not known: it can't be that here";
 
 /// Each other kind that a leg may have, with the edit; without one, it can't become that.
 pub fn other_kinds(scene: &Scene<'_>, leg: &Leg) -> Vec<(LegChoice, Option<Edit>)> {
@@ -133,25 +177,27 @@ pub fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
         Selection::Leg(_) if together.len() > 1 && scene.is_selected(of) => of_legs(plan, &together),
         Selection::Leg(leg) => of_leg(plan, leg).into_iter().chain(pictures(scene, leg)).collect(),
         Selection::Stage(stage) => vec![
-            Entry::new("Move up", "Ctrl+Up", create::shift_stage(plan, stage, -1)),
-            Entry::new("Move down", "Ctrl+Down", create::shift_stage(plan, stage, 1)),
-            Entry::new("Delete", "Del", Some(create::remove(plan, stage))),
+            Entry::shifting("Move up", "Ctrl+Up", create::shift_stage(plan, stage, -1)),
+            Entry::shifting("Move down", "Ctrl+Down", create::shift_stage(plan, stage, 1)),
+            Entry::new("Delete", "Del", create::remove(plan, stage)),
         ],
         other => vec![
-            Entry::new("Move up", "Ctrl+Up", create::shift_thing(plan, other.id(), -1)),
-            Entry::new("Move down", "Ctrl+Down", create::shift_thing(plan, other.id(), 1)),
-            Entry::new("Delete", "Del", Some(create::remove(plan, other.id()))),
+            Entry::shifting("Move up", "Ctrl+Up", create::shift_thing(plan, other.id(), -1)),
+            Entry::shifting("Move down", "Ctrl+Down", create::shift_thing(plan, other.id(), 1)),
+            Entry::new("Delete", "Del", create::remove(plan, other.id())),
         ],
     }
 }
 
-/// Of several legs that are selected together.
+/// Of several legs that are selected.
 fn of_legs(plan: &FlightPlan, legs: &[Id]) -> Vec<Entry> {
+    let (looped, forked) = (create::loop_around(plan, legs), create::fork_around(plan, legs));
+    let procedure = create::procedure_of(plan, legs);
     vec![
-        Entry::making("Put them into a loop", create::loop_around(plan, legs), Selection::Leg),
-        Entry::making("Put a fork around them", create::fork_around(plan, legs), Selection::Leg),
-        Entry::making("Make a procedure of them", create::procedure_of(plan, legs), Selection::Procedure),
-        Entry::new("Delete them", "Del", Some(create::delete_legs(plan, legs))),
+        Entry::making("Put them into a loop", looped, Selection::Leg, NOT_ONE_LIST),
+        Entry::making("Put a fork around them", forked, Selection::Leg, NOT_IN_A_ROW),
+        Entry::making("Make a procedure of them", procedure, Selection::Procedure, NOT_ONE_LIST),
+        Entry::new("Delete them", "Del", create::delete_legs(plan, legs)),
     ]
 }
 
@@ -162,23 +208,26 @@ fn pictures(scene: &Scene<'_>, leg: &Id) -> Option<Entry> {
     let (takes, edit) = footprints::toggled(scene, leg);
     let name = if takes { "Take no pictures along it" } else { "Take pictures along it" };
     let is_flown = is_flown_itself(choice) && choice != LegChoice::Call;
-    is_flown.then(|| Entry::new(name, "", Some(edit)))
+    is_flown.then(|| Entry::new(name, "", edit))
 }
 
 fn of_leg(plan: &FlightPlan, leg: &Id) -> Vec<Entry> {
     let one = std::slice::from_ref(leg);
     let is_loop = plan.leg(leg).is_some_and(|c| matches!(c.leg.kind, LegKind::Iterative { .. }));
+    let made = |name, made, select| Entry::making(name, made, select, GONE);
+    let duplicate = create::duplicate(plan, leg).ok_or(GONE);
     let mut entries = vec![
-        Entry::new("Duplicate", "Ctrl+D", create::duplicate(plan, leg)),
-        Entry::new("Move up", "Ctrl+Up", create::shift(plan, leg, -1)),
-        Entry::new("Move down", "Ctrl+Down", create::shift(plan, leg, 1)),
-        Entry::making("Put into a loop", create::loop_around(plan, one), Selection::Leg),
-        Entry::making("Fork before it", create::fork_around(plan, one), Selection::Leg),
-        Entry::making("Make a procedure of it", create::procedure_of(plan, one), Selection::Procedure),
+        Entry { name: "Duplicate", keys: "Ctrl+D", edit: duplicate, selects: None },
+        Entry::shifting("Move up", "Ctrl+Up", create::shift(plan, leg, -1)),
+        Entry::shifting("Move down", "Ctrl+Down", create::shift(plan, leg, 1)),
+        made("Put into a loop", create::loop_around(plan, one), Selection::Leg),
+        made("Fork before it", create::fork_around(plan, one), Selection::Leg),
+        made("Make a procedure of it", create::procedure_of(plan, one), Selection::Procedure),
     ];
     if is_loop {
-        entries.push(Entry::new("Take its legs out of the loop", "", create::unloop(plan, leg)));
+        let edit = create::unloop(plan, leg).ok_or("The loop has no legs");
+        entries.push(Entry { name: "Take its legs out of the loop", keys: "", edit, selects: None });
     }
-    entries.push(Entry::new("Delete", "Del", Some(create::delete_leg(plan, leg))));
+    entries.push(Entry::new("Delete", "Del", create::delete_leg(plan, leg)));
     entries
 }

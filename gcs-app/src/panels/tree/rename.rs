@@ -1,16 +1,26 @@
 //! Another name for something, typed in its row.
 
 use super::rows::Row;
-use crate::command::{Queue, Selection, ViewCommand};
+use crate::command::{BranchId, Queue, Selection, ViewCommand};
 use crate::panels::in_place::{InPlace, Typed};
 use egui::{Context, Id as WidgetId, Rect, Ui};
+use flight_plan::create::rename_branch;
 use flight_plan::{Edit, FlightPlan, Id};
+
+/// What can get another name.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Renamed {
+    /// A part of the plan.
+    Part(Selection),
+    /// A branch of a fork.
+    Branch(BranchId),
+}
 
 /// A row that is being renamed.
 #[derive(Debug)]
 pub(super) struct Renaming {
     key: String,
-    selection: Selection,
+    what: Renamed,
     field: InPlace,
 }
 
@@ -19,15 +29,19 @@ fn asked_for() -> WidgetId {
 }
 
 /// Lets something be renamed where it stands in the tree.
-pub fn begin(ctx: &Context, selection: Selection) {
-    ctx.data_mut(|d| d.insert_temp(asked_for(), Some(selection)));
+pub fn begin(ctx: &Context, what: Renamed) {
+    ctx.data_mut(|d| d.insert_temp(asked_for(), Some(what)));
 }
 
 /// What is to be renamed from now on.
 pub(super) fn asked(ui: &Ui, rows: &[Row]) -> Option<Renaming> {
-    let selection = ui.data_mut(|d| d.remove_temp::<Option<Selection>>(asked_for())).flatten()?;
-    let row = rows.iter().find(|row| row.branch.is_none() && row.selection.as_ref() == Some(&selection))?;
-    Some(Renaming { key: row.key.clone(), field: InPlace::new(&row.text), selection })
+    let what = ui.data_mut(|d| d.remove_temp::<Option<Renamed>>(asked_for())).flatten()?;
+    let is_it = |row: &&Row| match &what {
+        Renamed::Part(selection) => row.branch.is_none() && row.selection.as_ref() == Some(selection),
+        Renamed::Branch(branch) => row.as_branch().as_ref() == Some(branch),
+    };
+    let row = rows.iter().find(is_it)?;
+    Some(Renaming { key: row.key.clone(), field: InPlace::new(&row.text), what })
 }
 
 impl Renaming {
@@ -37,13 +51,28 @@ impl Renaming {
 
     /// Draws the field; true when it is over.
     pub fn show(&mut self, ui: &mut Ui, rect: Rect, plan: &FlightPlan, queue: &mut Queue) -> bool {
-        let name = format!("Name of {}", self.selection.id());
+        let id = match &self.what {
+            Renamed::Part(selection) => selection.id(),
+            Renamed::Branch(BranchId { branch, .. }) => branch,
+        };
+        let name = format!("Name of {id}");
         match self.field.show(ui, rect, &name) {
             None => return false,
             Some(Typed::Cancelled) => {}
-            Some(Typed::Text(text)) => rename(plan, &self.selection, text.trim(), queue),
+            Some(Typed::Text(text)) => match &self.what {
+                Renamed::Part(selection) => rename(plan, selection, text.trim(), queue),
+                Renamed::Branch(branch) => label(plan, branch, text.trim(), queue),
+            },
         }
         true
+    }
+}
+
+/// What stands for a label that a branch has not is not one.
+fn label(plan: &FlightPlan, BranchId { fork, branch }: &BranchId, text: &str, queue: &mut Queue) {
+    let label = if text == branch.as_str() { "" } else { text };
+    if text != plan.branch_label(fork, branch) {
+        rename_branch(plan, fork, branch, label).into_iter().for_each(|edit| queue.edit(edit));
     }
 }
 

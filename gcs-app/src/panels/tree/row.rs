@@ -67,7 +67,10 @@ pub(super) fn show(ui: &mut Ui, row: &Row, look: &Look<'_>, queue: &mut Queue) -
     let sense = Sense::CLICK | Sense::DRAG;
     let sense = if is_current { sense | Sense::FOCUSABLE } else { sense };
     let response = ui.interact(rect, id(&row.key), sense);
-    let selected = row.selection.as_ref().is_some_and(|s| look.scene.is_selected(s));
+    let selected = match (row.as_branch(), look.scene.selected_branch()) {
+        (None, None) => row.selection.as_ref().is_some_and(|s| look.scene.is_selected(s)),
+        (own, branch) => own.is_some() && own == branch,
+    };
     let name = format!("{} {}", row.tag, row.text).trim().to_owned();
     response.widget_info(|| egui::WidgetInfo::selected(Role::TreeItem, true, selected, &name));
     background(ui, rect, selected, &response);
@@ -118,7 +121,9 @@ fn menus(ui: &Ui, row: &Row, response: &Response, opens: bool, scene: &Scene<'_>
         popup = popup.at_position(response.rect.left_bottom() + vec2(24.0, 0.0));
     }
     popup.show(|ui| {
-        if let Some(selection) = &row.selection {
+        if let Some(branch) = row.as_branch() {
+            menu::of_branch(ui, scene.document.plan(), branch, queue);
+        } else if let Some(selection) = &row.selection {
             menu::show(ui, scene, selection, queue);
         }
         if let Some(group) = row.group {

@@ -1,12 +1,13 @@
 //! The rows of the tree: what there is to be seen of a plan, from top to bottom.
 
 use super::make::Group;
-use crate::command::Selection;
+use crate::command::{BranchId, Selection, ViewCommand};
+use flight_plan::create::ways;
 use flight_plan::{
-    Alternates, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Pattern, Stage, StageKind, Turnaround,
+    Alternates, Branch, EmergencyChoice, FlightPlan, Id, Leg, LegKind, Pattern, Stage, StageKind, Turnaround,
     TurnaroundEnergy, Use, ZoneKind,
 };
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// One line of the tree.
@@ -34,6 +35,22 @@ pub(super) struct Row {
 }
 
 impl Row {
+    /// It is a branch of a fork.
+    pub fn as_branch(&self) -> Option<BranchId> {
+        match (&self.selection, &self.branch) {
+            (Some(Selection::Leg(fork)), Some(branch)) => {
+                Some(BranchId { fork: fork.clone(), branch: branch.clone() })
+            }
+            _ => None,
+        }
+    }
+
+    /// Selects what it stands for.
+    pub fn select(&self) -> ViewCommand {
+        self.as_branch()
+            .map_or_else(|| ViewCommand::Select(self.selection.clone()), ViewCommand::SelectBranch)
+    }
+
     /// A leg, and no branch of it.
     pub fn leg(&self) -> Option<&Id> {
         match &self.selection {
@@ -66,6 +83,12 @@ struct Builder<'a> {
     plan: &'a FlightPlan,
     rows: Vec<Row>,
     folded: &'a BTreeSet<String>,
+}
+
+/// Legs of one list, and which of them are flown on a branch of a fork alone (both by their numbers), or on none.
+struct List<'a> {
+    legs: &'a [Arc<Leg>],
+    inside: HashMap<Option<(usize, usize)>, Vec<usize>>,
 }
 
 impl Builder<'_> {
@@ -126,12 +149,28 @@ impl Builder<'_> {
     }
 
     fn legs(&mut self, legs: &[Arc<Leg>], depth: usize, outer: Option<&Arc<Alternates>>) {
-        for leg in legs {
-            self.leg(leg, depth, outer);
+        let mut list = List { legs, inside: HashMap::new() };
+        for (leg, owner) in ways(legs).into_iter().enumerate() {
+            list.inside.entry(owner).or_default().push(leg);
+        }
+        self.legs_of(&list, None, depth, outer);
+    }
+
+    /// Those of a list that are flown on that branch alone, or on none.
+    fn legs_of(
+        &mut self,
+        list: &List<'_>,
+        of: Option<(usize, usize)>,
+        depth: usize,
+        outer: Option<&Arc<Alternates>>,
+    ) {
+        for index in list.inside.get(&of).into_iter().flatten() {
+            self.leg(list, *index, depth, outer);
         }
     }
 
-    fn leg(&mut self, leg: &Leg, depth: usize, outer: Option<&Arc<Alternates>>) {
+    fn leg(&mut self, list: &List<'_>, index: usize, depth: usize, outer: Option<&Arc<Alternates>>) {
+        let Some(leg) = list.legs.get(index) else { return };
         let alternates = outer.map(|outer| within(outer, &leg.emergency, &leg.id));
         let branches = leg.as_fork().map_or(&[][..], |fork| fork.branches);
         let is_open = self.push(Row {
@@ -151,24 +190,32 @@ impl Builder<'_> {
             return;
         }
         self.legs(leg.body(), depth + 1, alternates.as_ref());
-        let default = leg.as_fork().and_then(|fork| fork.default);
-        for branch in branches {
-            let to = branch
-                .next
-                .as_ref()
-                .map_or_else(|| "→ on".into(), |next| format!("→ {}", self.plan.label(next)));
-            let to = branch.when.as_ref().map_or_else(|| to.clone(), |when| format!("{to} when {when}"));
-            self.push(Row {
-                key: format!("branch {} of {}", branch.id, leg.id),
-                depth: depth + 1,
-                tag: "▸",
-                text: title(&branch.label, branch.id.as_str()),
-                detail: if default == Some(&branch.id) { format!("{to}, default") } else { to },
-                selection: Some(Selection::Leg(leg.id.clone())),
-                branch: Some(branch.id.clone()),
-                ..Row::default()
-            });
+        for (number, branch) in branches.iter().enumerate() {
+            let of = Some((index, number));
+            if self.branch(leg, branch, list.inside.contains_key(&of), depth + 1) {
+                // a fork is around nothing: they have what is in force around it
+                self.legs_of(list, of, depth + 2, outer);
+            }
         }
+    }
+
+    /// True if the legs that are flown on it alone are to be seen.
+    fn branch(&mut self, fork: &Leg, branch: &Branch, folds: bool, depth: usize) -> bool {
+        let to =
+            branch.next.as_ref().map_or_else(|| "→ on".into(), |next| format!("→ {}", self.plan.label(next)));
+        let to = branch.when.as_ref().map_or_else(|| to.clone(), |when| format!("{to} when {when}"));
+        let is_default = fork.as_fork().and_then(|fork| fork.default) == Some(&branch.id);
+        self.push(Row {
+            key: format!("branch {} of {}", branch.id, fork.id),
+            depth,
+            tag: "▸",
+            text: title(&branch.label, branch.id.as_str()),
+            detail: if is_default { format!("{to}, default") } else { to },
+            selection: Some(Selection::Leg(fork.id.clone())),
+            branch: Some(branch.id.clone()),
+            folds,
+            ..Row::default()
+        })
     }
 
     fn emergency_plans(&mut self, plan: &FlightPlan) {

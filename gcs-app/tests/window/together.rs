@@ -1,0 +1,92 @@
+//! Things that are selected together, and the altitudes of all of them.
+
+use super::{SQUARE, Window};
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, vec2};
+use flight_plan::Value;
+
+fn opened() -> Window {
+    let mut window = Window::open_with(SQUARE, vec2(1280.0, 1000.0), None);
+    window.until_analysed();
+    window
+}
+
+/// The altitude that a leg has of its own.
+fn of_leg(window: &Window, leg: &str) -> Option<Value<f64>> {
+    window.plan().leg(&leg.into()).unwrap().leg.altitude.clone().map(|own| own.metres)
+}
+
+fn of_stage(window: &Window, stage: &str) -> Option<Value<f64>> {
+    window.plan().stage(&stage.into()).unwrap().altitude.clone().map(|own| own.metres)
+}
+
+#[test]
+fn raising_all_altitudes_is_found_and_reaches_take_off_and_emergency_plans() {
+    let mut window = opened();
+    let before = window.plan();
+    for letters in ["altitude", "raise", "lower"] {
+        window.ask_for(letters);
+        assert!(window.shows("Edit Raise or lower all altitudes…"), "{letters}");
+        window.press(Key::Escape);
+    }
+    window.ask_for("raise or lower");
+    window.press(Key::Enter);
+    assert!(window.shows("3 stages and 5 legs"));
+    window.harness.event(Event::Text("50".into()));
+    window.steps(2);
+    window.press(Key::Enter);
+    assert!(window.shows("land, r-land stay as they are: they say no altitude."));
+    window.click_role(Role::Button, "Raise them");
+    let own = |metres: f64| Some(Value::Constant(metres));
+    for (leg, raised) in [("side1", own(150.0)), ("side2", own(200.0)), ("r1", own(200.0))] {
+        assert_eq!(of_leg(&window, leg), raised, "{leg}");
+    }
+    assert_eq!(of_stage(&window, "take-off"), own(130.0));
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+}
+
+#[test]
+fn ctrl_a_selects_all_legs_and_stays_in_the_field_where_something_is_typed() {
+    let mut window = opened();
+    window.click("TF side2");
+    window.press_ctrl(Key::A);
+    assert!(window.shows("5 legs"));
+    window.press(Key::Escape);
+    window.press_ctrl(Key::F);
+    window.press_ctrl(Key::A);
+    assert_eq!(window.selected(), "");
+}
+
+#[test]
+fn shift_selects_the_range_between_two_rows_stages_and_legs_together() {
+    let mut window = opened();
+    window.click("ENR circuit");
+    window.select_row_with(("TF side2", 0), Modifiers::SHIFT);
+    assert!(window.shows("1 stage and 4 legs"), "a stage stands for its legs");
+    window.click_role(Role::Button, "Raise them");
+    assert_eq!(of_stage(&window, "circuit"), Some(Value::Constant(180.0)));
+    assert_eq!(of_leg(&window, "side1"), Some(Value::Constant(130.0)));
+    assert_eq!(of_leg(&window, "side2"), None, "it inherits from its stage");
+    assert_eq!(of_leg(&window, "side4"), Some(Value::Constant(140.0)));
+    window.click("Undo");
+
+    window.click("TF side4");
+    window.select_row_with(("DF r1", 0), Modifiers::SHIFT);
+    assert!(window.shows("2 stages and 2 legs"), "over the plans");
+
+    window.click("TF side1");
+    for (key, count) in [(Key::ArrowDown, 2), (Key::ArrowDown, 3), (Key::ArrowUp, 2)] {
+        window.press_with(Modifiers::SHIFT, key);
+        assert!(window.shows(&format!("{count} legs")), "{count}");
+    }
+}
+
+#[test]
+fn what_cannot_be_done_with_legs_together_says_why() {
+    let mut window = opened();
+    window.click("TF side1");
+    window.select_row_with(("TF side3", 0), Modifiers::COMMAND);
+    window.ask_for("fork around them");
+    assert!(window.paints("They do not follow each other"));
+}
