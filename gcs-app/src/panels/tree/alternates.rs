@@ -73,7 +73,8 @@ pub fn submenu(ui: &mut Ui, plan: &FlightPlan, of: &[Option<Id>], queue: &mut Qu
             .flat_map(|choice| choice.by_cause.iter().map(|(cause, _)| *cause))
             .collect();
         let text = if of == [None] { "None" } else { "As around it" };
-        if ui.add_enabled(!named.is_empty(), egui::Button::new(text)).clicked() {
+        let none = ui.add_enabled(!named.is_empty(), egui::Button::new(text));
+        if none.on_disabled_hover_text("It names no emergency plan of its own").clicked() {
             queue.edit(Edit::All(named.into_iter().map(|cause| associated(of, cause, None)).collect()));
         }
     });
