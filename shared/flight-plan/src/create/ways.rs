@@ -11,6 +11,9 @@ const MOST_STEPS: usize = 2_000_000;
 /// Of each leg of a list the fork and its branch, by their indices, that every way to it leads over: the innermost one. A fork whose
 /// branches don't all lead on has no legs of its own.
 pub fn ways(list: &[Arc<Leg>]) -> Vec<Option<(usize, usize)>> {
+    if !list.iter().any(|leg| leg.as_fork().is_some_and(|fork| fork.branches.len() > 1)) {
+        return vec![None; list.len()];
+    }
     let index: HashMap<&Id, usize> = list.iter().enumerate().map(|(i, leg)| (&leg.id, i)).collect();
     let onwards: Vec<Vec<Option<usize>>> =
         list.iter().enumerate().map(|(i, leg)| targets(leg, i, list.len(), &index)).collect();
