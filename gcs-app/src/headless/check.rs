@@ -4,7 +4,7 @@ use super::source::Loaded;
 use super::{Source, foreign, progress};
 use crate::say;
 use flight_exec::Conditions;
-use flight_plan::{Edit, FlightPlan, Problem, Verdict};
+use flight_plan::{Edit, FlightPlan, Problem, Verdict, diff};
 use interchange::Note;
 use std::path::Path;
 use std::process::ExitCode;
@@ -86,8 +86,7 @@ pub fn status(problems: &[Problem]) -> ExitCode {
 /// What a remedy would do to the plan: a sentence, and its parts as data; null if it can't be applied (to a leg that only a call
 /// makes).
 fn fix(plan: &FlightPlan, edit: &Edit) -> serde_json::Value {
-    let repaired = edit.apply(plan).ok();
-    let changes = repaired.map(|repaired| flight_plan::diff::changes(plan, &repaired)).unwrap_or_default();
+    let changes = diff::of_edit(plan, edit);
     if changes.is_empty() {
         return serde_json::Value::Null;
     }

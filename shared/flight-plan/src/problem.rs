@@ -13,6 +13,8 @@ pub enum Severity {
     Error,
 }
 
+/// What may be the cause of all others stands before them, errors too.
+const CAUSE: &str = "far-away";
 /// Warnings that stand before others, the gravest first: how the flight ends, what becomes of it after a failure, and what
 /// was not looked at.
 const GRAVE: [&str; 6] = [
@@ -89,7 +91,7 @@ pub struct Problem {
     pub zone: Option<Box<Id>>,
     /// Where in the document, if the plan was read from one.
     pub location: Option<Location>,
-    /// For people; says what to do.
+    /// For people; says what to do. Its first sentence is short, details come behind it: see [`Problem::headline`].
     pub message: String,
     /// An edit that removes the problem, where there is an obvious one.
     pub fix: Option<Box<Edit>>,
@@ -142,10 +144,15 @@ impl Problem {
         }
     }
 
-    /// Its place in a list for people: what forbids flying, then the gravest warnings.
-    pub fn rank(&self) -> (bool, usize) {
+    /// Its place in a list for people: what may be the cause of the rest, what forbids flying, then the gravest warnings.
+    pub fn rank(&self) -> (bool, bool, usize) {
         let grave = GRAVE.iter().position(|code| *code == self.code);
-        (!self.is_error(), grave.unwrap_or(GRAVE.len()))
+        (self.code != CAUSE, !self.is_error(), grave.unwrap_or(GRAVE.len()))
+    }
+
+    /// What it says first, in one sentence: the rest of its message is details.
+    pub fn headline(&self) -> &str {
+        self.message.split_once(". ").map_or(self.message.as_str(), |(first, _)| first)
     }
 
     /// Forbids flying.
@@ -187,14 +194,26 @@ mod tests {
     }
 
     #[test]
+    fn the_first_sentence_is_the_headline() {
+        for (message, headline) in [
+            ("fly 12.5 m higher: it is low. That is at 36.3, -84.2", "fly 12.5 m higher: it is low"),
+            ("give it a count", "give it a count"),
+        ] {
+            assert_eq!(Problem::warning("a", message).headline(), headline);
+        }
+    }
+
+    #[test]
     fn errors_stand_before_warnings_and_the_end_of_the_flight_before_the_rest() {
         let mut problems = [
             Problem::warning("too-slow", ""),
             Problem::warning("not-reviewed", ""),
             Problem::warning("no-landing", ""),
             Problem::error("keep-out", ""),
+            Problem::warning("far-away", ""),
         ];
         problems.sort_by_key(Problem::rank);
-        assert_eq!(problems.map(|p| p.code), ["keep-out", "no-landing", "not-reviewed", "too-slow"]);
+        let codes = ["far-away", "keep-out", "no-landing", "not-reviewed", "too-slow"];
+        assert_eq!(problems.map(|p| p.code), codes);
     }
 }

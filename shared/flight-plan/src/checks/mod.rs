@@ -25,6 +25,7 @@ mod iteratives;
 mod levels;
 mod orbits;
 mod order;
+mod outliers;
 mod path;
 mod pattern_turns;
 mod patterns;
@@ -76,9 +77,10 @@ enum Rule {
 }
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 43] = {
+const RULES: [Rule; 44] = {
     use Rule::{Leg, Plan};
     [
+        Plan(outliers::check),
         Plan(empty::check),
         Plan(identifiers::check),
         Leg(identifiers::leg),
@@ -177,6 +179,7 @@ fn run_checks(
     }
     problems.extend(apply_rules(&mut inspection, &recall));
     values::near_pole_alone(&mut problems);
+    outliers::alone(&inspection, &mut problems);
     if matches!(flown, Cow::Owned(_)) {
         written_only(&inspection, &mut problems);
     }

@@ -13,6 +13,8 @@ const TOLERANCE_M: f64 = 2.0;
 const TOLERANCE_SHARE: f64 = 0.005;
 /// Corner that is still called tangent, degrees.
 const TANGENT_DEG: f64 = 1.0;
+/// Farther no centre is moved to mend an arc, metres: there the mistake is in its ends.
+const FARTHEST_M: f64 = 5000.0;
 
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     if let LegKind::Rf { to, centre, .. } = &step.leg.kind
@@ -125,8 +127,9 @@ fn on_circle(view: &Inspection, step: &Step) -> Option<Edit> {
 fn moved_centre(step: &Step, to: LatLon) -> Option<Edit> {
     changed(&step.leg, |kind| {
         let LegKind::Rf { centre, .. } = kind else { return None };
+        let is_near = centre.distance_m(to) <= FARTHEST_M;
         *centre = to;
-        Some(())
+        is_near.then_some(())
     })
 }
 
@@ -187,6 +190,26 @@ mod tests {
             // a centre near C
             (&behind(&orbit(300), 3329.0, 270.0), off),
         ]);
+    }
+
+    /// A right turn whose end is a typing error away: what mends that is not a centre in another county.
+    #[test]
+    fn no_remedy_moves_a_centre_by_more_than_5_km() {
+        let legs = |north: f64| {
+            format!(
+                r#"<IF id="a" fix="A"/><TF id="b" fix="B"/>
+                <RF id="r" lat="{}" lon="-84.17" centreLat="36.297" centreLon="-84.17" turn="right"/>"#,
+                36.3 - north
+            )
+        };
+        let offered = |legs: &str| {
+            let plan = crate::read(crate::checks::testing::plan_with(legs)).plan;
+            let problems = crate::check(&plan, &aircraft::Profile::default(), &terrain::Flat(300.0));
+            let arc = problems.into_iter().find(|problem| problem.code == "rf-not-on-circle");
+            arc.unwrap_or_else(|| panic!("not found: {legs}")).fix.is_some()
+        };
+        assert!(offered(&legs(0.02)), "1 km");
+        assert!(!offered(&legs(0.11)), "6 km");
     }
 
     #[test]

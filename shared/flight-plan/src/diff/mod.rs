@@ -5,7 +5,7 @@ mod users;
 mod words;
 
 use crate::xml::Piece;
-use crate::{FlightPlan, Id, Stage};
+use crate::{Edit, FlightPlan, Id, Stage};
 use serde::Serialize;
 use std::collections::HashMap;
 
@@ -126,6 +126,11 @@ pub fn changes(old: &FlightPlan, new: &FlightPlan) -> Vec<Change> {
         &mut changes,
     );
     changes
+}
+
+/// What an edit would change; empty if it can't be made.
+pub fn of_edit(plan: &FlightPlan, edit: &Edit) -> Vec<Change> {
+    edit.apply(plan).map_or_else(|_| Vec::new(), |edited| changes(plan, &edited))
 }
 
 /// What became of the items of a list: their properties and their order.

@@ -167,6 +167,14 @@ fn values_are_told_as_they_were_and_are() {
 }
 
 #[test]
+fn a_number_has_no_more_digits_than_tell_it_from_the_one_before() {
+    let told = |old: &str, new: &str| words::change_of("lat", Some(old), Some(new)).unwrap();
+    assert_eq!(told("36.285", "36.2933411228164"), "lat 36.285 → 36.293341");
+    assert_eq!(told("36.28500000001", "36.28500000002"), "lat 36.28500000001 → 36.28500000002");
+    assert_eq!(told("a.bcdefghij", "1.5"), "lat a.bcdefghij → 1.5");
+}
+
+#[test]
 fn a_plan_has_not_changed_from_itself() {
     for document in [FIRE_WATCH, LANGUAGE] {
         let plan = read(document).plan;

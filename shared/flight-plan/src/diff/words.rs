@@ -7,6 +7,8 @@ use std::collections::HashMap;
 const MOST: usize = 4;
 /// Longest description of something that came or went, bytes.
 const LONGEST: usize = 120;
+/// Of a number that is told.
+const DECIMALS: usize = 6;
 /// Attributes that distinguish elements of one name: branches, parameters and arguments, emergencies by cause.
 const KEYS: [&str; 3] = ["id", "name", "cause"];
 
@@ -34,9 +36,23 @@ pub(super) fn change_of(name: &str, old: Option<&str>, new: Option<&str>) -> Opt
     match (old, new) {
         (None, Some(new)) => Some(format!("{name} {new} added")),
         (Some(old), None) => Some(format!("{name} {old} removed")),
-        (Some(old), Some(new)) if old != new => Some(format!("{name} {old} → {new}")),
+        (Some(old), Some(new)) if old != new => {
+            let (old, new) = legible(old, new);
+            Some(format!("{name} {old} → {new}"))
+        }
         _ => None,
     }
+}
+
+/// Numbers with no more digits than tell the two apart: six decimals of a degree are 11 cm.
+fn legible(old: &str, new: &str) -> (String, String) {
+    let short = |text: &str| {
+        let has_more = text.split_once('.').is_some_and(|(_, decimals)| decimals.len() > DECIMALS);
+        let number = text.parse::<f64>().ok().filter(|number| has_more && number.is_finite());
+        number.map_or_else(|| text.to_owned(), |number| format!("{number:.DECIMALS$}"))
+    };
+    let (shorter_old, shorter_new) = (short(old), short(new));
+    if shorter_old == shorter_new { (old.into(), new.into()) } else { (shorter_old, shorter_new) }
 }
 
 /// Of two elements: their attributes and what is in them.
