@@ -71,7 +71,7 @@ pub type PanelId = &'static str;
 pub fn all() -> Vec<Box<dyn Panel>> {
     vec![
         Box::new(tree::Tree::default()),
-        Box::new(problems::Problems),
+        Box::new(problems::Problems::default()),
         Box::new(inspector::Inspector),
         Box::new(flight::Flight),
         Box::new(profile::Profile::default()),

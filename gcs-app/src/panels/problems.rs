@@ -3,12 +3,16 @@
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme;
-use egui::{FontId, RichText, ScrollArea, Sense, Shape, Ui, UiBuilder, vec2};
-use flight_plan::{FlightPlan, Id, Problem, Verdict};
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{FontId, RichText, ScrollArea, Sense, Shape, TextFormat, Ui, UiBuilder, vec2};
+use flight_plan::{Edit, FlightPlan, Id, Problem, Verdict, diff};
 
 /// The panel.
-#[derive(Debug)]
-pub struct Problems;
+#[derive(Debug, Default)]
+pub struct Problems {
+    /// The problem that is shown with all that there is to say of it.
+    open: Option<String>,
+}
 
 impl Panel for Problems {
     fn id(&self) -> PanelId {
@@ -29,21 +33,26 @@ impl Panel for Problems {
         }
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        list(ui, scene, queue);
+        list(ui, scene, &mut self.open, queue);
     }
 }
 
 /// Most problems that are listed: who has more mends the first ones first.
 const MOST: usize = 300;
 
-fn list(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+/// Of its headline, until it is opened.
+const ROWS: usize = 2;
+/// So many changes of a remedy are told before it is made.
+const MOST_CHANGES: usize = 8;
+
+fn list(ui: &mut Ui, scene: &Scene<'_>, open: &mut Option<String>, queue: &mut Queue) {
     let mut problems: Vec<&Problem> = scene.problems().collect();
     problems.sort_by_key(|problem| problem.rank());
     verdict(ui, scene, &problems);
     let mut pointed = None;
     ScrollArea::vertical().id_salt("problems").auto_shrink(false).show(ui, |ui| {
         for (number, problem) in problems.iter().take(MOST).enumerate() {
-            if row(ui, scene, number, problem, queue) {
+            if row(ui, scene, (number, problem), open, queue) {
                 pointed.clone_from(&problem.subject);
             }
         }
@@ -76,15 +85,25 @@ fn is_reviewed(scene: &Scene<'_>) -> bool {
 }
 
 /// Whether the pointer is on it.
-fn row(ui: &mut Ui, scene: &Scene<'_>, number: usize, problem: &Problem, queue: &mut Queue) -> bool {
+fn row(
+    ui: &mut Ui,
+    scene: &Scene<'_>,
+    (number, problem): (usize, &Problem),
+    open: &mut Option<String>,
+    queue: &mut Queue,
+) -> bool {
     let p = theme::of(ui);
-    let message = told(scene.document.plan(), problem);
-    let selection = problem.subject.as_ref().and_then(|id| find(scene.document.plan(), id));
+    let plan = scene.document.plan();
+    let message = told(plan, problem);
+    let selection = problem.subject.as_ref().and_then(|id| find(plan, id));
     let is_selected = selection.as_ref().is_some_and(|selection| scene.is_selected(selection));
     let whole = UiBuilder::new().id_salt(("problem", number)).sense(Sense::click());
     let shown = ui.scope_builder(whole, |ui| {
         let background = ui.painter().add(Shape::Noop);
-        inside(ui, problem, &message, queue);
+        let asked = inside(ui, plan, problem, &message, open);
+        if let Some(fix) = problem.fix.as_ref().filter(|_| asked) {
+            queue.edit((**fix).clone());
+        }
         let rect = ui.min_rect().with_max_x(ui.max_rect().right()).expand2(vec2(0.0, 1.0));
         if is_selected || ui.response().hovered() {
             let colour = p.line.gamma_multiply(if is_selected { 1.0 } else { 0.6 });
@@ -93,7 +112,8 @@ fn row(ui: &mut Ui, scene: &Scene<'_>, number: usize, problem: &Problem, queue: 
     });
     let name = format!("Problem: {message}");
     shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-    let response = shown.response.on_hover_text(problem.code);
+    let response =
+        shown.response.on_hover_text(format!("{}\n[{}]", at_its_place(problem, &message), problem.code));
     if response.clicked()
         && let Some(selection) = selection
     {
@@ -102,25 +122,86 @@ fn row(ui: &mut Ui, scene: &Scene<'_>, number: usize, problem: &Problem, queue: 
     response.hovered()
 }
 
-/// Its symbol, its remedy, and all of its text.
-fn inside(ui: &mut Ui, problem: &Problem, message: &str, queue: &mut Queue) {
+/// Its symbol, its headline or all of its text, and below that its remedy. True: that is asked for.
+fn inside(
+    ui: &mut Ui,
+    plan: &FlightPlan,
+    problem: &Problem,
+    message: &str,
+    open: &mut Option<String>,
+) -> bool {
     let p = theme::of(ui);
     let (symbol, colour) = if problem.is_error() { ("✖", p.warning) } else { ("⚠", p.caution) };
+    let is_open = open.as_deref() == Some(message);
+    let text = if is_open { at_its_place(problem, message) } else { headline(plan, problem) };
     ui.horizontal_top(|ui| {
-        ui.add_space(4.0);
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.add_space(2.0);
         ui.label(RichText::new(symbol).color(colour));
-        if let Some(fix) = &problem.fix
-            && ui.small_button("Fix").on_hover_text("Make the edit that removes this problem").clicked()
-        {
-            queue.edit((**fix).clone());
+        let width = (ui.available_width() - MORE).max(60.0);
+        let job = LayoutJob {
+            wrap: TextWrapping {
+                max_width: width,
+                max_rows: if is_open { usize::MAX } else { ROWS },
+                ..TextWrapping::default()
+            },
+            ..LayoutJob::single_section(text.clone(), TextFormat::simple(FontId::proportional(12.0), p.text))
+        };
+        let shown = ui.fonts_mut(|fonts| fonts.layout_job(job));
+        let is_whole = !shown.elided && text == at_its_place(problem, message);
+        let (rect, _) = ui.allocate_exact_size(vec2(width, shown.size().y), Sense::hover());
+        ui.painter().galley(rect.min, shown, p.text);
+        if (!is_whole || is_open) && more(ui, is_open, message) {
+            *open = (!is_open).then(|| message.to_owned());
         }
-        let place = problem.location.map(|l| format!(" (line {l})")).unwrap_or_default();
-        let width = (ui.available_width() - 4.0).max(60.0);
-        let text = format!("{message}{place}");
-        let text = ui.painter().layout(text, FontId::proportional(12.0), p.text, width);
-        let (rect, _) = ui.allocate_exact_size(vec2(width, text.size().y), Sense::hover());
-        ui.painter().galley(rect.min, text, p.text);
     });
+    let fix = problem.fix.as_deref();
+    fix.is_some_and(|fix| {
+        ui.horizontal(|ui| {
+            ui.add_space(20.0);
+            let button = ui.small_button("Fix");
+            button.on_hover_ui(|ui| remedy(ui, plan, fix)).clicked()
+        })
+        .inner
+    })
+}
+
+/// Width of the mark behind a headline, screen points.
+const MORE: f32 = 20.0;
+
+/// Opens and closes what else there is to know.
+fn more(ui: &mut Ui, is_open: bool, message: &str) -> bool {
+    let (symbol, what) = if is_open { ("⏶", "Less of") } else { ("⏷", "More of") };
+    let button = ui.add(egui::Button::new(RichText::new(symbol).size(10.0)).frame(false).small());
+    let name = format!("{what}: {message}");
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    button.on_hover_text("All of it").clicked()
+}
+
+/// What a remedy would do to the plan.
+fn remedy(ui: &mut Ui, plan: &FlightPlan, fix: &Edit) {
+    let changes = diff::of_edit(plan, fix);
+    ui.label(RichText::new("Makes this edit; undo takes it back:").color(theme::of(ui).weak));
+    for change in changes.iter().take(MOST_CHANGES) {
+        ui.label(change.in_names(plan));
+    }
+    if let Some(more) = changes.len().checked_sub(MOST_CHANGES).filter(|more| *more > 0) {
+        ui.label(format!("and {more} more"));
+    }
+}
+
+fn at_its_place(problem: &Problem, message: &str) -> String {
+    let place = problem.location.map(|l| format!(" (line {l})")).unwrap_or_default();
+    format!("{message}{place}")
+}
+
+/// Whose problem it is, and the first sentence about it.
+fn headline(plan: &FlightPlan, problem: &Problem) -> String {
+    let said = plan.in_names(problem.headline());
+    problem
+        .subject
+        .as_ref()
+        .map_or_else(|| said.clone(), |subject| format!("{}: {said}", plan.label(subject)))
 }
 
 /// Whose problem it is, and what; by names, where the plan has names.

@@ -2,7 +2,7 @@
 
 use super::{SQUARE, Window};
 use egui::vec2;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use gcs_app::command::Selection;
 
 const LANDING: &str = r#"<stage id="land" type="land" runway="R05"/>"#;
@@ -49,10 +49,57 @@ fn errors_stand_first_and_say_what_helps() {
 }
 
 #[test]
-fn a_problem_is_shown_with_all_of_its_text() {
-    let window = opened(&SQUARE.replacen(LANDING, "", 1));
-    let rect = window.harness.query_all_by_label_contains("out of glide").next().unwrap().rect();
-    assert!(rect.height() > 60.0, "{rect:?}");
+fn the_headlines_of_a_plan_are_in_view_and_all_of_a_text_is_behind_its_mark() {
+    let mut window = opened(&SQUARE.replacen(LANDING, "", 1));
+    let glide = |window: &Window| {
+        let row = window
+            .harness
+            .query_all_by_label_contains("Problem: ")
+            .find(|row| row.accesskit_node().label().is_some_and(|label| label.contains("out of glide")));
+        row.unwrap().rect()
+    };
+    let rows: Vec<_> =
+        window.harness.query_all_by_label_contains("Problem: ").map(|row| row.rect()).collect();
+    assert_eq!(rows.len(), 2);
+    assert!(rows.iter().all(|row| row.bottom() < 800.0 && row.height() < 60.0), "{rows:?}");
+    assert!(rows.iter().all(|row| row.width() > 220.0), "they have the panel's width: {rows:?}");
+    let headline = glide(&window);
+    let more = window
+        .harness
+        .query_all_by_label_contains("More of: ")
+        .find(|more| more.accesskit_node().label().is_some_and(|label| label.contains("out of glide")));
+    let more = more.unwrap().rect().center();
+    window.click_at(more);
+    assert!(glide(&window).height() > headline.height() + 20.0);
+    assert!(window.shows("Less of: "));
+}
+
+/// What is mended, and by how much, is told before the button is pressed.
+#[test]
+fn a_remedy_says_what_it_does_before_it_is_made() {
+    let steep = SQUARE.replacen(
+        r#"<TF id="side2" fix="B"/>"#,
+        r#"<TF id="side2" fix="B" altitude="1900" altitudeReference="home"/>"#,
+        1,
+    );
+    let mut window = opened(&steep);
+    let fix = window.harness.get_all_by_label("Fix").next().unwrap().rect().center();
+    window.harness.hover_at(fix);
+    window.steps(60);
+    assert!(window.shows("leg side2 changed: altitude 1900 → "));
+    assert_eq!(window.plan(), flight_plan::read(steep).plan);
+}
+
+#[test]
+fn a_slip_in_a_coordinate_stands_first_and_names_its_leg() {
+    let far =
+        SQUARE.replacen(r#"<TF id="side2" fix="B"/>"#, r#"<TF id="side2" lat="37.3" lon="-84.15"/>"#, 1);
+    let mut window = opened(&far);
+    window.steps(3);
+    let rows = window.harness.query_all_by_label_contains("Problem: ");
+    let first = rows.min_by(|a, b| a.rect().top().total_cmp(&b.rect().top())).unwrap();
+    let label = first.accesskit_node().label().unwrap();
+    assert!(label.starts_with("Problem: side2: is its position right? It lies 1"), "{label}");
 }
 
 #[test]

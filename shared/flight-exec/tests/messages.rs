@@ -243,11 +243,11 @@ fn elevations_that_are_missing_are_named_by_their_files() {
     let problems =
         found_over(&document("", r#"<TF id="c" fix="C"/>"#), Arc::new(Tiles::new()), Conditions::default());
     let message = &with_code(&problems, "not-reviewed").message;
-    assert!(message.starts_with("load the elevations N36W085.hgt (around "), "{message}");
+    assert!(message.starts_with("load the elevations N36W085.hgt, or look at "), "{message}");
     let east = document("", r#"<TF id="east" fix="FAR"/>"#);
     let problems = found_over(&east, Arc::new(Tiles::new()), Conditions::default());
     let message = &with_code(&problems, "not-reviewed").message;
-    assert!(message.starts_with("load the elevations N36W084.hgt, N36W085.hgt (around "), "{message}");
+    assert!(message.starts_with("load the elevations N36W084.hgt, N36W085.hgt, or look at "), "{message}");
     let above = document("", r#"<TF id="c" fix="C" altitude="200" altitudeReference="agl"/>"#);
     let problems = found_over(&above, Arc::new(Tiles::new()), Conditions::default());
     let said = "load the elevation tile N36W085.hgt (`--terrain N36W085.hgt`, `terrain` in agent.toml, or drop it onto the window): ";

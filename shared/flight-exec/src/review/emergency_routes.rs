@@ -61,7 +61,7 @@ fn through_zones(
             continue;
         }
         let message = format!(
-            "put a leg around the zone `{}` into `{}`, or name another emergency plan: the way into it from {from} breaks the zone at {:.5}, {:.5}",
+            "put a leg around the zone `{}` into `{}`, or name another emergency plan. The way into it from {from} breaks the zone at {:.5}, {:.5}",
             zone.id, alternate.plan.id, breach.position.lat_deg, breach.position.lon_deg
         );
         problems.push(Problem::warning("emergency-through-zone", message).of(&from.leg));

@@ -157,10 +157,10 @@ fn out_of_energy(view: &View, seconds: f64, leg: &Id) -> Problem {
             "give `{id}` a count too, or a condition on the battery: `{until}` does not become true by itself before the energy is used up after {minutes:.0} min"
         ),
         (None, false) => format!(
-            "give `{id}` a count, or a condition on the battery: only a person or a service ends it, and the energy is used up after {minutes:.0} min"
+            "give `{id}` a count, or a condition on the battery: only a person or a service ends it. The energy is used up after {minutes:.0} min"
         ),
         (_, true) => format!(
-            "give a branch of `{id}` that leads on a condition on the battery (`when`): its default leads back here until somebody decides, and the energy is used up after {minutes:.0} min"
+            "give a branch of `{id}` that leads on a condition on the battery (`when`): its default leads back here until somebody decides. The energy is used up after {minutes:.0} min"
         ),
     };
     Problem::warning("open-ended", message).of(id)

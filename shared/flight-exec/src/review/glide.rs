@@ -105,12 +105,12 @@ fn out_of_reach(
     let plan = &alternate.plan.id;
     let Some(share) = share else {
         let message = format!(
-            "from {from}, a glide along `{plan}` {what}, or name a nearer emergency plan for an engine failure"
+            "engine failure: `{plan}` is out of glide. From {from}, a glide along it {what}, or name a nearer emergency plan for an engine failure"
         );
         return Problem::warning("glide-out-of-reach", message).of(&from.leg);
     };
     let message = format!(
-        "be ready to land elsewhere after an engine failure, for which no emergency plan is named: on {:.0} % of the flight the runway of `{plan}` is out of glide, at worst from {from}, where a glide {what}, or name a nearer plan for the cause `engine`",
+        "engine failure: its runway is out of glide on {:.0} % of the flight. Be ready to land elsewhere: no emergency plan is named for the cause `engine`, and at worst, from {from}, a glide {what}, or name a nearer plan for this cause",
         (100.0 * share).ceil()
     );
     Problem::warning("glide-out-of-reach", message).of(plan)
@@ -132,7 +132,7 @@ fn hill(view: &View, alternate: &Alternate, from: &Origin) -> Option<Problem> {
     };
     let hit = along.into_iter().find_map(under)?;
     let message = format!(
-        "fly higher there, or name another emergency plan for an engine failure: from {from}, the glide to `{}` runs into a hill at {:.5}, {:.5}",
+        "fly higher there, or name another emergency plan for an engine failure. From {from}, the glide to `{}` runs into a hill at {:.5}, {:.5}",
         alternate.plan.id, hit.lat_deg, hit.lon_deg
     );
     Some(Problem::warning("glide-into-terrain", message).of(&from.leg))

@@ -108,7 +108,7 @@ fn problem(view: &View, leg: &Id, lowest: &Lowest) -> Option<Problem> {
         return Some(Problem::error("below-terrain", message).of(leg).perhaps_fixed_by(fix));
     }
     let message = format!(
-        "{advice}: as flown, it passes {:.0} m above the ground at {lat:.5}, {lon:.5}, and {margin_m:.0} m is the least of a path as flown",
+        "{advice}: as flown, it passes {:.0} m above the ground. That is at {lat:.5}, {lon:.5}; {margin_m:.0} m is the least of a path as flown",
         clearance_m.floor()
     );
     let problem = Problem::warning("low-clearance", message).of(leg);

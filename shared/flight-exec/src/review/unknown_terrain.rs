@@ -61,14 +61,14 @@ fn unseen_ground(view: &View) -> Option<Problem> {
     }
     let (leg, at) = first?;
     let message = format!(
-        "load the elevations {} (around {:.2}, {:.2}{}; {}), or look at the ground yourself: below {} of {} legs, this one first, nothing is known of it, and how near they come to it was not reviewed",
+        "load the elevations {}, or look at the ground yourself: below {} of {} legs nothing is known of it. It begins with this one (around {:.2}, {:.2}{}; {}), and how near they come to the ground was not reviewed",
         tiles.names(),
+        unknown.len(),
+        flown.len(),
         at.lat_deg,
         at.lon_deg,
         beyond_srtm(at).map_or_else(String::new, |model| format!(", of {model}")),
         how_to_load("FILE"),
-        unknown.len(),
-        flown.len()
     );
     Some(Problem::warning("not-reviewed", message).of(leg))
 }

@@ -42,7 +42,7 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 fn no_landing(stages: &[Stage]) -> Option<Problem> {
     let last = stages.last().filter(|last| last.kind != StageKind::Land)?;
     let flies = stages.iter().any(|stage| !stage.legs.is_empty() || stage.kind == StageKind::TakeOff);
-    let message = "add a land stage at the end: without one the flight does not end on the ground, the aircraft circles at its last place until somebody acts";
+    let message = "add a land stage at the end: without one the flight does not end on the ground. The aircraft circles at its last place until somebody acts";
     flies.then(|| Problem::warning("no-landing", message).of(&last.id))
 }
 
