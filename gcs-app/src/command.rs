@@ -222,6 +222,8 @@ pub enum ViewCommand {
     OpenReport(PathBuf),
     /// The demo's strip is not wanted any more.
     EndStory,
+    /// The demo is to be flown once more, from the beginning, in a new window.
+    TellAgain,
     /// This step of the tour, from 0; `None` ends it.
     Tour(Option<usize>),
     /// A message is being read: it stays.

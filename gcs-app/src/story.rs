@@ -33,6 +33,8 @@ struct Told {
     chapter: Chapter,
     /// Work that the listener has not heard of yet.
     work: Vec<Job>,
+    /// It is to be told once more, from the beginning.
+    is_wanted_again: bool,
 }
 
 impl Story {
@@ -49,6 +51,16 @@ impl Story {
     /// Where it has come to.
     pub fn chapter(&self) -> Chapter {
         self.told().chapter.clone()
+    }
+
+    /// Who listened wants to see it from the beginning.
+    pub fn want_again(&self) {
+        self.told().is_wanted_again = true;
+    }
+
+    /// Somebody wants to see it from the beginning.
+    pub fn is_wanted_again(&self) -> bool {
+        self.told().is_wanted_again
     }
 
     /// Work begins; it lasts as long as what this gives is held, and whoever listens shows it and may cancel it.

@@ -22,6 +22,17 @@ impl App {
         self.story = Some((story, chapter));
     }
 
+    /// Closes the window for another one, in which the story begins anew.
+    pub(super) fn tell_again(&mut self) {
+        if self.has_unsaved() {
+            let why = "Save or undo your changes first: the demo begins anew in another window.";
+            self.view.notice = Some(why.into());
+        } else if let Some((story, _)) = &self.story {
+            story.want_again();
+            self.leaving = true;
+        }
+    }
+
     /// Work that has ended and messages whose time is over go away.
     pub(super) fn tend_messages(&mut self, ctx: &egui::Context, now_s: f64) {
         if self.files.tend(now_s) | self.layers.tend(now_s) {

@@ -28,7 +28,7 @@ use progress::Progress;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 use watcher::Watcher;
 
@@ -40,6 +40,8 @@ const SPARE_S: f64 = 180.0;
 const LEAST_PACE: f64 = 5.0;
 /// The recordings' folder inside of the report's.
 const RECORDINGS: &str = "recordings";
+/// Exit status of a demo that came to no end.
+const FAILED: u8 = 2;
 /// When the window is closed, everything else must have ended after this, wall-clock.
 const CLOSING: Duration = Duration::from_secs(60);
 
@@ -99,17 +101,20 @@ fn limit(planned_s: f64, speed: f64) -> Duration {
     Duration::from_secs_f64(planned_s / pace + SPARE_S)
 }
 
-/// Ends the process when it still runs then: a demo never hangs.
-fn give_up_after(limit: Duration) {
+/// Ends the process when what this gives is still held then: a demo never hangs.
+fn give_up_after(limit: Duration) -> Sender<()> {
+    let (held, dropped) = channel::<()>();
     std::thread::spawn(move || {
-        std::thread::sleep(limit);
-        complain!("legwork: the demo has not ended after {} s: given up", limit.as_secs());
-        std::process::exit(2);
+        if dropped.recv_timeout(limit) == Err(RecvTimeoutError::Timeout) {
+            complain!("legwork: the demo has not ended after {} s: given up", limit.as_secs());
+            std::process::exit(2);
+        }
     });
+    held
 }
 
 fn without_window(args: &Args, prepared: &Prepared, speed: f64) -> anyhow::Result<ExitCode> {
-    give_up_after(limit(prepared.planned.duration_s(), speed));
+    let _held = give_up_after(limit(prepared.planned.duration_s(), speed));
     let (endpoint, _) = channel();
     runtime()?.block_on(fly(args, prepared, speed, &endpoint, &Watcher::nobody()))
 }
@@ -126,8 +131,19 @@ fn with_window(args: &Args, prepared: Prepared, speed: f64) -> anyhow::Result<Ex
         .spawn(move || runtime()?.block_on(fly(&for_flight, &prepared, speed, &sender, &beside)))
         .context("can't start a thread for the flight")?;
     open_window(args, document, &endpoint, &watcher);
-    give_up_after(if watcher.has_left() { CLOSING } else { limit(planned_s, speed) });
-    flight.join().unwrap_or_else(|_| Err(anyhow::anyhow!("the flight's thread has crashed")))
+    let held = give_up_after(if watcher.has_left() { CLOSING } else { limit(planned_s, speed) });
+    let ended = flight.join().unwrap_or_else(|_| Err(anyhow::anyhow!("the flight's thread has crashed")));
+    drop(held);
+    if watcher.story.is_wanted_again() { again() } else { ended }
+}
+
+/// The same demo once more, in a process of its own: a desktop gives a process one window system, and everything begins anew.
+fn again() -> anyhow::Result<ExitCode> {
+    let program = std::env::current_exe().context("the demo can't be begun again")?;
+    let status = std::process::Command::new(program).args(std::env::args_os().skip(1)).status();
+    let status = status.context("the demo can't be begun again")?;
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    Ok(ExitCode::from(code.unwrap_or(FAILED)))
 }
 
 /// Returns when the window is closed; without a window the flight goes on.
@@ -223,7 +239,9 @@ struct Conclusion {
 
 fn last_words(failure: Option<&anyhow::Error>, conclusion: Option<&Conclusion>) -> String {
     match (failure, conclusion) {
-        (Some(failure), _) => format!("The demo has failed: {failure:#}"),
+        (Some(failure), _) => format!(
+            "The demo has failed: {failure:#}. Try again, on a busy machine with a lower --speed; or close this strip and fly on yourself while the vehicle is connected."
+        ),
         (None, Some(conclusion)) if conclusion.is_good => {
             "The mission was flown as planned. Close the window to end the demo.".into()
         }
@@ -312,6 +330,12 @@ mod tests {
         });
         let why = result.map(|_| ()).unwrap_err().to_string();
         assert_eq!(why, "the simulator has ended");
+    }
+
+    #[test]
+    fn a_failure_says_why_and_what_can_be_done() {
+        let said = last_words(Some(&anyhow::anyhow!("the plan was not taken")), None);
+        assert!(said.contains("the plan was not taken. Try again") && said.contains("--speed"), "{said}");
     }
 
     #[test]
