@@ -63,10 +63,10 @@ impl App {
             .exact_size(42.0)
             .frame(frame.inner_margin(egui::Margin::symmetric(10, 4)))
             .show(ui, |ui| bar::show(ui, &scene, &fittings, queue));
-        strips(ui, &scene, queue);
+        let is_read = strips(ui, &scene, queue);
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
             let whole = ui.max_rect();
-            let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue));
+            let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue), is_read);
             let floor = floor(map, whole);
             if start::is_wanted(&scene) {
                 let (room, width) = room_of_start(floor, whole);
@@ -86,16 +86,14 @@ impl App {
     }
 }
 
-/// What takes its place before map and panels.
-fn strips(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+/// What takes its place before map and panels. True: something is read beside the map.
+fn strips(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) -> bool {
     // before all that may take its place
     commands(ui, scene, queue);
     emergency::show(ui, scene, queue);
     story::show(ui, scene, queue);
     announcements(ui, scene, queue);
-    if !consider::show(ui, scene, queue) {
-        push::show(ui, scene, queue);
-    }
+    consider::show(ui, scene, queue) || push::show(ui, scene, queue)
 }
 
 /// What lies over map and panels until something is decided, and the tour.

@@ -4,7 +4,7 @@ use super::stops::Stop;
 use super::{GAP, MAP, TAB_BAR};
 use crate::command::Queue;
 use crate::map::MapState;
-use crate::panels::{Panel, PanelId, Scene, tour};
+use crate::panels::{Panel, PanelId, Place, Scene, tour};
 use crate::theme;
 use egui::{
     Align, Color32, Frame, Layout, Margin, Rect, RichText, Sense, Stroke, Style, Ui, Visuals, WidgetText,
@@ -73,6 +73,11 @@ impl<'a> Content<'a> {
     /// Has the panel something to show?
     pub(super) fn is_relevant(&self, id: PanelId) -> bool {
         self.panel(id).is_none_or(|panel| panel.is_relevant(self.scene))
+    }
+
+    /// One of those that the plan is edited in, on the left unless the operator has put it elsewhere.
+    pub(super) fn is_of_the_plan(&self, id: PanelId) -> bool {
+        self.panel(id).is_some_and(|panel| matches!(panel.place(), Place::Left { .. }))
     }
 
     fn panel(&self, id: PanelId) -> Option<&dyn Panel> {

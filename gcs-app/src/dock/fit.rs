@@ -8,7 +8,9 @@ use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles};
 use std::collections::HashMap;
 
 /// The least the map gets before its neighbours shrink, screen points.
-const LEAST: Vec2 = vec2(240.0, 200.0);
+pub const LEAST: Vec2 = vec2(240.0, 200.0);
+/// The same while something beside it is read with the map.
+pub const READ: Vec2 = vec2(400.0, 200.0);
 /// A share that is no length: that of a tile that was just dropped here.
 const FRESH: f32 = 1.0;
 
@@ -28,20 +30,20 @@ impl Wanted {
     }
 }
 
-/// Makes the lengths of a tile of this size, and of those in it, add up.
-pub fn fit(tiles: &mut Tiles<PanelId>, tile: TileId, size: Vec2, wanted: &mut Wanted) {
+/// Makes the lengths of a tile of this size, and of those in it, add up. `least`: the least the map gets, screen points.
+pub fn fit(tiles: &mut Tiles<PanelId>, tile: TileId, size: Vec2, least: Vec2, wanted: &mut Wanted) {
     let Some(Tile::Container(container)) = tiles.get(tile) else { return };
     let children: Vec<TileId> = container.children().copied().collect();
     let Container::Linear(linear) = container else {
         let below = vec2(size.x, size.y - TAB_BAR);
-        return children.into_iter().for_each(|child| fit(tiles, child, below, wanted));
+        return children.into_iter().for_each(|child| fit(tiles, child, below, least, wanted));
     };
     let along = match linear.dir {
         LinearDir::Horizontal => Vec2::X,
         LinearDir::Vertical => Vec2::Y,
     };
     let wishes = children.iter().map(|child| wanted.of(*child, linear.shares[*child])).collect();
-    let (wishes, lengths) = lengths(tiles, linear, wishes, size.dot(along), LEAST.dot(along));
+    let (wishes, lengths) = lengths(tiles, linear, wishes, size.dot(along), least.dot(along));
     for ((child, wish), given) in children.iter().zip(wishes).zip(&lengths) {
         wanted.0.insert(*child, (wish, *given));
     }
@@ -55,7 +57,8 @@ pub fn fit(tiles: &mut Tiles<PanelId>, tile: TileId, size: Vec2, wanted: &mut Wa
     let total: f32 = shown.iter().map(|(_, length)| length).sum();
     let room = room(size.dot(along), shown.len());
     for (child, length) in shown {
-        fit(tiles, child, size + along * (length / total.max(FRESH) * room - size.dot(along)), wanted);
+        let part = size + along * (length / total.max(FRESH) * room - size.dot(along));
+        fit(tiles, child, part, least, wanted);
     }
 }
 
@@ -127,7 +130,7 @@ mod tests {
     /// Lengths of what is at the root, in a dock of this width.
     fn columns((tree, wanted): &mut (PanelTree, Wanted), width: f32) -> Vec<f32> {
         let root = tree.root().expect("not empty");
-        fit(&mut tree.tiles, root, vec2(width, 900.0), wanted);
+        fit(&mut tree.tiles, root, vec2(width, 900.0), LEAST, wanted);
         let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get(root) else { panic!("no row") };
         let shown: Vec<TileId> =
             linear.children.iter().copied().filter(|id| tree.tiles.is_visible_in_layout(*id)).collect();

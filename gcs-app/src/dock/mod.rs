@@ -24,6 +24,8 @@ pub const MAP: PanelId = "map";
 const STORAGE_KEY: &str = "layout";
 /// Between two tiles, screen points.
 const GAP: f32 = 1.0;
+/// A dock that is narrower has no room for a map that is read and panels on both sides of it, screen points.
+const ROOMY: f32 = 1016.0;
 /// Height of the titles, screen points.
 const TAB_BAR: f32 = 26.0;
 
@@ -95,14 +97,19 @@ impl Dock {
         }
     }
 
-    /// Draws everything. Returns where the map is, if no other tile is in front of it.
-    pub fn show(&mut self, ui: &mut Ui, content: &mut Content<'_>) -> Option<Rect> {
+    /// Draws everything. Returns where the map is, if no other tile is in front of it. `is_read`: something stands beside the dock
+    /// that is read with the map; where there is little room, the map gets that of the plan's panels.
+    pub fn show(&mut self, ui: &mut Ui, content: &mut Content<'_>, is_read: bool) -> Option<Rect> {
         self.grown = grow::grown(&mut self.tree, ui.available_width(), self.grown, &self.wanted);
+        let is_tight = is_read && ui.available_width() < ROOMY;
         for (tile, panel) in self.panes() {
-            self.tree.set_visible(tile, self.shows(panel) && content.is_relevant(panel));
+            let is_aside = is_tight && content.is_of_the_plan(panel);
+            let is_shown = self.shows(panel) && content.is_relevant(panel) && !is_aside;
+            self.tree.set_visible(tile, is_shown);
         }
         if let Some(root) = self.tree.root() {
-            fit::fit(&mut self.tree.tiles, root, ui.available_size(), &mut self.wanted);
+            let least = if is_read { fit::READ } else { fit::LEAST };
+            fit::fit(&mut self.tree.tiles, root, ui.available_size(), least, &mut self.wanted);
         }
         content.begin(&self.tree.tiles);
         self.tree.ui(content, ui);

@@ -1,4 +1,4 @@
-//! The bar: menus, vehicle and link, mode and state, plan badge, push, clock.
+//! The bar: menus, vehicle and link, mode and state, plan badge, clock, push.
 
 use super::{Scene, tour};
 use crate::actions::{Action, Fittings, Group, Kind, all};
@@ -7,26 +7,33 @@ use crate::link::LinkState;
 use crate::state::log::short_hash;
 use crate::theme::{self, Palette};
 use crate::units;
-use egui::{Color32, RichText, Ui};
+use egui::{Align, Color32, Layout, RichText, Ui, UiBuilder};
 use flight_exec::Phase;
 
 /// Draws the bar.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
-    ui.horizontal_centered(|ui| {
+    let whole = ui.max_rect();
+    let (left, right) = whole.split_left_right_at_x(whole.right() - RIGHT);
+    let row = |rect, layout| UiBuilder::new().max_rect(rect).layout(layout);
+    ui.scope_builder(row(left, Layout::left_to_right(Align::Center)), |ui| {
         menus(ui, scene, fittings, queue);
         ui.separator();
         super::link::show(ui, scene, queue);
         state(ui, scene);
         ui.separator();
         badge(ui, scene);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| title(ui, scene));
+    });
+    // whatever is said beside it, the button stays where it is
+    ui.scope_builder(row(right, Layout::right_to_left(Align::Center)), |ui| {
         push(ui, scene, queue);
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(RichText::new(utc(scene)).monospace()).on_hover_text(local(scene));
-            ui.separator();
-            title(ui, scene);
-        });
+        ui.separator();
+        ui.label(RichText::new(utc(scene)).monospace()).on_hover_text(local(scene));
     });
 }
+
+/// Width of clock and button at the right end, screen points.
+const RIGHT: f32 = 178.0;
 
 /// Seconds matter in flight only; without them a window that nobody touches rests for a minute.
 fn utc(scene: &Scene<'_>) -> String {
@@ -221,7 +228,8 @@ fn badge(ui: &mut Ui, scene: &Scene<'_>) {
     let label = RichText::new(format!("{symbol} {text} {hash}")).color(colour);
     let aboard = scene.vehicle.active_hash().map_or_else(|| "no plan".to_owned(), |h| short_hash(&h));
     let revision = scene.vehicle.status.as_ref().map_or(0, |s| s.value.revision);
-    ui.label(label).on_hover_text(format!("This document: {hash}\nAboard: {aboard}, revision {revision}"));
+    let label = egui::Label::new(label).truncate();
+    ui.add(label).on_hover_text(format!("This document: {hash}\nAboard: {aboard}, revision {revision}"));
 }
 
 fn standing_style(standing: Standing, p: &Palette) -> (&'static str, Color32) {

@@ -6,24 +6,29 @@ use crate::command::{FlyCommand, Queue};
 use crate::state::{Proposal, log::short_hash};
 use crate::theme::{self, Palette};
 use crate::units::{self, Units};
-use egui::{Color32, Panel, RichText, ScrollArea, Ui};
+use egui::collapsing_header::CollapsingState;
+use egui::{Color32, Label, Panel, RichText, ScrollArea, Sense, Ui};
 use flight_plan::{Change, FlightPlan, Id};
 
 /// Screen points.
 const WIDTH: f32 = 260.0;
 /// So many changes are written out.
 const MOST_CHANGES: usize = 200;
-/// So many legs are named.
-const MOST_LEGS: usize = 40;
+/// So many legs are named when all are asked for, and without being asked for.
+const MOST_LEGS: usize = 200;
+const FEW_LEGS: usize = 3;
+/// What lies less far ahead is here, metres.
+const HERE_M: f64 = 1.0;
 
-/// Draws the proposal's answer, while there is one.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let Some(proposal) = &scene.vehicle.proposal else { return };
+/// Draws the proposal's answer, while there is one; false: there is none.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) -> bool {
+    let Some(proposal) = &scene.vehicle.proposal else { return false };
     Panel::right("push")
         .exact_size(WIDTH)
         .resizable(false)
         .frame(theme::panel(ui).inner_margin(12.0))
         .show(ui, |ui| body(ui, scene, proposal, queue));
+    true
 }
 
 fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) {
@@ -91,16 +96,34 @@ fn verdict(ui: &mut Ui, proposal: &Proposal, p: &Palette) {
     ui.label(RichText::new(text).strong().color(colour));
 }
 
+/// Legs of which the same is told. Many of them are the first and the last one until all are asked for.
 fn difference(ui: &mut Ui, sign: &str, what: &str, plan: &FlightPlan, legs: &[Id], colour: Color32) {
-    if legs.is_empty() {
+    let (Some(first), Some(last)) = (legs.first(), legs.last()) else { return };
+    let count = if legs.len() == 1 { "1 leg".to_owned() } else { format!("{} legs", legs.len()) };
+    let title = |mark: &str| RichText::new(format!("{mark}{sign} {count} {what}:")).strong().color(colour);
+    if legs.len() <= FEW_LEGS {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(title(""));
+            ui.label(legs.iter().map(|leg| plan.label(leg)).collect::<Vec<_>>().join(", "));
+        });
         return;
     }
-    let shown: Vec<&str> = legs.iter().take(MOST_LEGS).map(|leg| plan.label(leg)).collect();
-    let more = legs.len().saturating_sub(shown.len());
-    let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
-    ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new(format!("{sign} {} {what}:", legs.len())).strong().color(colour));
-        ui.label(format!("{}{rest}", shown.join(", ")));
+    let id = ui.make_persistent_id(("legs", what));
+    let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, false);
+    let header = ui.horizontal_wrapped(|ui| {
+        let mark = if state.is_open() { "⏷ " } else { "⏵ " };
+        let title = ui.add(Label::new(title(mark)).sense(Sense::click()));
+        let ends = format!("{} … {}", plan.label(first), plan.label(last));
+        title | ui.add(Label::new(ends).sense(Sense::click()))
+    });
+    if header.inner.on_hover_text("Show or hide their names").clicked() {
+        state.toggle(ui);
+    }
+    state.show_body_indented(&header.response, ui, |ui| {
+        legs.iter().take(MOST_LEGS).for_each(|leg| drop(ui.label(plan.label(leg))));
+        if let Some(more) = legs.len().checked_sub(MOST_LEGS).filter(|more| *more > 0) {
+            ui.label(RichText::new(format!("and {more} more")).color(theme::of(ui).weak));
+        }
     });
 }
 
@@ -119,10 +142,18 @@ fn next(ui: &mut Ui, proposal: &Proposal, scene: &Scene<'_>, p: &Palette) {
         ui.label(RichText::new("The aircraft would fly next:").color(p.weak));
         ui.label(RichText::new(format!("{leg}{place}{}", in_so_far(way, units))).strong().color(p.active));
     });
-    if report.differs_in_m.is_some() {
-        let way = report.differs_in_m.zip(report.differs_in_s);
-        ui.label(RichText::new(format!("Its way differs{}.", in_so_far(way, units))).color(p.weak));
+    if let Some(way) = report.differs_in_m.zip(report.differs_in_s) {
+        ui.label(RichText::new(differs(way, units)).color(p.weak));
     }
+}
+
+/// Where the new path leaves the one that is flown now.
+fn differs((m, s): (f64, f64), units: Units) -> String {
+    if m < HERE_M {
+        return "It leaves the path that is flown now at once.".into();
+    }
+    let (way, time) = (units.length().show(m), units::duration(s));
+    format!("It flies on as now for {way} ({time}), then leaves that path.")
 }
 
 /// `, in 850 m · 34 s`.
@@ -166,5 +197,19 @@ fn buttons(ui: &mut Ui, proposal: &Proposal, queue: &mut Queue) {
     }
     if ui.button("Keep as draft").clicked() {
         queue.fly(FlyCommand::DropProposal);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_the_way_differs_is_said_in_words() {
+        assert_eq!(differs((0.2, 0.0), Units::Si), "It leaves the path that is flown now at once.");
+        let ahead = differs((850.0, 34.0), Units::Si);
+        assert!(
+            ahead.starts_with("It flies on as now for 850 m (") && ahead.ends_with("then leaves that path.")
+        );
     }
 }

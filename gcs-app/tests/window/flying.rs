@@ -104,7 +104,7 @@ fn push_shows_the_difference_and_commits_by_hash() {
     assert!(!window.is_enabled("Push"), "not twice at once");
     assert!(window.shows("Propose plan: pending"));
     window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
-    for text in ["1 added", "side5", "1 removed", "1 changed", "would fly next"] {
+    for text in ["1 leg added", "side5", "1 leg removed", "1 leg changed", "would fly next"] {
         assert!(window.shows(text), "{text}");
     }
     window.click("Commit");
@@ -134,6 +134,11 @@ fn proposal_leaves_the_commands_of_the_flight_in_reach() {
         window.steps(3);
         let commit = window.centre("Commit");
         assert!(egui::Rect::from_min_size(egui::Pos2::ZERO, size).contains(commit));
+        let map = window.harness.get_by_label("Map").rect();
+        assert!(map.width() >= 399.0, "{size}: the map is {map}");
+        let buttons = window.harness.get_by_label("Zoom in").rect();
+        let tools = window.harness.get_by_label("Select and move (V)").rect();
+        assert!(buttons.left() - tools.right() > 250.0, "{size}: {tools} {buttons}");
         let hold = window.centre("⏸ Hold");
         window.click_at(hold);
         assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Hold)), "{size}");

@@ -39,6 +39,7 @@ mod placing;
 mod planning;
 mod pointing;
 mod problems;
+mod pushing;
 mod reach;
 mod reading;
 mod recovering;

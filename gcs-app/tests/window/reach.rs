@@ -76,7 +76,6 @@ fn commands_in_flight_are_in_reach_whatever_is_open() {
         let mut refused = report(&window.app().analysis().hash.clone(), false);
         refused.problems = vec!["a rather long sentence that says what is wrong with it".into(); 40];
         window.answer(ticket, Ok(Reply::Proposal(Box::new(refused))));
-        window.click("TF side2");
         window.steps(5);
         assert_in_reach(&window, size, &labels, "a proposal is shown");
         with_notice(&mut window);

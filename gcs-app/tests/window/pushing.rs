@@ -1,0 +1,47 @@
+//! What stands in the panel of a proposal, and where the button is.
+
+use super::Window;
+use super::flying::{connected, flying, report};
+use egui::Key;
+use egui_kittest::kittest::Queryable;
+use flight_exec::ProposalReport;
+use gcs_app::link::Reply;
+
+#[test]
+fn many_legs_are_told_by_the_first_and_the_last_until_all_are_asked_for() {
+    let (mut window, hash) = connected();
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    let added = ["side1", "side2", "side3", "side4"].map(Into::into).to_vec();
+    let report =
+        ProposalReport { added, differs_in_m: Some(0.0), differs_in_s: Some(0.0), ..report(&hash, true) };
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report))));
+    assert!(window.shows("side1 … side4") && window.shows("It leaves the path that is flown now at once"));
+    let names = |window: &Window| window.harness.query_all_by_label("side3").count();
+    let before = names(&window);
+    let at = window.harness.get_by_label_contains("4 legs added").rect().center();
+    window.click_at(at);
+    window.steps(30);
+    assert_eq!(names(&window), before + 1);
+}
+
+/// The button stays under the pointer whatever is said beside it.
+#[test]
+fn the_push_button_has_one_place() {
+    for size in [egui::vec2(960.0, 600.0), egui::vec2(1280.0, 800.0)] {
+        let (mut window, mut value) = flying();
+        window.harness.set_size(size);
+        window.steps(3);
+        let before = window.harness.get_by_label("Push").rect();
+        assert!(before.right() <= size.x && before.right() > size.x - 20.0, "{size}: {before}");
+        for plan in [None, Some("another")] {
+            value.plan = plan.map(Into::into);
+            window.receive_status(value.clone());
+            window.steps(3);
+            assert_eq!(window.harness.get_by_label("Push").rect(), before, "{size}: {plan:?}");
+        }
+        window.click("TF side2");
+        window.press(Key::Delete);
+        assert_eq!(window.harness.get_by_label("Push").rect(), before, "{size}: edited");
+    }
+}
