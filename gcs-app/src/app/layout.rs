@@ -73,6 +73,7 @@ impl App {
                 floating(ui, "new mission", room, Align2::LEFT_TOP, |ui| {
                     ui.set_width(width);
                     start::show(ui, &scene, room.height(), queue);
+                    tour::mark(ui.ctx(), tour::NEW_MISSION, ui.min_rect());
                 });
             }
             over_map(ui, floor, &scene, queue);

@@ -6,7 +6,7 @@ use crate::theme::{self, Palette};
 use egui::emath::Rot2;
 use egui::{
     Align, Align2, Area, Context, Id, LayerId, Layout, Order, Painter, Pos2, Rect, RichText, Sense, Stroke,
-    Ui, vec2,
+    Ui, pos2, vec2,
 };
 
 /// What a card says, and about which part of the window.
@@ -22,6 +22,8 @@ pub const MENU: &str = "menu";
 pub const TOOLS: &str = "tools";
 /// Where a vehicle is connected to.
 pub const LINK: &str = "link";
+/// The card for a new mission: no card of the tour lies over it.
+pub const NEW_MISSION: &str = "new mission";
 
 const CARDS: [Card; 6] = [
     Card {
@@ -59,6 +61,8 @@ const CARDS: [Card; 6] = [
 const WIDTH: f32 = 280.0;
 /// Height of a card.
 const HEIGHT: f32 = 150.0;
+/// Between a card and what it lies beside, with its frame.
+const AROUND: f32 = 24.0;
 /// Height of its text: three lines.
 const TEXT: f32 = 66.0;
 /// Of the arrow's head, however far it reaches.
@@ -86,7 +90,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(card) = CARDS.get(step) else { return };
     let (window, about) = (ui.max_rect(), place_of(ui.ctx(), card.about));
     let p = theme::of(ui);
-    let at = in_the_middle(window);
+    let at = beside(place_of(ui.ctx(), NEW_MISSION), in_the_middle(window), window);
     let frame = theme::card(ui).stroke(Stroke::new(1.5, p.accent)).shadow(ui.visuals().popup_shadow);
     let area = Area::new(Id::unique("tour")).order(Order::Foreground).fixed_pos(at).constrain_to(window);
     // a click beside its buttons is for nothing below it
@@ -129,6 +133,15 @@ fn content(ui: &mut Ui, card: &Card, step: usize, queue: &mut Queue) {
 /// The upper left corner of every card: the pointer stays over its buttons, and what they are about lies around it.
 fn in_the_middle(window: Rect) -> Pos2 {
     Align2::CENTER_CENTER.align_size_within_rect(vec2(WIDTH, HEIGHT), window).min
+}
+
+/// The same place, or right of what would be covered there, as far as there is room.
+fn beside(other: Option<Rect>, at: Pos2, window: Rect) -> Pos2 {
+    let card = Rect::from_min_size(at, vec2(WIDTH + AROUND, HEIGHT));
+    match other.filter(|other| other.intersects(card)) {
+        Some(other) => pos2((other.right() + AROUND).min(window.right() - WIDTH - AROUND), at.y),
+        None => at,
+    }
 }
 
 /// A frame around what is meant, and an arrow to it.

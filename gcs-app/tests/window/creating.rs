@@ -62,7 +62,7 @@ fn each_template_gives_a_plan_that_can_be_flown_and_undone() {
 fn the_question_on_the_map_has_no_empty_line_below_it() {
     let mut window = Window::open(EMPTY);
     window.steps(3);
-    let said = "Where do you fly? Zoom in and click there, or type it into the card.";
+    let said = "Zoom in and click where you fly, or type it into the card.";
     let text = window.harness.get_by_label(said).rect();
     let below = window.plate_around(text).unwrap().bottom() - text.bottom();
     assert!(below < 16.0, "{below}");

@@ -91,6 +91,28 @@ fn a_demo_says_what_happens_and_what_comes_next_and_offers_its_report() {
     assert!(!window.shows("DEMO"));
 }
 
+/// At the least size, too.
+#[test]
+fn a_story_that_failed_is_read_whole_and_can_be_tried_again_or_closed() {
+    let why =
+        "The demo has failed: ".to_owned() + &"the plan was not taken within 15 s, ".repeat(6) + "the end";
+    for button in ["Try again", "Close the demo's strip"] {
+        let mut window = Window::open_with(SQUARE, egui::vec2(960.0, 600.0), None);
+        let story = Story::default();
+        window.harness.state_mut().listen_to(story.clone());
+        story.end(&why, End { good: false, report: None });
+        window.steps(5);
+        let text = window.harness.get_by_label_contains("the end").rect();
+        assert!(text.height() > 30.0 && text.right() < 960.0, "it is wrapped: {text}");
+        window.click(button);
+        assert_eq!(
+            (story.is_wanted_again(), window.app().is_leaving()),
+            (button == "Try again", button == "Try again")
+        );
+        assert!(button == "Try again" || !window.shows("the end"));
+    }
+}
+
 #[test]
 fn the_report_of_a_demo_is_made_in_sight_and_can_be_cancelled() {
     let mut window = Window::open(SQUARE);
@@ -102,6 +124,22 @@ fn the_report_of_a_demo_is_made_in_sight_and_can_be_cancelled() {
     assert!(window.shows("Making the report"));
     window.click("Cancel: Making the report");
     assert!(work.progress().is_cancelled() && !window.shows("Making the report"));
+}
+
+#[test]
+fn the_tour_covers_nothing_of_the_card_for_a_new_mission() {
+    for size in [egui::vec2(960.0, 600.0), egui::vec2(1280.0, 800.0), egui::vec2(1920.0, 1080.0)] {
+        let mut window = Window::open_with(super::creating::EMPTY, size, None);
+        window.harness.state_mut().offer_tour();
+        window.steps(4);
+        let card = ["Next", "Skip the tour"].map(|label| window.harness.get_by_label(label).rect());
+        let tour = (card[0] | card[1]).expand2(egui::vec2(12.0, 90.0));
+        for label in ["Create", "Open a plan…", "Where do you fly?"] {
+            let at = window.harness.get_by_label(label).rect();
+            assert!(!tour.intersects(at), "{size}: {label} at {at}, the tour at {tour}");
+        }
+        assert!(tour.right() < size.x, "{size}: {tour}");
+    }
 }
 
 #[test]

@@ -70,7 +70,7 @@ impl Tool for Guided {
         let guide = &scene.view.guide;
         let escape = "Esc ends it.";
         Some(match guide.drawing? {
-            Drawing::Place => "Where do you fly? Zoom in and click there, or type it into the card.".into(),
+            Drawing::Place => "Zoom in and click where you fly, or type it into the card.".into(),
             Drawing::Runway if self.pen.len() == 0 => {
                 format!("Runway: click the landing threshold. {escape}")
             }
