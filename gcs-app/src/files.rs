@@ -10,7 +10,7 @@ mod watch;
 pub use disk::Disk;
 pub use event::FileEvent;
 pub use listing::Entry;
-pub use reading::{Choices, Content, Imported};
+pub use reading::{Choices, Content, Imported, Lines};
 pub use saving::{Over, Stamp, Writing};
 pub(crate) use saving::{write_together, write_whole};
 pub use watch::Watched;

@@ -154,8 +154,8 @@ impl App {
     pub(super) fn add_import(&mut self, now_s: f64) {
         let Some(imported) = self.view.imported.take() else { return };
         let plan = self.document.plan();
-        let areas = imported.choices.areas;
-        let added = drawings::add(&imported.features, areas, plan, self.view.selection.as_ref());
+        let selected = self.view.selection.as_ref();
+        let added = drawings::add(&imported.features, &imported.choices, plan, selected);
         let done =
             added.and_then(|added| self.document.edit(&added.edit).map(|()| clipboard::selections(&added)));
         match done {

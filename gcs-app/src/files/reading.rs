@@ -30,11 +30,23 @@ pub enum Content {
     Foreign(Box<Imported>),
 }
 
+/// What the lines of a drawing are in a plan that they are added to.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Lines {
+    /// Each is a corridor: flown along, in as many tracks as it takes.
+    #[default]
+    Corridors,
+    /// Each of their points is a leg.
+    Tracks,
+}
+
 /// What only the user can say about another program's file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Choices {
     /// What its areas are.
     pub areas: Areas,
+    /// What its lines are where they are added to another plan.
+    pub lines: Lines,
     /// The runway to take off from and to land on; `None`: what the file says.
     pub runway: Option<Runway>,
 }
@@ -76,7 +88,7 @@ pub(super) fn read(
             Ok(Content::Plan(Box::new(document)))
         }
         FileFormat::Other(format) => {
-            let Choices { areas, runway } = choices.clone();
+            let Choices { areas, runway, .. } = choices.clone();
             let assumptions = Assumptions { areas, runway, ..formats::assumptions(path) };
             let import = formats::import(format, path, &bytes, &assumptions);
             let import = import.map_err(|error| format!("{error:#}"))?;

@@ -2,6 +2,7 @@
 
 use super::tools::new_leg::{self, Aim, Side};
 use crate::command::Selection;
+use crate::files::{Choices, Lines};
 use crate::formats::{FileFormat, label};
 use crate::guide::{Answer, Guide, MissionFigure};
 use flight_plan::clipboard::{MAX_BYTES, Pasted};
@@ -42,22 +43,22 @@ fn features(format: Format, text: &str) -> Result<Vec<Feature>, String> {
 /// other areas are zones. The sentence says why that can't be.
 pub fn add(
     features: &[Feature],
-    areas: Areas,
+    choices: &Choices,
     plan: &FlightPlan,
     selected: Option<&Selection>,
 ) -> Result<Pasted, String> {
-    may_add(features)?;
+    may_add(features, choices)?;
     let mut with = plan.clone();
     let (mut flown, mut edits, mut things) = (Vec::new(), Vec::new(), Vec::new());
     for feature in features.iter().filter(|feature| !is_of_a_flight(feature)) {
-        match thing(feature, areas, &with) {
+        match thing(feature, choices.areas, &with) {
             Some(thing) => {
                 let edit = Edit::Add(Box::new(thing.clone()));
                 with = edit.apply(&with).map_err(|error| error.to_string())?;
                 edits.push(edit);
                 things.push(thing);
             }
-            None => flown.push(feature.clone()),
+            None => flown.extend(flown_as(feature, choices.lines)),
         }
     }
     if flown.is_empty() {
@@ -71,11 +72,71 @@ pub fn add(
     Ok(Pasted { legs, things, edit: Edit::All(edits) })
 }
 
-/// So many figures can be added to a plan.
-pub fn may_add(features: &[Feature]) -> Result<(), String> {
-    match features.len() {
+/// So many figures can be added to a plan, as what was chosen.
+pub fn may_add(features: &[Feature], choices: &Choices) -> Result<(), String> {
+    if features.len() > MOST {
+        return Err(format!("It has {} figures, and {MOST} can be added to a plan at once.", features.len()));
+    }
+    let legs: usize = features.iter().filter(|f| is_line(f)).map(|line| points(line, choices.lines)).sum();
+    match legs {
         0..=MOST => Ok(()),
-        has => Err(format!("It has {has} figures, and {MOST} can be added to a plan at once.")),
+        has => Err(format!(
+            "Its lines have {has} points, and {MOST} legs can be added at once: take them as corridors."
+        )),
+    }
+}
+
+/// There is a line among them: it may be a corridor, or a leg for each of its points.
+pub fn has_lines(features: &[Feature]) -> bool {
+    features.iter().any(is_line)
+}
+
+fn is_line(feature: &Feature) -> bool {
+    matches!(feature.shape, Shape::Line(_)) && !is_of_a_flight(feature)
+}
+
+/// So many legs a line comes to.
+fn points(line: &Feature, lines: Lines) -> usize {
+    match (&line.shape, lines) {
+        (Shape::Line(vertices), Lines::Tracks) => vertices.len(),
+        _ => 1,
+    }
+}
+
+/// What comes of a drawing that is added, counted: of each sort its name and how many.
+pub fn counts(features: &[Feature], choices: &Choices) -> [(usize, &'static str); 5] {
+    let mut counts = [(0, "fix"), (0, "corridor"), (0, "leg"), (0, "scan"), (0, "zone")];
+    for feature in features.iter().filter(|feature| !is_of_a_flight(feature)) {
+        let what = match (&feature.shape, choices.lines) {
+            (Shape::Point(_), _) => "fix",
+            (Shape::Line(_), Lines::Corridors) => "corridor",
+            (Shape::Line(_), Lines::Tracks) => "leg",
+            (Shape::Area { .. }, _) if zone_kind(feature, choices.areas).is_some() => "zone",
+            (Shape::Area { .. }, _) => "scan",
+        };
+        let count = counts.iter_mut().find(|(_, name)| *name == what);
+        count.into_iter().for_each(|(count, _)| *count += points(feature, choices.lines));
+    }
+    counts
+}
+
+/// Where the legs of a drawing go, for people.
+pub fn whereto(plan: &FlightPlan, selected: Option<&Selection>) -> Option<String> {
+    new_leg::aim(plan, selected, &Side::Behind).map(|aim| new_leg::words(&aim, plan))
+}
+
+/// The figures that are flown: a line as it is, or its points one by one.
+fn flown_as(feature: &Feature, lines: Lines) -> Vec<Feature> {
+    match (&feature.shape, lines) {
+        (Shape::Line(vertices), Lines::Tracks) => {
+            let at = |(number, vertex): (usize, &interchange::Vertex)| Feature {
+                name: format!("{} {}", feature.name.trim(), number + 1).trim().to_owned(),
+                shape: Shape::Point(vertex.clone()),
+                ..feature.clone()
+            };
+            vertices.iter().enumerate().map(at).collect()
+        }
+        _ => vec![feature.clone()],
     }
 }
 
@@ -84,19 +145,20 @@ fn is_of_a_flight(feature: &Feature) -> bool {
     matches!(feature.mark("legwork"), Some("runway" | "path"))
 }
 
+/// What an area is a zone for, by its mark or as was chosen; `None`: it is scanned.
+fn zone_kind(feature: &Feature, areas: Areas) -> Option<ZoneKind> {
+    match (feature.mark("legwork"), areas) {
+        (Some("keep-in"), _) => Some(ZoneKind::KeepIn),
+        (Some("keep-out"), _) => Some(ZoneKind::KeepOut),
+        (_, Areas::Scan) => None,
+        (_, Areas::KeepIn) => Some(ZoneKind::KeepIn),
+        (_, Areas::KeepOut) => Some(ZoneKind::KeepOut),
+    }
+}
+
 /// `None`: it is flown.
 fn thing(feature: &Feature, areas: Areas, plan: &FlightPlan) -> Option<Thing> {
     let name = feature.name.trim().to_owned();
-    let marked = match feature.mark("legwork") {
-        Some("keep-in") => Some(ZoneKind::KeepIn),
-        Some("keep-out") => Some(ZoneKind::KeepOut),
-        _ => None,
-    };
-    let chosen = match areas {
-        Areas::Scan => None,
-        Areas::KeepIn => Some(ZoneKind::KeepIn),
-        Areas::KeepOut => Some(ZoneKind::KeepOut),
-    };
     match &feature.shape {
         Shape::Point(vertex) => {
             let description = feature.description.clone();
@@ -104,7 +166,7 @@ fn thing(feature: &Feature, areas: Areas, plan: &FlightPlan) -> Option<Thing> {
         }
         Shape::Area { outer, .. } => {
             let shape = ZoneShape::Polygon(outer.clone());
-            Some(Thing::Zone(Zone { name, ..create::zone(plan, marked.or(chosen)?, shape) }))
+            Some(Thing::Zone(Zone { name, ..create::zone(plan, zone_kind(feature, areas)?, shape) }))
         }
         Shape::Line(_) => None,
     }

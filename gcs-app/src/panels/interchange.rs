@@ -6,7 +6,7 @@ mod runway;
 use super::{Scene, primary_button};
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::export::Exported;
-use crate::files::{Choices, Imported};
+use crate::files::{Choices, Imported, Lines};
 use crate::map::drawings;
 use crate::{formats, theme};
 use egui::{Id, Key, Label, Modal, RichText, ScrollArea, Ui};
@@ -48,19 +48,21 @@ fn dialog(ui: &Ui, id: &str, aside: ViewCommand, queue: &mut Queue, add: impl Fn
 fn import(ui: &mut Ui, imported: &Imported, scene: &Scene<'_>, queue: &mut Queue) {
     let name = imported.path.file_name().unwrap_or_default().to_string_lossy();
     ui.strong(format!("Import “{name}” ({})", formats::label(imported.format)));
-    ui.label(format!("It becomes a plan with {}.", contents(&imported.import.plan)));
-    let document = scene.document;
     let adds = may_be_added(imported, scene);
-    if !document.is_nobodys() {
-        let added = if adds { ", or is added to that as one step" } else { "" };
-        let text = format!("It takes the place of “{}”{added}. Undo brings that back.", document.plan().name);
-        ui.label(text);
+    ui.label(as_new(imported, scene, adds));
+    if adds {
+        ui.label(as_addition(imported, scene));
     }
     if imported.import.has_areas() {
         areas(ui, imported, queue);
     }
+    if adds && drawings::has_lines(&imported.features) {
+        lines(ui, imported, queue);
+    }
     runway::choose(ui, imported, scene, queue);
-    notes(ui, "Assumed, changed or left out", &imported.import.notes);
+    let title =
+        if adds { "As a new plan: assumed, changed or left out" } else { "Assumed, changed or left out" };
+    notes(ui, title, &imported.import.notes);
     ui.horizontal(|ui| {
         let text = if adds { "As a new plan" } else { "Import the plan" };
         if main_button(ui, text) {
@@ -75,15 +77,38 @@ fn import(ui: &mut Ui, imported: &Imported, scene: &Scene<'_>, queue: &mut Queue
     });
 }
 
+/// What comes of it in the place of the plan that is open.
+fn as_new(imported: &Imported, scene: &Scene<'_>, adds: bool) -> String {
+    let has = contents(&imported.import.plan);
+    let mut text =
+        if adds { format!("As a new plan it has {has}.") } else { format!("It becomes a plan with {has}.") };
+    if !scene.document.is_nobodys() {
+        let name = &scene.document.plan().name;
+        text.push_str(&format!(" It takes the place of “{name}”; undo brings that back."));
+    }
+    text
+}
+
+/// What comes of it in the plan that is open.
+fn as_addition(imported: &Imported, scene: &Scene<'_>) -> String {
+    let counts = drawings::counts(&imported.features, &imported.choices);
+    let is_flown =
+        counts.iter().any(|(count, what)| *count > 0 && ["corridor", "leg", "scan"].contains(what));
+    let whereto = drawings::whereto(scene.document.plan(), scene.view.selection.as_ref());
+    let whereto =
+        whereto.filter(|_| is_flown).map_or_else(String::new, |place| format!(", what is flown {place}"));
+    format!("Into this plan, as one step, come {}{whereto}.", listed(&counts))
+}
+
 /// It is a drawing, and there is a plan to draw it into.
 fn may_be_added(imported: &Imported, scene: &Scene<'_>) -> bool {
     !imported.features.is_empty() && !scene.document.plan().stages.is_empty()
 }
 
 fn into_plan(ui: &mut Ui, imported: &Imported, queue: &mut Queue) {
-    let possible = drawings::may_add(&imported.features);
+    let possible = drawings::may_add(&imported.features, &imported.choices);
     let response = ui.add_enabled(possible.is_ok(), egui::Button::new("Into this plan"));
-    let what = "Points become fixes, lines corridors behind what is selected, areas what is chosen above";
+    let what = "Points become fixes, lines and areas what is chosen above";
     if response.on_hover_text(what).on_disabled_hover_text(possible.err().unwrap_or_default()).clicked() {
         queue.document(DocumentCommand::AddImport);
     }
@@ -109,6 +134,20 @@ fn areas(ui: &mut Ui, imported: &Imported, queue: &mut Queue) {
             let chosen = imported.choices.areas == areas;
             if ui.radio(chosen, label).clicked() && !chosen {
                 let choices = Choices { areas, ..imported.choices.clone() };
+                queue.document(DocumentCommand::ImportAs(Box::new(choices)));
+            }
+        }
+    });
+}
+
+/// What the drawn lines are in this plan.
+fn lines(ui: &mut Ui, imported: &Imported, queue: &mut Queue) {
+    ui.horizontal(|ui| {
+        ui.label("In this plan its lines are");
+        for (label, lines) in [("corridors", Lines::Corridors), ("legs from point to point", Lines::Tracks)] {
+            let chosen = imported.choices.lines == lines;
+            if ui.radio(chosen, label).clicked() && !chosen {
+                let choices = Choices { lines, ..imported.choices.clone() };
                 queue.document(DocumentCommand::ImportAs(Box::new(choices)));
             }
         }
@@ -173,6 +212,11 @@ fn contents(plan: &FlightPlan) -> String {
         (plan.runways.len(), "runway"),
         (plan.zones.len(), "zone"),
     ];
+    listed(&parts)
+}
+
+/// `4 legs, 1 fix and 2 zones`; what there is none of is left out.
+fn listed(parts: &[(usize, &str)]) -> String {
     let parts: Vec<String> =
         parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| number(*count, what)).collect();
     match parts.as_slice() {

@@ -4,7 +4,7 @@ use super::filing::{name, until_listed, window, window_on};
 use super::reach::Missing as Dropped;
 use super::{SQUARE, Window};
 use egui::Key;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -165,6 +165,40 @@ fn drawing_is_added_to_the_plan_that_is_open_by_one_step() {
         assert_eq!(plan.all_legs().iter().filter(|c| is_scan(c.leg)).count(), scans, "{areas}");
         assert!(plan.fixes.len() > before.fixes.len(), "points are fixes");
         assert_eq!((&plan.name, plan.stages.len()), (&before.name, before.stages.len()));
+        window.press_ctrl(Key::Z);
+        assert_eq!(window.plan(), before, "one step");
+    }
+}
+
+/// What is said of the choice is what comes of it.
+#[test]
+fn a_line_is_a_corridor_or_legs_as_was_chosen_and_the_dialog_says_which() {
+    let mut window = window(SQUARE);
+    let before = window.plan();
+    let is_corridor = |kind: &flight_plan::LegKind| {
+        matches!(kind, flight_plan::LegKind::Pattern(flight_plan::Pattern::Corridor { .. }))
+    };
+    for (choice, said, corridors) in
+        [("corridors", "1 corridor", 1), ("legs from point to point", "3 legs", 0)]
+    {
+        drop_file(&mut window, &fixture("places.kml"));
+        until_imported(&mut window);
+        if corridors == 0 {
+            window.click(choice);
+            window.until("the lines", |app| {
+                let imported = app.view().imported.as_ref();
+                imported.is_some_and(|i| i.choices.lines == gcs_app::files::Lines::Tracks)
+            });
+        }
+        assert!(window.shows("As a new plan it has ") && window.shows("Into this plan, as one step, come "));
+        let told = window.harness.get_by_label_contains("Into this plan, as one step").accesskit_node();
+        let told = told.value().or(told.label()).unwrap();
+        assert!(told.contains(said) && told.contains("what is flown "), "{told}");
+        window.click("Into this plan");
+        let plan = window.plan();
+        let added = plan.all_legs().len() - before.all_legs().len();
+        assert_eq!(plan.all_legs().iter().filter(|c| is_corridor(&c.leg.kind)).count(), corridors);
+        assert_eq!(added, if corridors == 1 { 2 } else { 4 }, "the line and the area");
         window.press_ctrl(Key::Z);
         assert_eq!(window.plan(), before, "one step");
     }
