@@ -7,8 +7,8 @@ use crate::map::MapState;
 use crate::panels::{Panel, PanelId, Place, Scene, tour};
 use crate::theme;
 use egui::{
-    Align, Color32, Frame, Layout, Margin, Rect, RichText, Sense, Stroke, Style, Ui, Visuals, WidgetText,
-    vec2,
+    Align, Color32, Frame, Layout, Margin, PointerButton, Rect, Response, RichText, Sense, Stroke, Style, Ui,
+    Visuals, WidgetText, vec2,
 };
 use egui_tiles::{Behavior, Container, ResizeState, TabState, Tabs, Tile, TileId, Tiles, UiResponse};
 use std::collections::BTreeSet;
@@ -201,14 +201,18 @@ impl Behavior<PanelId> for Content<'_> {
         });
     }
 
-    fn is_tab_closable(&self, tiles: &Tiles<PanelId>, tile: TileId) -> bool {
-        tiles.get_pane(&tile).is_some_and(|panel| *panel != MAP)
-    }
-
-    fn on_tab_close(&mut self, tiles: &mut Tiles<PanelId>, tile: TileId) -> bool {
-        self.closed.extend(tiles.get_pane(&tile).copied());
-        // it is hidden and keeps its place
-        false
+    /// A click on a name never closes: there is no cross beside it that is hit instead.
+    fn on_tab_button(&mut self, tiles: &mut Tiles<PanelId>, tile: TileId, response: Response) -> Response {
+        let Some(panel) = tiles.get_pane(&tile).copied().filter(|panel| *panel != MAP) else {
+            return response;
+        };
+        let mut hides = response.clicked_by(PointerButton::Middle);
+        response.context_menu(|ui| hides |= ui.button("Hide").clicked());
+        if hides {
+            // it keeps its place
+            self.closed.push(panel);
+        }
+        response.on_hover_text("A middle click hides it; the menu shows it again")
     }
 
     fn is_tile_draggable(&self, tiles: &Tiles<PanelId>, tile: TileId) -> bool {
@@ -217,10 +221,6 @@ impl Behavior<PanelId> for Content<'_> {
 
     fn tab_bar_height(&self, _style: &Style) -> f32 {
         TAB_BAR
-    }
-
-    fn close_button_outer_size(&self) -> f32 {
-        10.0
     }
 
     fn gap_width(&self, _style: &Style) -> f32 {
@@ -256,8 +256,8 @@ impl Behavior<PanelId> for Content<'_> {
     }
 }
 
-/// How wide a tab with this title is, with its cross.
+/// How wide a tab with this title is.
 fn tab_width(ui: &Ui, title: String) -> f32 {
     let font = egui::TextStyle::Button.resolve(ui.style());
-    ui.painter().layout_no_wrap(title, font, Color32::PLACEHOLDER).size().x + 34.0
+    ui.painter().layout_no_wrap(title, font, Color32::PLACEHOLDER).size().x + 20.0
 }

@@ -60,7 +60,8 @@ impl Stored {
             part(NOMINAL.x - LEFT - RIGHT, middle),
             part(RIGHT, column(right)),
         ]);
-        Self { version: VERSION, hidden: BTreeSet::new(), root }
+        let hidden = panels.iter().filter(|panel| !panel.is_shown_at_first());
+        Self { version: VERSION, hidden: hidden.map(|panel| panel.id().to_owned()).collect(), root }
     }
 
     /// As it is now.
@@ -167,7 +168,7 @@ mod tests {
     fn a_layout_survives_being_stored() {
         let stored = Stored::default_of(&panels::all());
         let tree = stored.tree(&known()).expect("the default layout is sound");
-        assert_eq!(Stored::of(&tree, &BTreeSet::new()), Some(stored));
+        assert_eq!(Stored::of(&tree, &BTreeSet::from([panels::what_if::ID])), Some(stored));
     }
 
     #[test]

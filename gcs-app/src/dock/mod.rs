@@ -77,7 +77,7 @@ impl Dock {
         }
     }
 
-    /// Back to the default layout, with every panel.
+    /// Back to the default layout, with every panel that is shown at first.
     pub fn reset(&mut self, panels: &[Box<dyn Panel>]) {
         *self = Self::default_of(panels);
     }

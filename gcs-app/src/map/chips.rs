@@ -7,14 +7,15 @@ use crate::panels::{Scene, problems, what_if};
 use crate::theme::{self, Palette};
 use egui::{Align2, Area, Id, Margin, RichText, Ui, vec2};
 
-/// Widest chip, and the room below for the sources of the map, screen points.
+/// Widest chip, the room below for the sources of the map and the one beside for the arrow to the north, screen points.
 const WIDTH: f32 = 330.0;
 const BELOW: f32 = 22.0;
+const BESIDE: f32 = 44.0;
 
 /// Draws them, the most urgent one lowest.
 pub fn show(ui: &Ui, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
-    let corner = view.rect.right_bottom() - vec2(12.0, BELOW);
-    let width = WIDTH.min(view.rect.width() - 170.0).max(160.0);
+    let corner = view.rect.right_bottom() - vec2(BESIDE, BELOW);
+    let width = WIDTH.min(view.rect.width() - 170.0 - BESIDE).max(160.0);
     let area = Area::new(Id::unique("map chips")).fixed_pos(corner).pivot(Align2::RIGHT_BOTTOM);
     area.constrain_to(view.rect).show(ui.ctx(), |ui| {
         ui.set_max_width(width);

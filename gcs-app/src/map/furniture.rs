@@ -28,22 +28,29 @@ pub const NARROW: f32 = 600.0;
 /// From one tool to the next, screen points.
 const TOOL: f32 = 36.0;
 /// From the legend's upper edge to the map's lower one, screen points.
-const LEGEND: f32 = 100.0;
+const LEGEND: f32 = 116.0;
+/// Height of the line that names the map's sources, screen points.
+const SOURCES: f32 = 16.0;
+/// Length of the scale bar with its label, screen points.
+const SCALE: f32 = 170.0;
 
 /// Draws scale bar, legend and sources; there are so many tools.
 pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, p: &Palette) {
-    scale(painter, view, scene.units(), p);
-    if view.rect.width() >= NARROW {
-        // beside the tools where they reach down to it
-        let (reach, columns) = (12.0 + TOOL * tools as f32, tools.div_ceil(in_column(view.rect)));
-        let is_beside = columns > 1 || reach > view.rect.height() - LEGEND;
-        let aside = if is_beside { 8.0 + TOOL * columns as f32 } else { 0.0 };
-        legend(painter, view.rect.with_min_x(view.rect.left() + aside), p);
-    }
     let corner = view.rect.right_bottom() - vec2(6.0, 4.0);
     let sources = std::iter::once(assets::ATTRIBUTION.to_owned()).chain(scene.layers.attributions());
     let sources = sources.collect::<Vec<_>>().join(" · ");
-    text::haloed(painter, corner, Align2::RIGHT_BOTTOM, &sources, 10.0, p.weak, p);
+    let named = text::haloed(painter, corner, Align2::RIGHT_BOTTOM, &sources, 10.0, p.weak, p);
+    // above the sources where these reach over to it
+    let lift = if named.left() < view.rect.left() + SCALE { SOURCES } else { 0.0 };
+    let map = view.rect.with_max_y(view.rect.bottom() - lift);
+    scale(painter, view, map, scene.units(), p);
+    if map.width() >= NARROW {
+        // beside the tools where they reach down to it
+        let (reach, columns) = (12.0 + TOOL * tools as f32, tools.div_ceil(in_column(view.rect)));
+        let is_beside = columns > 1 || reach > map.height() - LEGEND;
+        let aside = if is_beside { 8.0 + TOOL * columns as f32 } else { 0.0 };
+        legend(painter, map.with_min_x(map.left() + aside), p);
+    }
     north(painter, view.rect.right_bottom() - vec2(26.0, 44.0), p);
 }
 
@@ -74,10 +81,10 @@ pub fn pointer(ui: &mut Ui, view: &View, at: Option<Pos2>, scene: &Scene<'_>) {
 }
 
 /// A bar of a round length, up to 90 points long.
-fn scale(painter: &Painter, view: &View, units: Units, p: &Palette) {
+fn scale(painter: &Painter, view: &View, map: Rect, units: Units, p: &Palette) {
     let (unit, length) = round_length(units, 90.0 / view.points_per_metre(), Round::Down);
     let points = (unit.to_si(length) * view.points_per_metre()) as f32;
-    let start = view.rect.left_bottom() + vec2(12.0, -12.0);
+    let start = map.left_bottom() + vec2(12.0, -12.0);
     let end = start + vec2(points, 0.0);
     for (width, colour) in [(5.0, p.halo), (2.0, p.text)] {
         painter.line_segment([start, end], Stroke::new(width, colour));
@@ -90,7 +97,7 @@ fn scale(painter: &Painter, view: &View, units: Units, p: &Palette) {
 type Line = fn(&Painter, Pos2, Pos2, &Palette);
 
 /// Line styles and what they mean.
-const LINES: [(&str, Line); 4] = [
+const LINES: [(&str, Line); 5] = [
     ("planned", |painter, a, b, p| {
         painter.line_segment([a, b], Stroke::new(2.0, p.accent));
     }),
@@ -102,6 +109,9 @@ const LINES: [(&str, Line); 4] = [
     }),
     ("alternate", |painter, a, b, p| {
         painter.extend(Shape::dotted_line(&[a, b], p.contingency, 6.0, 1.5));
+    }),
+    ("glide", |painter, a, b, p| {
+        painter.extend(Shape::dashed_line(&[a, b], Stroke::new(2.2, p.text), 8.0, 5.0));
     }),
 ];
 /// Size of what they take, screen points.

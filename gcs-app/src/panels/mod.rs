@@ -93,6 +93,11 @@ pub trait Panel: std::fmt::Debug {
     /// Where it is unless the operator has put it elsewhere.
     fn place(&self) -> Place;
 
+    /// It is there without being asked for.
+    fn is_shown_at_first(&self) -> bool {
+        true
+    }
+
     /// What its title says now.
     fn title(&self, _scene: &Scene<'_>) -> String {
         self.name().into()

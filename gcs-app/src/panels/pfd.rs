@@ -40,8 +40,8 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
         let at = right.center_bottom() - vec2(0.0, 4.0);
         label(&painter, at, Align2::CENTER_BOTTOM, &format!("AGL {}", unit.number(agl_m)), 9.5);
     }
-    heading(&painter, middle, level.map(|a| a.heading_deg));
-    wind(&painter, middle, scene, level.map(|a| a.heading_deg));
+    let told = heading(&painter, middle, level.map(|a| a.heading_deg));
+    wind(&painter, middle, told, scene, level.map(|a| a.heading_deg));
 }
 
 /// The value, if it is still to be believed.
@@ -80,21 +80,25 @@ fn heads(painter: &Painter, scene: &Scene<'_>, left: Rect, right: Rect, p: &Pale
     head(right, format!("AMSL {}", scene.units().altitude().symbol));
 }
 
-fn heading(painter: &Painter, middle: Rect, heading_deg: Option<f64>) {
+fn heading(painter: &Painter, middle: Rect, heading_deg: Option<f64>) -> Rect {
     let text = heading_deg.map_or_else(|| "HDG –".into(), |h| format!("HDG {}", units::bearing(h)));
     let at = pos2(middle.center().x, middle.bottom() - 4.0);
-    label(painter, at, Align2::CENTER_BOTTOM, &text, 13.0);
+    label(painter, at, Align2::CENTER_BOTTOM, &text, 13.0)
 }
 
 /// Wind up to this has no direction worth showing.
 const CALM_MPS: f64 = 0.2;
 
-/// Where the wind comes from, as an arrow relative to the nose, and its speed.
-fn wind(painter: &Painter, middle: Rect, scene: &Scene<'_>, heading_deg: Option<f64>) {
+/// Width of the wind's speed, or of that there is none, screen points.
+const WIND: f32 = 44.0;
+
+/// Where the wind comes from, as an arrow relative to the nose, and its speed; above the heading where that leaves no room beside it.
+fn wind(painter: &Painter, middle: Rect, told: Rect, scene: &Scene<'_>, heading_deg: Option<f64>) {
     let Some(air) = live(&scene.vehicle.air, scene.now_s) else { return };
     let speed = air.wind_east_mps.hypot(air.wind_north_mps);
     let unit = scene.units().speed();
-    let at = middle.left_bottom() + vec2(6.0, -4.0);
+    let is_beside = middle.left() + 6.0 + WIND < told.left();
+    let at = pos2(middle.left() + 6.0, if is_beside { middle.bottom() - 4.0 } else { told.top() - 2.0 });
     let is_calm = speed <= CALM_MPS;
     let text = if is_calm { "CALM".into() } else { unit.number(speed) };
     let rect = label(painter, at, Align2::LEFT_BOTTOM, &text, 11.5);

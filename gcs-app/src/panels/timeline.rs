@@ -1,7 +1,7 @@
 //! The preview's timeline: play and pause, what the preview comes to, and a strip with its stages along which the cursor is moved.
 
-use super::Scene;
-use crate::command::{PreviewCommand, Queue};
+use super::{Scene, what_if};
+use crate::command::{PreviewCommand, Queue, ViewCommand};
 use crate::forecast::Forecast;
 use crate::theme::{self, Palette};
 use crate::units;
@@ -18,6 +18,10 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         queue.preview(PreviewCommand::Play(!scene.view.playing));
     }
     speed(ui, scene, queue);
+    let hover = "Other winds, values and branches, and alarms at the cursor";
+    if ui.button("What if").on_hover_text(hover).clicked() {
+        queue.view(ViewCommand::ShowPanel(what_if::ID, true));
+    }
     if scene.view.cursor_s.is_some() && ui.button("✖").on_hover_text("Hide the cursor").clicked() {
         queue.preview(PreviewCommand::Scrub(None));
     }

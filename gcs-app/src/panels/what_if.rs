@@ -19,8 +19,8 @@ pub struct WhatIfPanel;
 
 /// Its identifier.
 pub const ID: PanelId = "what-if";
-/// Width of a column, screen points.
-const COLUMN: f32 = 212.0;
+/// Least width of a column, screen points.
+const LEAST_COLUMN: f32 = 220.0;
 /// Of a slider beside its number and name.
 const SLIDER: f32 = 44.0;
 
@@ -31,33 +31,43 @@ impl Panel for WhatIfPanel {
     fn name(&self) -> &'static str {
         "What if"
     }
+    /// Beside the profile: its cursor is where the alarm is raised.
     fn place(&self) -> Place {
-        Place::Below
+        Place::Right { height: 330.0 }
+    }
+    fn is_shown_at_first(&self) -> bool {
+        false
     }
     fn title(&self, scene: &Scene<'_>) -> String {
         let differs = !scene.view.what_if.is_nothing() || scene.view.alarm.is_some();
         if differs { "What if ●".into() } else { self.name().into() }
     }
-    fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        timeline::show(ui, scene, queue);
-    }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         timeline::strip(ui, scene, queue);
         ScrollArea::both().id_salt("what if").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().slider_width = SLIDER;
-            ui.horizontal_top(|ui| {
-                let columns: [fn(&mut Ui, &Scene<'_>, &mut Queue); 3] =
-                    [here::show, world::air, world::choices];
-                for column in columns {
-                    ui.allocate_ui(vec2(COLUMN, 0.0), |ui| {
-                        ui.set_width(COLUMN);
-                        ui.vertical(|ui| column(ui, scene, queue));
-                    });
-                }
-            });
+            let gap = ui.spacing().item_spacing.x;
+            let beside = ((ui.available_width() / LEAST_COLUMN) as usize).clamp(1, COLUMNS.len());
+            let width = (ui.available_width() / beside as f32 - gap).max(LEAST_COLUMN - gap);
+            for row in COLUMNS.chunks(beside) {
+                ui.horizontal_top(|ui| {
+                    for column in row {
+                        ui.allocate_ui(vec2(width, 0.0), |ui| {
+                            ui.set_width(width);
+                            ui.vertical(|ui| column(ui, scene, queue));
+                        });
+                    }
+                });
+            }
         });
     }
 }
+
+/// A group of its choices.
+type Column = fn(&mut Ui, &Scene<'_>, &mut Queue);
+
+/// Beside one another where there is room, else one below the other; the answer first.
+const COLUMNS: [Column; 3] = [here::show, world::air, world::choices];
 
 /// Back to the world of the plan.
 fn reset_button(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {

@@ -182,7 +182,8 @@ fn every_panel_of_the_registry_can_be_hidden_and_shown_from_the_menu() {
     let mut window = opened(SIZES[1]);
     fly(&mut window);
     for panel in panels::all() {
-        for shown in [false, true] {
+        let at_first = window.app().dock().shows(panel.id());
+        for shown in [!at_first, at_first] {
             window.click("Legwork");
             window.click("Panels");
             let check_box = window
@@ -211,6 +212,42 @@ fn a_hidden_panel_gives_its_place_to_its_neighbour_and_the_default_layout_brings
     window.click("Default layout");
     assert!(window.shows("TF side1"));
     assert!((rect(&window, "Hide Problems").top() - before).abs() < 1.0);
+}
+
+/// What is asked there needs the profile's cursor.
+#[test]
+fn what_if_stands_beside_the_profile_and_says_its_answer_in_full_width() {
+    for size in SIZES {
+        let mut window = opened(size);
+        window.until_analysed();
+        let tabs = window.harness.get_all_by_label("Profile").next().unwrap().rect();
+        window.click_at(tabs.right_center() - vec2(3.0, 0.0));
+        assert!(window.app().dock().shows("profile"), "{size}: a click on its name never closes a tab");
+        window.click("What if");
+        assert!(window.shows("Vertical profile") && window.app().dock().shows("what-if"), "{size}");
+        let profile = window.harness.get_by_label_contains("Vertical profile").rect();
+        window.click_at(profile.center());
+        window.harness.get_by_label("Engine failure").click_accesskit();
+        window.until("the way out", |app| app.analysis().diversion().is_some());
+        let answer = window.harness.get_by_label_contains("Engine failure: ").rect();
+        let screen = Rect::from_min_size(Pos2::ZERO, size);
+        assert!(screen.contains_rect(answer) && answer.width() > 150.0, "{size}: {answer}");
+    }
+}
+
+#[test]
+fn a_middle_click_hides_a_tab() {
+    let mut window = opened(SIZES[1]);
+    let at = rect(&window, "Table").center();
+    window.harness.hover_at(at);
+    window.steps(1);
+    for pressed in [true, false] {
+        let (button, modifiers) = (egui::PointerButton::Middle, egui::Modifiers::NONE);
+        window.harness.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers });
+        window.steps(1);
+    }
+    window.steps(2);
+    assert!(!window.app().dock().shows("table"));
 }
 
 #[test]

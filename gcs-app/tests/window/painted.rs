@@ -66,6 +66,19 @@ impl Window {
             .or(Some(text.fallback_color))
     }
 
+    /// Where words are painted that are meant, each place once: a halo is painted beside them.
+    pub fn places_of(&self, is_meant: impl Fn(&str) -> bool) -> Vec<Rect> {
+        let found = self.harness.output().shapes.iter().flat_map(|clipped| texts(&clipped.shape));
+        let found = found.filter(|text| is_meant(text.galley.text()));
+        let mut places: Vec<Rect> = Vec::new();
+        for place in found.map(|text| text.galley.rect.translate(text.pos.to_vec2())) {
+            if places.iter().all(|known| known.min.distance(place.min) > 3.0) {
+                places.push(place);
+            }
+        }
+        places
+    }
+
     /// The smallest plate that is painted behind something.
     pub fn plate_around(&self, inner: Rect) -> Option<Rect> {
         let shapes = self.harness.output().shapes.iter();

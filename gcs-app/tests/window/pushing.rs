@@ -5,7 +5,8 @@ use super::flying::{connected, flying, report};
 use egui::Key;
 use egui_kittest::kittest::Queryable;
 use flight_exec::ProposalReport;
-use gcs_app::link::Reply;
+use gcs_app::link::{Reply, Telemetry};
+use usal::contract::{Air, Stamped};
 
 #[test]
 fn many_legs_are_told_by_the_first_and_the_last_until_all_are_asked_for() {
@@ -44,4 +45,44 @@ fn the_push_button_has_one_place() {
         window.press(Key::Delete);
         assert_eq!(window.harness.get_by_label("Push").rect(), before, "{size}: edited");
     }
+}
+
+/// The least window, with a proposal beside the map: there is room for nothing more.
+#[test]
+fn scale_and_sources_wind_and_heading_are_apart_in_the_least_window() {
+    let (mut window, mut value) = flying();
+    value.plan = Some("another".into());
+    window.receive_status(value);
+    while window.asked().is_some() {}
+    window.harness.set_size(egui::vec2(960.0, 600.0));
+    window.receive_attitude();
+    let air = Air {
+        airspeed_mps: 24.0,
+        wind_east_mps: 5.0,
+        wind_north_mps: 0.0,
+        pressure_hpa: 980.0,
+        temperature_c: 15.0,
+    };
+    window.receive(Telemetry::Air(Stamped { time_s: 1.0, validity_s: 2.0, value: air }));
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    let hash = window.app().analysis().hash.clone();
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
+    window.steps(3);
+    let only = |what: &str, found: Vec<egui::Rect>| {
+        assert_eq!(found.len(), 1, "{what}: {found:?}");
+        found[0]
+    };
+    let is_scale = |text: &str| {
+        let number = text.strip_suffix(" km").or(text.strip_suffix(" m"));
+        number.is_some_and(|number| number.parse::<u32>().is_ok())
+    };
+    let map = window.harness.get_by_label("Map").rect();
+    let on_map = |found: Vec<egui::Rect>| found.into_iter().filter(|rect| map.contains_rect(*rect)).collect();
+    let scale = only("scale", on_map(window.places_of(is_scale)));
+    let sources = only("sources", on_map(window.places_of(|text| text.contains("OurAirports"))));
+    assert!(!scale.intersects(sources), "{scale} {sources}");
+    let heading = only("heading", window.places_of(|text| text.starts_with("HDG ")));
+    let wind = window.places_of(|text| text == "5.0");
+    assert!(!wind.is_empty() && wind.iter().all(|wind| !wind.intersects(heading)), "{wind:?} {heading}");
 }

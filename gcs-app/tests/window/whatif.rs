@@ -173,6 +173,10 @@ fn the_way_out_goes_with_its_banner_and_with_its_cursor() {
         window.until("the way out", |app| app.analysis().diversion().is_some());
         assert!(window.colour_within("Map", "Engine failure: return, ").is_some(), "on the map");
         assert!(window.shows("What if: Engine failure at "), "the map says so");
+        assert!(window.colour_within("Map", "glide").is_some(), "the legend says what the dashes are");
+        let chip = window.harness.get_by_label_contains("What if: Engine failure at ").rect();
+        let north = window.places_of(|text| text == "N");
+        assert!(north.iter().all(|north| !north.intersects(chip.expand(8.0))), "{north:?} {chip}");
         window.click(close);
         assert_eq!(window.colour_within("Map", "Engine failure: return, "), None, "{close}");
         assert!(!window.shows("What if: ") && window.app().view().alarm.is_none(), "{close}");
