@@ -7,7 +7,7 @@ use crate::assets;
 use crate::headless::wind::Air;
 use crate::headless::{Loaded, Source, forecast, wind};
 use crate::report::{Record, Track, assemble, authored, flights};
-use aircraft::{Profile, Wind};
+use aircraft::{Autopilot, Profile, Wind};
 use anyhow::{Context, bail};
 use flight_exec::Event;
 use flight_exec::rehearse::Preview;
@@ -48,7 +48,7 @@ pub fn prepare(args: &Args) -> anyhow::Result<Prepared> {
     let destination =
         destination(&program.plan).context("the plan does not end with a land stage: give it one")?.clone();
     let steps = mission::steps_for(&program.plan);
-    let (preview, last_plan) = preview(&loaded, &program, profile, args.wind, &steps)?;
+    let (preview, last_plan) = preview(&loaded, &program, profile, air(args), &steps)?;
     let (last_plan, _) = flight_plan::instantiate(&last_plan);
     let planned = forecast::track(&preview, &[program.flown(), &last_plan]);
     let profile = profile.clone();
@@ -65,6 +65,15 @@ fn load(args: &Args) -> anyhow::Result<Loaded> {
 fn destination(plan: &FlightPlan) -> Option<&Runway> {
     let land = plan.stages.iter().rev().find(|s| s.kind == StageKind::Land)?;
     plan.runway(land.runway.as_ref()?)
+}
+
+/// The wind, and the habits of the autopilot that is simulated.
+fn air(args: &Args) -> Air {
+    let autopilot = match args.autopilot {
+        sim::Personality::ArduPlane => Some(Autopilot::ArduPlane { wp_radius_m: None }),
+        sim::Personality::Px4 | sim::Personality::Px4Vtol => None,
+    };
+    Air { wind: args.wind, autopilot, ..Air::default() }
 }
 
 /// The plan after all updates of the steps.
@@ -87,7 +96,7 @@ fn preview(
     loaded: &Loaded,
     program: &Arc<Program>,
     profile: &Profile,
-    wind: Wind,
+    air: Air,
     steps: &[Step],
 ) -> anyhow::Result<(Preview, FlightPlan)> {
     let compile = |plan: FlightPlan| {
@@ -99,7 +108,7 @@ fn preview(
     let mut asked_s: Vec<f64> = Vec::new();
     loop {
         let scenario = mission::scenario(steps, &program.plan, compile, &asked_s)?;
-        let (terrain, air, scenario) = (&loaded.terrain, Air { wind, ..Air::default() }, &scenario);
+        let (terrain, scenario) = (&loaded.terrain, &scenario);
         let ahead = forecast::Ahead { program, profile, terrain, air, scenario };
         let preview = ahead.fly().context("the plan can't be flown to its end")?;
         let asked: Vec<f64> = preview

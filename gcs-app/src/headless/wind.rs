@@ -1,6 +1,6 @@
 //! Wind on the command line.
 
-use aircraft::Wind;
+use aircraft::{Autopilot, Wind};
 use flight_exec::Conditions;
 use flight_exec::rehearse::Start;
 use flight_plan::FlightPlan;
@@ -9,7 +9,7 @@ use geometry::LatLon;
 /// Strongest wind that is accepted, m/s.
 const MAX_MPS: f64 = 50.0;
 
-/// The wind and the time of a command that flies a plan ahead of time.
+/// The wind and the time of a command that flies a plan ahead of time, and the habits that it is flown with.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
 pub struct Air {
     /// Where the wind comes from (degrees true) and its speed (m/s).
@@ -21,6 +21,9 @@ pub struct Air {
     /// Where a plan without a take-off begins, in flight (m AMSL, degrees true) [default: before its first place].
     #[arg(long, value_name = "LAT,LON,ALT,COURSE", value_parser = in_flight, allow_hyphen_values = true)]
     pub begin: Option<Start>,
+    /// The autopilot whose habits it is flown with; a review has none.
+    #[arg(skip)]
+    pub autopilot: Option<Autopilot>,
 }
 
 impl Air {

@@ -33,6 +33,7 @@ fn two_hours_of_flight_with_guidance() -> LatLon {
         airspeed_mps: 25.0,
         action: Action::Fly,
         fly_over: false,
+        acceptance_m: None,
     };
     let mut i = 0;
     let mut next = target(1);

@@ -18,6 +18,7 @@
 //!     airspeed_mps: 25.0,
 //!     action: Action::Fly,
 //!     fly_over: false,
+//!     acceptance_m: None,
 //! };
 //! guidance.direct(aircraft.state(), target);
 //! loop {
@@ -30,6 +31,7 @@
 //! assert!(aircraft.state().position.distance_m(target.position) < 5.0);
 //! ```
 
+pub mod air;
 pub mod autopilot;
 pub mod dynamics;
 pub mod glide;
@@ -37,7 +39,7 @@ pub mod power;
 pub mod profile;
 pub mod wind;
 
-pub use autopilot::{Action, Guidance, Guided, Target};
+pub use autopilot::{Action, Autopilot, Guidance, Guided, Habits, Target};
 pub use dynamics::{Aircraft, Demand, State};
 pub use power::{Battery, Engine};
 pub use profile::{DESIGN_WIND_MPS, Profile, ProfileError};

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Wind for which turns that have to stay where they are laid out are planned while none is measured that is stronger, m/s.
 pub const DESIGN_WIND_MPS: f64 = 6.0;
 
-/// Performance of a fixed-wing aircraft. SI units; airspeeds are true airspeeds.
+/// Performance of a fixed-wing aircraft. SI units; airspeeds are true airspeeds, or what [`crate::Habits`] make of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
     /// What a plan's `aircraft` attribute names.

@@ -4,7 +4,7 @@
 #[path = "common/small.rs"]
 mod small;
 
-use aircraft::{Profile, Wind};
+use aircraft::{Autopilot, Profile, Wind, air};
 use flight_exec::rehearse::{Act, Options, Scenario, Start, Trigger, When, preview_as_far_as_possible};
 use flight_exec::{Action, Command, Event, Preview, PreviewError, preview};
 use flight_plan::{Cause, Program, VariableValue, compile_document};
@@ -168,6 +168,27 @@ fn flights_without_an_end_are_refused_with_the_place() {
     assert!(matches!(fly(endless, &Options::default(), 3e5), Err(PreviewError::OutOfEnergy { .. })));
     let asks = r#"<TF id="a" fix="A"/><intersection id="x" decideBefore="10s"><branch id="l" label="l" next="b"/><branch id="r" label="r" next="c"/></intersection><TF id="b" fix="B" next="c"/><TF id="c" fix="C"/>"#;
     assert!(matches!(fly(asks, &Options::default(), 3e6), Err(PreviewError::Waiting { .. })));
+}
+
+/// It holds indicated airspeeds; what is flown without an autopilot's habits, as by reviews, is flown at true ones.
+#[test]
+fn by_arduplane_a_plan_is_flown_as_much_faster_as_the_air_is_thin() {
+    let fly = |autopilot| {
+        let (flat, options) = (Arc::new(Flat(300.0)) as _, Options { autopilot, ..Options::default() });
+        let legs = r#"<TF id="a" fix="A"/><TF id="b" fix="B"/><TF id="c" fix="C"/>"#;
+        let (profile, scenario) = (Profile::default(), Scenario::default());
+        preview(&small(legs), &profile, &flat, Wind::CALM, Start::Runway, &scenario, &options).unwrap()
+    };
+    let (usual, arduplane) = (fly(None), fly(Some(Autopilot::ArduPlane { wp_radius_m: None })));
+    let fastest = |flown: &Preview| {
+        flown.track.iter().copied().max_by(|a, b| a.airspeed_mps.total_cmp(&b.airspeed_mps)).unwrap()
+    };
+    assert_eq!(fastest(&usual).airspeed_mps, 25.0);
+    let at = fastest(&arduplane);
+    let expected_mps = 25.0 * air::true_per_indicated(at.altitude_amsl_m);
+    assert!((at.airspeed_mps - expected_mps).abs() < 0.01, "{at:?}, expected {expected_mps}");
+    assert!(arduplane.landed && arduplane.time_s < usual.time_s);
+    assert_eq!(legs(&arduplane), legs(&usual));
 }
 
 /// Asked once and decided once at each passing: by default at its deadline, before the leg behind it begins.

@@ -5,6 +5,7 @@ use super::{Action, Target, lateral};
 use crate::State;
 use geometry::geodesy::{normalise_180, normalise_360};
 use geometry::{LatLon, Vec2};
+use std::f64::consts::FRAC_PI_2;
 
 /// Track changes up to this need no turn, and above [`REVERSAL_RAD`] none fits: fly over the point.
 const STRAIGHT_RAD: f64 = 0.01;
@@ -113,6 +114,11 @@ impl Leg {
 }
 
 impl Corner {
+    /// The turn as a share of a right angle, at most 1.
+    pub(super) fn share(&self) -> f64 {
+        (self.angle_rad / FRAC_PI_2).min(1.0)
+    }
+
     /// How far before the target to turn, metres: d = r · tan(A/2), as far as it fits: all of this leg, and half of
     /// the next, which may need its other half for the turn at its own end.
     pub(super) fn anticipation_m(&self, radius_m: f64, length_m: f64) -> f64 {

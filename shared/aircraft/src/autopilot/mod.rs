@@ -11,8 +11,9 @@
 //!
 //! Fly-by targets are reached early, by the turn anticipation r · tan(A/2) at the real ground speed, so
 //! that the turn ends on the next leg; fly-over targets are reached abeam. A take-off is reached at its
-//! altitude, a landing at standstill, a loiter never.
+//! altitude, a landing at standstill, a loiter never. An autopilot with other [`Habits`] is flown by the same code.
 
+mod habits;
 mod lateral;
 mod leg;
 mod plane;
@@ -20,6 +21,7 @@ mod runway;
 
 use crate::{Demand, Profile, State};
 use geometry::LatLon;
+pub use habits::{ARC_LEAD_S, Autopilot, FLY_OVER_M, Habits, arc_acceptance_m};
 use leg::{Corner, Leg, Place};
 
 /// What to do at, or on the way to, a target.
@@ -51,12 +53,14 @@ pub struct Target {
     pub position: LatLon,
     /// Metres AMSL.
     pub altitude_amsl_m: f64,
-    /// Airspeed towards it, m/s; not a positive number: cruise.
+    /// Airspeed towards it as the autopilot is told it, m/s; not a positive number: cruise.
     pub airspeed_mps: f64,
     /// What to do.
     pub action: Action,
     /// Cross it before turning.
     pub fly_over: bool,
+    /// Go on to the next one this far before it, metres; `None`: as is the follower's habit.
+    pub acceptance_m: Option<f64>,
 }
 
 /// What guidance says.
@@ -82,15 +86,21 @@ pub struct Guided {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guidance {
     profile: Profile,
+    habits: Habits,
     leg: Option<Leg>,
     /// Turn at the end of the leg, kept from step to step: it costs more than all the rest.
     corner: Option<(Target, Corner)>,
 }
 
 impl Guidance {
-    /// Nothing to fly yet: wings level, cruise.
+    /// Nothing to fly yet: wings level, cruise. It keeps close to its lines.
     pub fn new(profile: Profile) -> Self {
-        Self { profile, leg: None, corner: None }
+        Self::with(profile, Habits::CLOSE)
+    }
+
+    /// The same with other habits.
+    pub fn with(profile: Profile, habits: Habits) -> Self {
+        Self { profile, habits, leg: None, corner: None }
     }
 
     /// Begins a leg at the aircraft's position and altitude, to `target`.
@@ -106,6 +116,11 @@ impl Guidance {
             Some(t) => self.begin(Leg::new(t.position, t.altitude_amsl_m, target)),
             None => self.direct(state, target),
         }
+    }
+
+    /// Its habits.
+    pub fn habits(&self) -> &Habits {
+        &self.habits
     }
 
     /// Another airspeed towards the current target, m/s.
@@ -143,7 +158,8 @@ impl Guidance {
     }
 
     fn idle(&self, state: &State) -> Guided {
-        let demand = Demand { airspeed_mps: self.profile.cruise_airspeed_mps, ..Demand::default() };
+        let airspeed_mps = self.true_mps(self.profile.cruise_airspeed_mps, state);
+        let demand = Demand { airspeed_mps, ..Demand::default() };
         Guided {
             demand: if state.on_ground { Demand::default() } else { demand },
             reached: false,
@@ -168,8 +184,10 @@ impl Guidance {
     }
 
     fn fly(&self, leg: &Leg, place: &Place, state: &State, corner: Option<Corner>) -> Guided {
-        let radius_m = self.profile.turn_radius_m(state.ground_speed_mps());
-        let early_m = corner.map_or(0.0, |c| c.anticipation_m(radius_m, leg.length_m));
+        let early_m = match leg.target.acceptance_m {
+            Some(acceptance_m) => acceptance_m,
+            None => corner.map_or(0.0, |c| self.early_m(leg, c, state)),
+        };
         let (altitude_m, slope) = leg.altitude_at(place.remaining_m);
         let along_mps = place.velocity.dot(leg.along).max(0.0);
         let mut demand = self.demand(leg, state, altitude_m, slope * along_mps);
@@ -180,11 +198,22 @@ impl Guidance {
         guided.reached_if(leg.is_a_point() || place.remaining_m <= early_m)
     }
 
+    /// How far before a corner it goes on to the next leg, metres.
+    fn early_m(&self, leg: &Leg, corner: Corner, state: &State) -> f64 {
+        let ground_speed_mps = state.ground_speed_mps();
+        match self.habits.corner_at_m(state.altitude_amsl_m) {
+            Some(most_m) => {
+                corner.share() * most_m.min(lateral::look_ahead_m(&self.habits, ground_speed_mps))
+            }
+            None => corner.anticipation_m(self.profile.turn_radius_m(ground_speed_mps), leg.length_m),
+        }
+    }
+
     fn circle(&self, leg: &Leg, place: &Place, state: &State, radius_m: f64) -> Guided {
         let cruise = self.profile.cruise_airspeed_mps;
         let radius_m = if radius_m == 0.0 { self.profile.turn_radius_m(cruise) } else { radius_m };
         let mut demand = self.demand(leg, state, leg.target.altitude_amsl_m, 0.0);
-        let lateral = lateral::circle_mps2(place.from_end, radius_m, place.velocity);
+        let lateral = lateral::circle_mps2(&self.habits, place.from_end, radius_m, place.velocity);
         demand.bank_rad = lateral::bank_rad(lateral, self.max_bank_rad());
         let mut guided = self.guided(leg, place, demand, leg.target.altitude_amsl_m - state.altitude_amsl_m);
         guided.cross_track_m = guided.distance_m - radius_m.abs();
@@ -192,7 +221,7 @@ impl Guidance {
     }
 
     fn follow_line(&self, leg: &Leg, place: &Place) -> f64 {
-        let lateral = lateral::line_mps2(place.cross_track_m, leg.along, place.velocity);
+        let lateral = lateral::line_mps2(&self.habits, place.cross_track_m, leg.along, place.velocity);
         lateral::bank_rad(lateral, self.max_bank_rad())
     }
 
@@ -206,16 +235,21 @@ impl Guidance {
         Demand {
             bank_rad: 0.0,
             climb_mps: climb_mps.clamp(-self.profile.max_descent_mps, self.profile.max_climb_mps),
-            airspeed_mps: self.airspeed_mps(&leg.target),
+            airspeed_mps: self.airspeed_mps(&leg.target, state),
             ground_amsl_m: None,
         }
     }
 
-    fn airspeed_mps(&self, target: &Target) -> f64 {
+    /// True airspeed towards a target, m/s.
+    fn airspeed_mps(&self, target: &Target, state: &State) -> f64 {
         let asked = target.airspeed_mps;
         let known = asked.is_finite() && asked > 0.0;
         let wanted = if known { asked } else { self.profile.cruise_airspeed_mps };
-        wanted.clamp(self.profile.min_airspeed_mps, self.profile.max_airspeed_mps)
+        self.true_mps(wanted.clamp(self.profile.min_airspeed_mps, self.profile.max_airspeed_mps), state)
+    }
+
+    fn true_mps(&self, told_mps: f64, state: &State) -> f64 {
+        self.habits.true_mps(told_mps, state.altitude_amsl_m)
     }
 
     fn max_bank_rad(&self) -> f64 {

@@ -21,12 +21,12 @@ const STOPPED_MPS: f64 = 0.3;
 impl Guidance {
     /// Full climb along the runway's line; reached at the altitude.
     pub(super) fn take_off(&self, leg: &Leg, place: &Place, state: &State) -> Guided {
-        let lateral = lateral::line_mps2(place.cross_track_m, leg.along, place.velocity);
+        let lateral = lateral::line_mps2(&self.habits, place.cross_track_m, leg.along, place.velocity);
         let missing_m = leg.target.altitude_amsl_m - state.altitude_amsl_m;
         let demand = Demand {
             bank_rad: lateral::bank_rad(lateral, LOW_BANK_RAD),
             climb_mps: self.profile.max_climb_mps,
-            airspeed_mps: self.airspeed_mps(&leg.target),
+            airspeed_mps: self.airspeed_mps(&leg.target, state),
             ground_amsl_m: None,
         };
         self.guided(leg, place, demand, missing_m)
@@ -46,13 +46,13 @@ impl Guidance {
         demand.bank_rad = self.follow_line(leg, place);
         demand.ground_amsl_m = Some(runway_m);
         if place.remaining_m < FINAL_M {
-            let approach_mps = APPROACH_FACTOR * self.profile.min_airspeed_mps;
+            let approach_mps = self.true_mps(APPROACH_FACTOR * self.profile.min_airspeed_mps, state);
             demand.airspeed_mps = demand.airspeed_mps.min(approach_mps);
         }
         if state.altitude_amsl_m - runway_m < FLARE_HEIGHT_M {
             demand.climb_mps = -FLARE_SINK_MPS;
             demand.bank_rad = demand.bank_rad.clamp(-LOW_BANK_RAD, LOW_BANK_RAD);
-            demand.airspeed_mps = self.profile.min_airspeed_mps;
+            demand.airspeed_mps = self.true_mps(self.profile.min_airspeed_mps, state);
         }
         self.guided(leg, place, demand, slope_m - state.altitude_amsl_m)
     }

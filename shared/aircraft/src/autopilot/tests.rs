@@ -9,7 +9,14 @@ const HOME: LatLon = LatLon::new(36.4905, -84.2710);
 const DT_S: f64 = 0.1;
 
 fn fly_to(position: LatLon) -> Target {
-    Target { position, altitude_amsl_m: 900.0, airspeed_mps: 25.0, action: Action::Fly, fly_over: false }
+    Target {
+        position,
+        altitude_amsl_m: 900.0,
+        airspeed_mps: 25.0,
+        action: Action::Fly,
+        fly_over: false,
+        acceptance_m: None,
+    }
 }
 
 /// A flown sample: index of the target being flown to, cross-track error, state.

@@ -59,7 +59,7 @@ impl<'a> Flight<'a> {
     /// [`Situation::under_way`].
     pub(super) fn under_way(executor: Executor, given: Circumstances<'a>) -> Option<Self> {
         let triggers = given.scenario.triggers.len();
-        let mut flight = Self::resumed(given, Situation::under_way(executor, triggers)?);
+        let mut flight = Self::resumed(given, Situation::under_way(executor, triggers, given.options)?);
         flight.note_current();
         flight.report();
         flight.input(Input::GatewayControls(false));
@@ -104,7 +104,7 @@ impl<'a> Flight<'a> {
                 self.turn_around()?;
                 return Ok(true);
             }
-            let next = self.at.buffer.get(1).map(Target::from);
+            let next = self.at.buffer.get(1).map(|waypoint| self.at.target(waypoint));
             let guided = self.at.guidance.step(self.at.aircraft.state(), next.as_ref());
             if guided.reached && !self.at.buffer.is_empty() {
                 // one that was begun between waypoints is no place to go on from: it began earlier
@@ -231,7 +231,7 @@ impl<'a> Flight<'a> {
         }
         let next = self.at.buffer.front().cloned();
         if let Some(waypoint) = &next {
-            self.at.guidance.proceed(self.at.aircraft.state(), Target::from(waypoint));
+            self.at.guidance.proceed(self.at.aircraft.state(), self.at.target(waypoint));
         }
         self.input(Input::Progress { current: next.as_ref().map(|w| w.token) });
         self.note_current();
@@ -330,7 +330,7 @@ impl<'a> Flight<'a> {
             flown.replaced = true;
         }
         if let Some(waypoint) = self.at.buffer.front() {
-            let first = Target::from(waypoint);
+            let first = self.at.target(waypoint);
             self.at.guidance.direct(self.at.aircraft.state(), first);
             self.input(Input::Progress { current: now });
             self.note_current();
@@ -345,6 +345,7 @@ impl<'a> Flight<'a> {
             airspeed_mps: self.at.aircraft.profile().cruise_airspeed_mps,
             action: aircraft::Action::Loiter { radius_m: 0.0 },
             fly_over: false,
+            acceptance_m: None,
         };
         self.at.buffer.clear();
         self.at.guidance.direct(state, here);
@@ -450,6 +451,7 @@ impl From<&Waypoint> for Target {
                 Action::Land { heading_deg } => aircraft::Action::Land { heading_deg },
             },
             fly_over: waypoint.fly_over,
+            acceptance_m: None,
         }
     }
 }

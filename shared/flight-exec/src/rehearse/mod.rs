@@ -24,7 +24,7 @@ pub use what_if::WhatIf;
 use crate::api::{Event, PlacePointer, ProposalReport, Refusal, Waypoint};
 use crate::executor::Executor;
 use crate::value::Config;
-use aircraft::{Profile, Winds};
+use aircraft::{Autopilot, Profile, Winds};
 use flight::{Circumstances, Flight};
 use flight_plan::{Id, Program};
 use geometry::LatLon;
@@ -47,6 +47,8 @@ pub struct Options {
     pub step_s: f64,
     /// Share of the energy that is there at the start, 0..=1.
     pub energy_share: f64,
+    /// The autopilot whose habits it is flown with; `None`: close to the lines, at true airspeeds, as reviews fly.
+    pub autopilot: Option<Autopilot>,
 }
 
 impl Default for Options {
@@ -58,6 +60,7 @@ impl Default for Options {
             track_every_s: 1.0,
             step_s: 0.1,
             energy_share: 1.0,
+            autopilot: None,
         }
     }
 }

@@ -4,7 +4,8 @@ use super::scenario::Moment;
 use super::{FlownWaypoint, LegPassage, Options, PreviewError, Start};
 use crate::api::{Time, Waypoint};
 use crate::executor::Executor;
-use aircraft::{Aircraft, Guidance, Profile, Target};
+use aircraft::autopilot::arc_acceptance_m;
+use aircraft::{Aircraft, Autopilot, Guidance, Habits, Profile, Target};
 use flight_plan::{Id, Program, Runway};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -84,12 +85,12 @@ impl Situation {
         let executor = Executor::new(options.config.clone(), terrain.clone(), profile.clone());
         let mut aircraft = placed(program, profile, start)?;
         aircraft.set_battery_share(options.energy_share);
-        Ok(Self::at_first(executor, aircraft, triggers))
+        Ok(Self::at_first(executor, aircraft, triggers, options.autopilot))
     }
 
     /// A flight under way: the executor as it is, the aircraft as it was reported last, in steady flight along its track.
     /// `None`: nothing is being flown, or nothing is known of the aircraft.
-    pub fn under_way(mut executor: Executor, triggers: usize) -> Option<Self> {
+    pub fn under_way(mut executor: Executor, triggers: usize, options: &Options) -> Option<Self> {
         let known = executor.aircraft().filter(|_| executor.is_flying())?;
         // a preview counts time from its own beginning; the executor's clock goes on
         executor.set_last_step(Some(Time::ZERO));
@@ -98,7 +99,7 @@ impl Situation {
         };
         let mut aircraft = place(if known.on_ground { Aircraft::on_runway } else { Aircraft::in_flight });
         aircraft.set_battery_share(known.battery);
-        let mut at = Self::at_first(executor, aircraft, triggers);
+        let mut at = Self::at_first(executor, aircraft, triggers, options.autopilot);
         at.moment.place = at.executor.place();
         let begun = |place| LegPassage {
             place,
@@ -113,14 +114,21 @@ impl Situation {
             at.buffer = at.executor.ahead().cloned().collect();
         }
         if let Some(front) = at.buffer.front() {
-            at.guidance.direct(at.aircraft.state(), Target::from(front));
+            at.guidance.direct(at.aircraft.state(), at.target(front));
         }
         Some(at)
     }
 
-    fn at_first(executor: Executor, aircraft: Aircraft, triggers: usize) -> Self {
+    fn at_first(
+        executor: Executor,
+        aircraft: Aircraft,
+        triggers: usize,
+        autopilot: Option<Autopilot>,
+    ) -> Self {
+        let profile = aircraft.profile().clone();
+        let habits = autopilot.map_or(Habits::CLOSE, |autopilot| autopilot.habits(&profile));
         Self {
-            guidance: Guidance::new(aircraft.profile().clone()),
+            guidance: Guidance::with(profile, habits),
             executor,
             aircraft,
             buffer: VecDeque::new(),
@@ -142,6 +150,13 @@ impl Situation {
             waypoints: 0,
             renumbering: Renumbering::default(),
         }
+    }
+
+    /// A waypoint as the autopilot is told it.
+    pub fn target(&self, waypoint: &Waypoint) -> Target {
+        let tells = waypoint.on_arc && !waypoint.fly_over && self.guidance.habits().is_told_arcs;
+        let acceptance_m = tells.then(|| arc_acceptance_m(waypoint.airspeed_mps));
+        Target { acceptance_m, ..Target::from(waypoint) }
     }
 
     /// Since the start, seconds.

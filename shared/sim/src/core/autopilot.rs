@@ -88,7 +88,6 @@ impl Autopilot {
             aircraft,
             wind,
             home,
-            params: (rules.params)(&profile),
             mission: Mission(vec![Item::home(home.position, home.altitude_amsl_m); rules.first_item.into()]),
             run: Run::default(),
             guided: None,
@@ -97,7 +96,8 @@ impl Autopilot {
             rules,
             mode: rules.first_mode,
             armed: false,
-            guidance: Guidance::new(profile),
+            params: (rules.params)(&profile),
+            guidance: Guidance::with(profile.clone(), (rules.habits)(&profile)),
             speed_mps: None,
             take_off_done: false,
             circles_for_altitude: false,
@@ -283,6 +283,11 @@ impl Autopilot {
         self.speed_mps.unwrap_or_else(|| self.params.setting(Setting::Cruise))
     }
 
+    /// A true airspeed as its pitot tube shows it, m/s.
+    pub fn shown_mps(&self, true_mps: f64) -> f64 {
+        self.guidance.habits().told_mps(true_mps, self.aircraft.state().altitude_amsl_m)
+    }
+
     /// Flies for `dt_s` seconds.
     pub fn step(&mut self, dt_s: f64) {
         let mut demand = if self.armed { self.demand() } else { self.unarmed_demand() };
@@ -309,7 +314,9 @@ impl Autopilot {
     }
 
     fn demand(&mut self) -> Demand {
-        let cruise = Demand { airspeed_mps: self.airspeed_mps(), ..Demand::default() };
+        let altitude_amsl_m = self.aircraft.state().altitude_amsl_m;
+        let airspeed_mps = self.guidance.habits().true_mps(self.airspeed_mps(), altitude_amsl_m);
+        let cruise = Demand { airspeed_mps, ..Demand::default() };
         let by_list = self.mode == Mode::ReturnToLaunch && self.run.phase != Phase::Stopped;
         match self.mode {
             Mode::Auto => self.fly_mission(),

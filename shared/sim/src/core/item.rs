@@ -25,6 +25,8 @@ pub enum Kind {
     Waypoint {
         /// Cross it before turning.
         over: bool,
+        /// Go on this far before it, metres; `None`: as it likes.
+        acceptance_m: Option<f64>,
     },
     /// Circle until told otherwise; positive clockwise, 0: the autopilot's own radius.
     Loiter {
@@ -88,7 +90,7 @@ impl Item {
             ..MISSION_ITEM_INT_DATA::DEFAULT
         };
         Self {
-            kind: Kind::Waypoint { over: false },
+            kind: Kind::Waypoint { over: false, acceptance_m: None },
             position,
             altitude_m: altitude_amsl_m,
             datum: Datum::Amsl,
@@ -203,10 +205,14 @@ fn check_numbers(wire: &MISSION_ITEM_INT_DATA) -> Result<(), MavMissionResult> {
     Ok(())
 }
 
-/// A small acceptance radius (param2) or an overflight distance (param3) asks for crossing the point.
-fn crosses(wire: &MISSION_ITEM_INT_DATA) -> bool {
+/// A small acceptance radius (param2) or an overflight distance (param3) asks for crossing the point; a greater one for going on
+/// that early. It keeps each in a byte.
+fn waypoint(wire: &MISSION_ITEM_INT_DATA) -> Kind {
     const SMALL_ACCEPTANCE_M: f32 = 20.0;
-    wire.param3 > 0.0 || (wire.param2 > 0.0 && wire.param2 <= SMALL_ACCEPTANCE_M)
+    let accepted_m = wire.param2.clamp(0.0, 255.0);
+    let over = wire.param3 > 0.0 || (accepted_m > 0.0 && accepted_m <= SMALL_ACCEPTANCE_M);
+    let acceptance_m = (accepted_m > 0.0 && !over).then(|| f64::from(accepted_m));
+    Kind::Waypoint { over, acceptance_m }
 }
 
 /// What an item does.
@@ -216,7 +222,7 @@ fn crosses(wire: &MISSION_ITEM_INT_DATA) -> bool {
 pub fn kind_of(wire: &MISSION_ITEM_INT_DATA) -> Result<Kind, MavMissionResult> {
     Ok(match wire.command {
         MavCmd::MAV_CMD_NAV_TAKEOFF => Kind::TakeOff,
-        MavCmd::MAV_CMD_NAV_WAYPOINT => Kind::Waypoint { over: crosses(wire) },
+        MavCmd::MAV_CMD_NAV_WAYPOINT => waypoint(wire),
         MavCmd::MAV_CMD_NAV_LOITER_UNLIM => Kind::Loiter { radius_m: wire.param3.into() },
         MavCmd::MAV_CMD_NAV_LAND => Kind::Land,
         MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH => Kind::ReturnToLaunch,

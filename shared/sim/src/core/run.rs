@@ -123,7 +123,7 @@ mod tests {
                         let (to, repeat) = rest.split_once('x').unwrap_or((rest, "-1"));
                         Kind::Jump { to: to.parse().unwrap_or(0), repeat: repeat.parse().unwrap_or(0) }
                     }
-                    _ => Kind::Waypoint { over: false },
+                    _ => Kind::Waypoint { over: false, acceptance_m: None },
                 };
                 item.clone()
             })

@@ -126,11 +126,12 @@ fn gps_raw(a: &Autopilot, now_ns: u64) -> MavMessage {
 /// International Standard Atmosphere below 11 km.
 fn pressure(a: &Autopilot, now_ns: u64) -> MavMessage {
     let s = a.aircraft.state();
-    let kelvin_share = 1.0 - 2.255_77e-5 * s.altitude_amsl_m;
+    let kelvin_share = aircraft::air::temperature_share(s.altitude_amsl_m);
+    let shown_mps = a.shown_mps(s.airspeed_mps);
     MavMessage::SCALED_PRESSURE(SCALED_PRESSURE_DATA {
         time_boot_ms: boot_ms(now_ns),
         press_abs: (1013.25 * kelvin_share.powf(5.255_88)) as f32,
-        press_diff: (0.5 * 1.225 * s.airspeed_mps * s.airspeed_mps / 100.0) as f32,
+        press_diff: (0.5 * 1.225 * shown_mps * shown_mps / 100.0) as f32,
         temperature: ((15.0 - 0.0065 * s.altitude_amsl_m) * 100.0) as i16,
         ..SCALED_PRESSURE_DATA::DEFAULT
     })
@@ -176,7 +177,7 @@ fn nav_controller(a: &Autopilot) -> MavMessage {
         nav_roll: guided.demand.bank_rad.to_degrees() as f32,
         nav_pitch: 0.0,
         alt_error: guided.altitude_error_m as f32,
-        aspd_error: (guided.demand.airspeed_mps - s.airspeed_mps) as f32,
+        aspd_error: a.shown_mps(guided.demand.airspeed_mps - s.airspeed_mps) as f32,
         xtrack_error: guided.cross_track_m as f32,
         nav_bearing: degrees(s.track_deg()),
         target_bearing: degrees(guided.course_deg),
@@ -187,7 +188,7 @@ fn nav_controller(a: &Autopilot) -> MavMessage {
 fn vfr_hud(a: &Autopilot) -> MavMessage {
     let s = a.aircraft.state();
     MavMessage::VFR_HUD(VFR_HUD_DATA {
-        airspeed: s.airspeed_mps as f32,
+        airspeed: a.shown_mps(s.airspeed_mps) as f32,
         groundspeed: s.ground_speed_mps() as f32,
         alt: s.altitude_amsl_m as f32,
         climb: s.climb_mps as f32,

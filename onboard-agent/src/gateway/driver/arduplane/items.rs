@@ -2,28 +2,12 @@
 
 use super::super::mavlink::Peer;
 use super::super::mavlink::item::{self, Item, ItemKind, Pass, matches};
+use aircraft::autopilot;
 use mavlink::dialects::ardupilotmega::{MISSION_ITEM_INT_DATA, MavCmd};
 
 /// ArduPlane counts a waypoint with an acceptance radius (param2) as reached only when that near,
 /// instead of turning early; metres.
-const FLY_OVER_M: f32 = 5.0;
-/// The greatest that it keeps: a byte.
-const GREATEST_ACCEPTANCE_M: f32 = 255.0;
-/// So long before a corner of an arc's polygon it goes on to the next one, seconds: as far as it looks ahead.
-///
-/// It steers to a point of the present leg's line that is L1 = ζ·T·V/π ahead (`AP_L1_Control`: NAVL1_DAMPING ζ, NAVL1_PERIOD T),
-/// by the acceleration 4ζ²·V²/L1·sin ν. If it goes on to the next line a distance s before each corner around an arc of radius R,
-/// these lines are in the mean tangents to the arc s ahead of it, and it flies outside of the arc by
-///
-/// d = (L1²/(4ζ²) − s·L1 + s²/2) / R.
-///
-/// By itself it goes on where the corner is, as the path hardly turns there: d = L1²/(2.25·R), 17 m for 210 m, in a tail wind more. At s = L1
-/// it is −L1²/(18·R), next to nothing, and depends least on s: a wind, or another T than its default, which is meant here,
-/// matter little. What was flown is in `assets/docs/flight-tests.md`.
-const ARC_LEAD_S: f64 = 0.75 * 17.0 / std::f64::consts::PI;
-/// Nor farther before it than this times the square of the airspeed, s²/m: 0.8 radii of a turn at 25° of bank. From farther away than a
-/// circle is wide, all its corners would be reached at once.
-const MOST_LEAD_S2_PER_M: f64 = 0.175;
+const FLY_OVER_M: f32 = autopilot::FLY_OVER_M as f32;
 /// Pitch during take-off, degrees (ArduPlane's param1).
 const TAKE_OFF_PITCH_DEG: f32 = 15.0;
 /// A jump's count for "again and again".
@@ -75,20 +59,14 @@ fn acceptance_m(pass: Pass) -> f32 {
     match pass {
         Pass::By => 0.0,
         Pass::Over => FLY_OVER_M,
-        Pass::OnArc { airspeed_mps } => {
-            let lead_m = (airspeed_mps * ARC_LEAD_S).min(airspeed_mps * airspeed_mps * MOST_LEAD_S2_PER_M);
-            (lead_m as f32).round().clamp(FLY_OVER_M + 1.0, GREATEST_ACCEPTANCE_M)
-        }
+        Pass::OnArc { airspeed_mps } => autopilot::arc_acceptance_m(airspeed_mps) as f32,
     }
 }
 
 /// The way to pass that an acceptance radius was written for.
 fn passed_within(acceptance_m: f32) -> Pass {
     match acceptance_m {
-        m if m > FLY_OVER_M => {
-            let lead_m = f64::from(m);
-            Pass::OnArc { airspeed_mps: (lead_m / ARC_LEAD_S).max((lead_m / MOST_LEAD_S2_PER_M).sqrt()) }
-        }
+        m if m > FLY_OVER_M => Pass::OnArc { airspeed_mps: autopilot::arc_airspeed_mps(f64::from(m)) },
         m if m > 0.0 => Pass::Over,
         _ => Pass::By,
     }

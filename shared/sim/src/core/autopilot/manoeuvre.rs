@@ -16,6 +16,7 @@ impl Autopilot {
             airspeed_mps: self.airspeed_mps(),
             action: self.circle_action(radius_m),
             fly_over: false,
+            acceptance_m: None,
         };
         self.guidance.direct(self.aircraft.state(), target);
     }
@@ -58,6 +59,7 @@ impl Autopilot {
             airspeed_mps: self.airspeed_mps(),
             action: self.circle_action(0.0),
             fly_over: false,
+            acceptance_m: None,
         }
     }
 

@@ -199,12 +199,17 @@ impl Autopilot {
             Kind::Land => Action::Land { heading_deg: self.landing_heading_deg(position) },
             _ => Action::Fly,
         };
+        let (fly_over, acceptance_m) = match item.kind {
+            Kind::Waypoint { over, acceptance_m } => (over, acceptance_m),
+            _ => (false, None),
+        };
         Target {
             position,
             altitude_amsl_m: self.amsl_m(item.altitude_m, item.datum),
             airspeed_mps: self.airspeed_mps(),
             action,
-            fly_over: item.kind == Kind::Waypoint { over: true },
+            fly_over,
+            acceptance_m,
         }
     }
 

@@ -14,7 +14,7 @@ use super::mode::Mode;
 use super::params::Params;
 use super::streams::Streamed;
 use crate::frame::Sender;
-use aircraft::Profile;
+use aircraft::{Habits, Profile};
 use mavlink::dialects::ardupilotmega::*;
 use std::fmt;
 use std::str::FromStr;
@@ -107,6 +107,8 @@ pub struct Rules {
     pub refusal_text: &'static str,
     /// Its parameters for an aircraft.
     pub params: fn(&Profile) -> Params,
+    /// How it follows lines, and which airspeed it holds.
+    pub habits: fn(&Profile) -> Habits,
     /// What it can send, and how often it does.
     pub streams: &'static [Streamed],
     /// Old commands that ask for a certain message are known.

@@ -6,17 +6,17 @@ use crate::core::mode::Mode;
 use crate::core::personality::arduplane;
 
 impl Ground {
-    fn new(wind: Wind) -> Self {
+    pub(super) fn new(wind: Wind) -> Self {
         Self::of(Personality::ArduPlane, wind)
     }
 
-    fn mode(&mut self, mode: Mode) -> MavResult {
+    pub(super) fn mode(&mut self, mode: Mode) -> MavResult {
         let number = arduplane::number_of(mode) as f32;
         self.command(MavCmd::MAV_CMD_DO_SET_MODE, [1., number, 0., 0., 0., 0., 0.])
     }
 
     /// Uploads a whole mission after home, streamed.
-    fn upload(&mut self, items: &[MISSION_ITEM_INT_DATA]) {
+    pub(super) fn upload(&mut self, items: &[MISSION_ITEM_INT_DATA]) {
         self.count(items.len() as u16 + 1);
         let home = Item::home(self.home(), 349.0).wire;
         let mut last = self.item(&MISSION_ITEM_INT_DATA { seq: 0, ..home });
@@ -152,14 +152,18 @@ fn a_speed_item_persists_and_only_it_is_reported_as_reached() {
     let mut ground = airborne_in_auto(&items, Wind::CALM);
     assert!(ground.fly_until(300.0, |sim| sim.autopilot.run.current == 6));
     assert_eq!(ground.reached(), [1, 4, 5]);
-    let airspeed = ground.sim.autopilot.aircraft.state().airspeed_mps;
+    let shown = |ground: &Ground| {
+        let autopilot = &ground.sim.autopilot;
+        autopilot.shown_mps(autopilot.aircraft.state().airspeed_mps)
+    };
+    let airspeed = shown(&ground);
     assert!((airspeed - 20.0).abs() < 0.1, "{airspeed}");
     let change = MavCmd::MAV_CMD_DO_CHANGE_SPEED;
     for (mps, result) in [(60.0, MavResult::MAV_RESULT_FAILED), (-2.0, MavResult::MAV_RESULT_ACCEPTED)] {
         assert_eq!(ground.command(change, [0., mps, 0., 0., 0., 0., 0.]), result);
     }
     ground.fly_until(20.0, |_| false);
-    assert!((ground.sim.autopilot.aircraft.state().airspeed_mps - 25.0).abs() < 0.1);
+    assert!((shown(&ground) - 25.0).abs() < 0.1);
 }
 
 #[test]
@@ -498,10 +502,12 @@ fn a_mission_is_flown_where_bare_guidance_flies_it() {
                 _ => Action::Fly,
             },
             fly_over: false,
+            acceptance_m: None,
         })
         .collect();
     let mut aircraft = Aircraft::on_runway(Profile::default(), home.position, 349.0, 52.0);
-    let mut guidance = Guidance::new(Profile::default());
+    let habits = aircraft::Habits::arduplane(&Profile::default());
+    let mut guidance = Guidance::with(Profile::default(), habits);
     guidance.direct(aircraft.state(), targets[0]);
     let mut track = vec![*aircraft.state()];
     let mut current = 0;

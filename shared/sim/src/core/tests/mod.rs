@@ -1,5 +1,6 @@
 //! The core as a ground station sees it: transcripts, flights and faults, without a socket.
 
+mod arcs;
 mod arduplane;
 mod px4;
 

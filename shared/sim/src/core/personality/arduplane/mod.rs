@@ -13,6 +13,7 @@ use crate::core::mode::Mode;
 use crate::core::run::Phase;
 use crate::core::streams::Streamed;
 use crate::core::telemetry;
+use aircraft::Habits;
 use mavlink::dialects::ardupilotmega::*;
 
 /// The number that it acknowledges `SET_MODE` by.
@@ -32,6 +33,7 @@ pub(super) static RULES: Rules = Rules {
     armed_texts: ["Throttle armed", "Throttle disarmed"],
     refusal_text: "PreArm",
     params: params::params,
+    habits: Habits::arduplane,
     streams: &STREAMS,
     knows_old_requests: true,
     tells_unknown_params: false,

@@ -1,12 +1,13 @@
 //! ArduPlane's parameters: those it is asked for.
 
 use crate::core::params::{Param, Params, Setting as S};
-use aircraft::Profile;
+use aircraft::{Habits, Profile};
 
 pub fn params(profile: &Profile) -> Params {
     let speeds = (profile.min_airspeed_mps as f32, profile.max_airspeed_mps as f32);
     let cruise = profile.cruise_airspeed_mps as f32;
     let turn_m = profile.turn_radius_m(profile.cruise_airspeed_mps).round() as f32;
+    let habits = Habits::arduplane(profile);
     let any_radius = (-32767.0, 32767.0);
     let fixed = Param::fixed;
     let free = |name, value, range| Param::fixed(name, value).settable(range);
@@ -16,7 +17,7 @@ pub fn params(profile: &Profile) -> Params {
         fixed("AIRSPEED_MIN", speeds.0).is(S::MinAirspeed),
         fixed("AIRSPEED_MAX", speeds.1).is(S::MaxAirspeed),
         fixed("ROLL_LIMIT_DEG", profile.max_bank_deg as f32),
-        fixed("WP_RADIUS", turn_m),
+        fixed("WP_RADIUS", habits.corner_m.unwrap_or_default() as f32),
         free("WP_LOITER_RAD", turn_m, any_radius).is(S::LoiterRadius),
         free("RTL_ALTITUDE", 100.0, (-1.0, 5000.0)).is(S::ReturnHeight),
         free("RTL_RADIUS", 0.0, any_radius).is(S::ReturnRadius),
@@ -28,7 +29,7 @@ pub fn params(profile: &Profile) -> Params {
         free("BATT_CRT_PCT", 10.0, (0.0, 100.0)).is(S::CriticalBattery),
         fixed("MIS_RESTART", 0.0),
         fixed("MIS_OPTIONS", 0.0),
-        fixed("NAVL1_PERIOD", 9.0),
-        fixed("NAVL1_DAMPING", 0.8),
+        fixed("NAVL1_PERIOD", habits.period_s as f32),
+        fixed("NAVL1_DAMPING", habits.damping as f32),
     ])
 }

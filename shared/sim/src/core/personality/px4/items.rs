@@ -68,7 +68,7 @@ pub fn read(wire: &MISSION_ITEM_INT_DATA) -> Result<Item, MavMissionResult> {
         _ if wire.command == MavCmd::MAV_CMD_NAV_VTOL_TAKEOFF => Kind::TakeOff,
         _ if wire.command == MavCmd::MAV_CMD_NAV_VTOL_LAND => Kind::Land,
         // a fixed wing always turns early, whatever acceptance radius it is given
-        Ok(Kind::Waypoint { .. }) => Kind::Waypoint { over: false },
+        Ok(Kind::Waypoint { .. }) => Kind::Waypoint { over: false, acceptance_m: None },
         kind => kind?,
     };
     let datum = if kind.has_position() { place_datum(wire)? } else { no_place(wire)? };

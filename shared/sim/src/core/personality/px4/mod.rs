@@ -15,6 +15,7 @@ use crate::core::mode::Mode;
 use crate::core::run::Phase;
 use crate::core::streams::{Streamed, UNCHANGEABLE};
 use crate::core::telemetry;
+use aircraft::Habits;
 use mavlink::dialects::ardupilotmega::*;
 
 /// The number of the command that `SET_MODE` stands for.
@@ -48,6 +49,7 @@ const FIXED_WING: Rules = Rules {
     armed_texts: ["Armed", "Disarmed"],
     refusal_text: "Preflight check",
     params: params::fixed_wing,
+    habits: |_| Habits::CLOSE,
     streams: &STREAMS,
     knows_old_requests: false,
     tells_unknown_params: true,
