@@ -108,6 +108,7 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
     selection.prepare(&mut loaded)?;
     let scenario = selection.scenario(&loaded.reading.plan)?;
     let conditions = (!selection.anyway).then(|| air.conditions());
+    let air = Air { autopilot: selection.autopilot, ..air };
     let flown = export::flown(&loaded, conditions, |program, profile| {
         forecast::Ahead { program, profile, terrain: &loaded.terrain, air, scenario: &scenario }.fly()
     });

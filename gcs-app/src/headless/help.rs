@@ -27,6 +27,7 @@ pub const CHECK: &str = with_examples!(
 pub const PREVIEW: &str = with_examples!(
     "legwork preview fire-watch.xml --out pictures --wind 270,5",
     "legwork preview fire-watch.xml --decide ask=close --set fire_radius=500",
+    "legwork preview fire-watch.xml --autopilot arduplane,90 --wind 270,5",
     "legwork preview fire-watch.xml --emergency north-strip --at sweep --json",
 );
 

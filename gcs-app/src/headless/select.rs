@@ -1,6 +1,7 @@
 //! What of a plan is flown: values of variables, branches, an emergency plan.
 
 use super::source::Loaded;
+use aircraft::Autopilot;
 use anyhow::{anyhow, bail};
 use flight_exec::rehearse::{Act, Preview, Scenario, Trigger, When};
 use flight_exec::{Branching, Command};
@@ -38,6 +39,10 @@ pub struct Selection {
     /// is written then.
     #[arg(long)]
     pub leave_out_legs: bool,
+    /// Fly as this autopilot does: arduplane, or with its WP_RADIUS in metres arduplane,50. It has its own corners, and indicated
+    /// airspeeds; without this option the plan is flown close to its lines at true airspeeds, as by the review in any case.
+    #[arg(long, value_name = "AUTOPILOT")]
+    pub autopilot: Option<Autopilot>,
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

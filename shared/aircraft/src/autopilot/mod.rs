@@ -21,7 +21,7 @@ mod runway;
 
 use crate::{Demand, Profile, State};
 use geometry::LatLon;
-pub use habits::{ARC_LEAD_S, Autopilot, FLY_OVER_M, Habits, arc_acceptance_m};
+pub use habits::{Autopilot, FLY_OVER_M, Habits, arc_acceptance_m, arc_airspeed_mps};
 use leg::{Corner, Leg, Place};
 
 /// What to do at, or on the way to, a target.
