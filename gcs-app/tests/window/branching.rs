@@ -146,7 +146,6 @@ fn places_and_names_stay_on_the_map_while_a_tool_is_on() {
     }
 }
 
-
 #[test]
 fn a_branch_has_its_legs_below_it_and_is_renamed_moved_and_deleted_by_its_row() {
     let mut window = Window::open_with(SQUARE, vec2(1280.0, 1000.0), None);

@@ -177,7 +177,7 @@ fn by_arduplane_a_plan_is_flown_as_much_faster_as_the_air_is_thin() {
         let (flat, options) = (Arc::new(Flat(300.0)) as _, Options { autopilot, ..Options::default() });
         let legs = r#"<TF id="a" fix="A"/><TF id="b" fix="B"/><TF id="c" fix="C"/>"#;
         let (profile, scenario) = (Profile::default(), Scenario::default());
-        preview(&small(legs), &profile, &flat, Wind::CALM, Start::Runway, &scenario, &options).unwrap()
+        preview(&program(legs), &profile, &flat, Wind::CALM, Start::Runway, &scenario, &options).unwrap()
     };
     let (usual, arduplane) = (fly(None), fly(Some(Autopilot::ArduPlane { wp_radius_m: None })));
     let fastest = |flown: &Preview| {
