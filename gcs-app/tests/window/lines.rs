@@ -80,7 +80,7 @@ fn what_does_not_go_with_the_selection_is_fainter() {
     let zone = r#"<zones><keepOut id="quarry" lat="36.3141" lon="-84.1567" radius="150"/></zones><mainPlan"#;
     let mut window = Window::open(&super::SQUARE.replacen("<mainPlan", zone, 1));
     window.until_analysed();
-    let colour = |window: &Window| window.colour_within("Map", "quarry").unwrap();
+    let colour = |window: &Window| window.colour_within("Map", "Keep out: quarry").unwrap();
     let alone = colour(&window);
     window.click("TF side3");
     window.steps(2);
