@@ -2,6 +2,8 @@
 
 use crate::theme;
 use crate::units::Unit;
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{Color32, Context, DragValue, Id, Key, Response, RichText, Sense, Stroke, Ui, vec2};
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
@@ -69,6 +71,9 @@ fn focus_asked() -> Id {
     Id::unique("the next number gets the keyboard")
 }
 
+/// More than any number has in its field.
+const MOST_DIGITS: usize = 64;
+
 /// The number that is drawn next gets the keyboard.
 pub fn focus_next(ctx: &Context) {
     ctx.data_mut(|d| d.insert_temp(focus_asked(), true));
@@ -103,6 +108,11 @@ pub fn number_between(
     let response = ui.add_sized([78.0, 24.0], drag);
     if ui.data_mut(|d| d.remove_temp::<bool>(focus_asked())).is_some() {
         response.request_focus();
+        // what is typed takes its place
+        let mut state = TextEditState::default();
+        let whole = CCursorRange::two(CCursor::new(0), CCursor::new(MOST_DIGITS));
+        state.cursor.set_char_range(Some(whole));
+        state.store(ui.ctx(), response.id);
     }
     named(&response, name, shown);
     typed.tell(ui, &response);
@@ -270,7 +280,8 @@ pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool
     let progress = progress(ui, response.id, held);
     // pressed and let go between two frames
     if response.clicked() && !held {
-        ui.data_mut(|d| d.insert_temp(too_short(response.id), ui.input(|i| i.time)));
+        let now = ui.input(|i| i.time);
+        ui.data_mut(|d| d.insert_temp(too_short(response.id), now));
     }
     let p = theme::of(ui);
     let painter = ui.painter();
