@@ -87,21 +87,11 @@ fn the_tree_follows_what_is_selected_but_not_away_from_the_flight() {
     assert!(flying.selected() == "R05" && flying.shows("TF side2"));
 }
 
-/// What of the window reaches over its right edge.
-fn cut(window: &Window, right: f64) -> Vec<String> {
-    let nodes = window.harness.root().children_recursive();
-    let is_cut = |node: &egui_kittest::Node<'_>| {
-        let node = node.accesskit_node();
-        node.bounding_box().is_some_and(|rect| rect.x0 < right && rect.x1 > right + 0.5)
-    };
-    nodes.filter(is_cut).filter_map(|node| node.accesskit_node().label()).collect()
-}
-
 const CORRIDOR: &str = r#"<corridor id="corridor1" name="Power line" width="300" spacing="100" altitude="200" altitudeReference="agl">
     <route><point lat="36.3301" lon="-84.1601"/><point lat="36.3351" lon="-84.1651"/></route></corridor>"#;
 
 #[test]
-fn positions_are_seen_whole_and_nothing_of_the_inspector_is_cut() {
+fn positions_are_seen_whole() {
     let text = SQUARE.replace(
         r#"<TF id="side3" fix="C"/>"#,
         &format!(r#"<TF id="side3" lat="36.3301" lon="-84.1601"/>{CORRIDOR}"#),
@@ -110,7 +100,6 @@ fn positions_are_seen_whole_and_nothing_of_the_inspector_is_cut() {
     window.until_analysed();
     for row in ["TF side1", "TF side3", "CORR Power line", "ENR circuit", "RWY R05", "FIX A"] {
         window.click(row);
-        assert_eq!(cut(&window, 1280.0), Vec::<String>::new(), "{row}");
         let fields = window.harness.query_all_by_role(Role::TextInput);
         let positions =
             fields.filter(|node| node.accesskit_node().value().is_some_and(|v| v.contains("36.3301")));
@@ -118,7 +107,4 @@ fn positions_are_seen_whole_and_nothing_of_the_inspector_is_cut() {
         assert!(widths.iter().all(|width| *width >= 140.0), "{row}: {widths:?}");
         assert_eq!(widths.is_empty(), !["TF side3", "CORR Power line"].contains(&row), "{row}");
     }
-    window.click("TF side1");
-    window.select_row_with(("TF side4", 0), Modifiers::SHIFT);
-    assert_eq!(cut(&window, 1280.0), Vec::<String>::new(), "together");
 }
