@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 /// Work that has lasted so long is shown, seconds: less would be a flicker.
 const SHOWN_AFTER_S: f64 = 0.3;
@@ -126,6 +127,45 @@ impl Jobs {
     }
 }
 
+/// Work on a thread of its own whose result a later frame takes. It is not shown: it mostly ends before anybody would read of it.
+#[derive(Debug)]
+pub struct Task<T>(Receiver<T>);
+
+/// How far a task is.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Taken<T> {
+    /// It goes on.
+    NotYet,
+    /// Its result.
+    Done(T),
+    /// It came to none: there was no thread for it, or the program failed at it.
+    Failed,
+}
+
+impl<T: Send + 'static> Task<T> {
+    /// Begins it; `wake` is called when it has ended.
+    pub fn begin(wake: Arc<dyn Fn() + Send + Sync>, work: impl FnOnce() -> T + Send + 'static) -> Self {
+        let (outbox, inbox) = channel();
+        let work = move || {
+            // nobody may want it any more
+            let _ = outbox.send(work());
+            wake();
+        };
+        let started = std::thread::Builder::new().name("task".into()).spawn(work);
+        started.inspect_err(|error| tracing::warn!(%error, "no thread for a task")).ok();
+        Self(inbox)
+    }
+
+    /// Its result, once.
+    pub fn take(&self) -> Taken<T> {
+        match self.0.try_recv() {
+            Ok(result) => Taken::Done(result),
+            Err(TryRecvError::Empty) => Taken::NotYet,
+            Err(TryRecvError::Disconnected) => Taken::Failed,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -152,6 +192,28 @@ mod tests {
         jobs.cancel(first.id());
         assert!(first.progress().is_cancelled() && !second.progress().is_cancelled());
         assert_eq!(shown(&jobs, 1.0), ["b"]);
+    }
+
+    #[test]
+    fn a_task_gives_its_result_or_says_that_there_is_none() {
+        for fails in [false, true] {
+            let (open, gate) = channel::<()>();
+            let (wake, woken) = channel();
+            let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || drop(wake.send(())));
+            let task = Task::begin(wake, move || {
+                gate.recv().unwrap();
+                if fails {
+                    // as a panic, but without a word
+                    std::panic::resume_unwind(Box::new("a fault of the program"));
+                }
+                7
+            });
+            assert_eq!(task.take(), Taken::NotYet);
+            open.send(()).unwrap();
+            // without a result nobody is woken
+            assert_eq!(woken.recv().is_err(), fails);
+            assert_eq!(task.take(), if fails { Taken::Failed } else { Taken::Done(7) });
+        }
     }
 
     #[test]

@@ -19,6 +19,7 @@ impl App {
         while let Some(event) = self.files.next_event() {
             self.file_event(event, now_s);
         }
+        self.tend_pushes(now_s);
         self.watch_file();
         self.go_on_after_saving();
         if let Some((story, chapter)) = &mut self.story {

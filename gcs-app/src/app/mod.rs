@@ -12,6 +12,7 @@ mod messages;
 mod orders;
 mod press;
 mod preview;
+mod pushing;
 mod remembered;
 mod screenshot;
 mod window;
@@ -73,6 +74,8 @@ pub struct App {
     noted: Option<String>,
     /// The documents that are being written, or asked where to, by their numbers.
     saving: BTreeSet<u64>,
+    /// Plans that are about to be proposed.
+    pushes: Vec<pushing::Push>,
     recent: Recent,
     connections: Connections,
     /// `None`: no copy of unsaved changes is kept.
@@ -163,6 +166,7 @@ impl App {
             toasts: Toasts::default(),
             noted: None,
             saving: BTreeSet::new(),
+            pushes: Vec::new(),
             recent: remembered.recent,
             connections: remembered.connections,
             keeper: None,
@@ -217,6 +221,11 @@ impl App {
     /// What was found out about the plan.
     pub fn analysis(&self) -> &Analysis {
         &self.analysis
+    }
+
+    /// Something that was asked for is being done in the background, and a frame will bring it soon.
+    pub fn is_busy(&self) -> bool {
+        self.map.is_busy() || !self.pushes.is_empty()
     }
 
     /// The path of the plan aboard the vehicle that is shown, if it was asked for and is known.

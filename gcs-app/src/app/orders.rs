@@ -9,14 +9,12 @@ use crate::command::{
 use crate::document::Document;
 use crate::guide::Answer;
 use crate::link::Call;
-use crate::panels::bar::PUSH;
 use crate::state::{LOOK_AHEAD, Proposal, Vehicle, VehicleName};
 use aircraft::Profile;
 use flight_exec::Command as PlanCommand;
 use flight_plan::template::Outline;
-use flight_plan::{Edit, Id, Place, Thing, create, diff};
+use flight_plan::{Edit, Id, Place, Thing, create};
 use geometry::LatLon;
-use usal::contract::Propose;
 
 impl App {
     /// Carries out a command; one to a vehicle goes to `shown`, the one that was drawn when it was given.
@@ -293,7 +291,7 @@ impl App {
 
     fn fly(&mut self, vehicle: &VehicleName, command: FlyCommand, now_s: f64) {
         match command {
-            FlyCommand::Propose => self.propose(vehicle, now_s),
+            FlyCommand::Propose => self.propose(vehicle),
             FlyCommand::EnterAt(leg) => {
                 if let Some(proposal) = self.vehicles.get_mut(vehicle).and_then(|v| v.proposal.as_mut()) {
                     proposal.entry = Some(leg);
@@ -343,21 +341,8 @@ impl App {
         }
     }
 
-    fn take_proposal(&mut self, vehicle: &VehicleName) -> Option<Proposal> {
+    pub(super) fn take_proposal(&mut self, vehicle: &VehicleName) -> Option<Proposal> {
         self.vehicles.get_mut(vehicle)?.proposal.take()
-    }
-
-    fn propose(&mut self, vehicle: &VehicleName, now_s: f64) {
-        self.take_proposal(vehicle);
-        if let Some(asked) = self.vehicles.get_mut(vehicle) {
-            let aboard = asked.aboard.as_ref();
-            asked.put_forward =
-                aboard.map_or_else(Vec::new, |aboard| diff::changes(&aboard.plan, self.document.plan()));
-        }
-        let status = self.vehicles.get(vehicle).and_then(|v| v.status.as_ref());
-        let seen_revision = status.map(|s| s.value.revision);
-        let xml = flight_plan::write(self.document.plan());
-        self.call(vehicle, PUSH, Call::Propose(Propose { xml, seen_revision }), now_s);
     }
 
     fn commit(&mut self, vehicle: &VehicleName, now_s: f64) {

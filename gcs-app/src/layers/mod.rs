@@ -223,6 +223,11 @@ impl Layers {
         layers
     }
 
+    /// Wakes the window, for whoever does work in the background with what is here.
+    pub fn wake(&self) -> Arc<dyn Fn() + Send + Sync> {
+        self.wake.clone()
+    }
+
     /// Keeps the tiles of servers in this folder from now on.
     pub fn keep_tiles_in(&self, folder: &Path) {
         // the first one stays

@@ -5,16 +5,51 @@ use super::menu::Menu;
 use super::tools::{Canvas, new_leg};
 use crate::command::{Clip, Queue, Selection, ViewCommand};
 use crate::coordinates::{self, Known};
+use crate::jobs::{Taken, Task};
 use crate::panels::start;
 use egui::{Context, Event, Ui, ViewportCommand};
 use flight_plan::clipboard::{self, Pasted};
 use flight_plan::create::{self, Drawn, LegChoice};
 use flight_plan::{Id, Place, Thing, Value};
 use geometry::LatLon;
+use interchange::{Feature, Format};
 use new_leg::{Aim, Side};
+use std::collections::VecDeque;
+
+/// What a drawing holds, or why it can't be pasted.
+type Read = Result<Vec<Feature>, String>;
+
+/// Drawings that are being read, each on a thread of its own, in the order in which they were pasted.
+#[derive(Debug, Default)]
+pub struct Pastes(VecDeque<Task<Read>>);
+
+impl Pastes {
+    /// One is being read.
+    pub fn is_reading(&self) -> bool {
+        !self.0.is_empty()
+    }
+
+    fn begin(&mut self, format: Format, text: String, canvas: &Canvas<'_>) {
+        let read = move || drawings::read(format, &text);
+        self.0.push_back(Task::begin(canvas.scene.layers.wake(), read));
+    }
+
+    /// Puts what was read into the plan.
+    fn take(&mut self, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let Some(first) = self.0.front() else { return };
+        let read = match first.take() {
+            Taken::NotYet => return,
+            Taken::Done(read) => read,
+            Taken::Failed => Err("The drawing could not be read: open it as a file.".into()),
+        };
+        self.0.pop_front();
+        paste_drawing(read, canvas, queue);
+    }
+}
 
 /// Takes the keys and what the menu asked for, unless something is being typed.
-pub fn run(ui: &Ui, menu: &mut Menu, canvas: &Canvas<'_>, queue: &mut Queue) {
+pub fn run(ui: &Ui, menu: &mut Menu, pastes: &mut Pastes, canvas: &Canvas<'_>, queue: &mut Queue) {
+    pastes.take(canvas, queue);
     if ui.ctx().text_edit_focused() || canvas.scene.is_asking() {
         return;
     }
@@ -25,6 +60,10 @@ pub fn run(ui: &Ui, menu: &mut Menu, canvas: &Canvas<'_>, queue: &mut Queue) {
             Event::Copy => drop(copy(ui.ctx(), canvas)),
             Event::Cut => cut(ui.ctx(), canvas, queue),
             Event::Paste(text) => {
+                if let Some(format) = drawings::format_of(&text) {
+                    pastes.begin(format, text, canvas);
+                    continue;
+                }
                 let under = canvas.pointer.map(|at| canvas.view.geo(at)).filter(|at| at.is_valid());
                 paste(&text, menu.paste_at().or(under), canvas, queue);
             }
@@ -75,28 +114,39 @@ fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
     }
 }
 
-/// Coordinates become a waypoint where they say, a drawing becomes legs there; legs come to where the pointer is.
+/// A drawing becomes legs where it was drawn, or answers the guide.
+fn paste_drawing(drawing: Read, canvas: &Canvas<'_>, queue: &mut Queue) {
+    let scene = canvas.scene;
+    let plan = scene.document.plan();
+    if start::is_wanted(scene) {
+        let answered = drawing.and_then(|features| drawings::answer(&features, &scene.view.guide));
+        return queue.view(answered.map_or_else(ViewCommand::Notice, ViewCommand::Guide));
+    }
+    match aim(canvas) {
+        Ok(Aim::Spot(at)) => {
+            let approach = new_leg::approach(canvas, &Aim::Spot(at.clone()));
+            put(drawing.and_then(|features| drawings::legs(&features, at, approach, plan)), queue);
+        }
+        Ok(Aim::Way { .. }) => {}
+        Err(why) => queue.view(ViewCommand::Notice(why)),
+    }
+}
+
+/// Where legs are pasted.
+fn aim(canvas: &Canvas<'_>) -> Result<Aim, String> {
+    let scene = canvas.scene;
+    let aim = new_leg::aim(scene.document.plan(), scene.view.selection.as_ref(), &Side::Behind);
+    aim.ok_or_else(|| "Make a new mission first (Ctrl+N): it has a stage to paste into.".into())
+}
+
+/// Coordinates become a waypoint where they say; legs come to where the pointer is.
 fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Queue) {
     let scene = canvas.scene;
     let plan = scene.document.plan();
-    let drawing = drawings::read(text);
-    if let (Some(drawing), true) = (&drawing, start::is_wanted(scene)) {
-        let answered = drawing.as_ref().map_err(String::clone);
-        let answered = answered.and_then(|features| drawings::answer(features, &scene.view.guide));
-        return queue.view(answered.map_or_else(ViewCommand::Notice, ViewCommand::Guide));
-    }
-    let Some(aim) = new_leg::aim(plan, scene.view.selection.as_ref(), &Side::Behind) else {
-        return queue.view(ViewCommand::Notice(
-            "Make a new mission first (Ctrl+N): it has a stage to paste into.".into(),
-        ));
+    let aim = match aim(canvas) {
+        Ok(aim) => aim,
+        Err(why) => return queue.view(ViewCommand::Notice(why)),
     };
-    if let (Some(drawing), Aim::Spot(at)) = (drawing, &aim) {
-        let approach = new_leg::approach(canvas, &aim);
-        return put(
-            drawing.and_then(|features| drawings::legs(&features, at.clone(), approach, plan)),
-            queue,
-        );
-    }
     let aircraft = scene.vehicle.position.as_ref().map(|position| position.value.position);
     let known = Known { plan: Some(plan), aircraft, near: under, world: None };
     match coordinates::read(text, &known) {

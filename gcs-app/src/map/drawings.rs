@@ -18,13 +18,17 @@ use std::path::Path;
 /// Most figures that are pasted at once.
 const MOST: usize = 100;
 
-/// What a text draws; `None`: it is no drawing. The sentence says why it can't be pasted.
-pub fn read(text: &str) -> Option<Result<Vec<Feature>, String>> {
-    let format = match FileFormat::of(Path::new("clipboard"), text.as_bytes()) {
-        FileFormat::Other(format @ (Format::Kml | Format::GeoJson | Format::Gpx)) => format,
-        _ => return None,
-    };
-    Some(features(format, text).map_err(|why| format!("That {} can't be pasted: {why}.", label(format))))
+/// In which format a text draws; `None`: it is no drawing.
+pub fn format_of(text: &str) -> Option<Format> {
+    match FileFormat::of(Path::new("clipboard"), text.as_bytes()) {
+        FileFormat::Other(format @ (Format::Kml | Format::GeoJson | Format::Gpx)) => Some(format),
+        _ => None,
+    }
+}
+
+/// What a text draws. The sentence says why it can't be pasted.
+pub fn read(format: Format, text: &str) -> Result<Vec<Feature>, String> {
+    features(format, text).map_err(|why| format!("That {} can't be pasted: {why}.", label(format)))
 }
 
 fn features(format: Format, text: &str) -> Result<Vec<Feature>, String> {

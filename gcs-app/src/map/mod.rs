@@ -85,6 +85,8 @@ pub struct MapState {
     menu: menu::Menu,
     /// What is to be done with the clipboard in the next frame.
     clip: Option<Clip>,
+    /// Drawings on the clipboard that are being read.
+    pastes: clipboard::Pastes,
     items: items::Items,
     sketch: Sketch,
     sketched: Option<(u64, Option<PlanVariables>)>,
@@ -141,6 +143,11 @@ impl MapState {
     /// Each tool's card, and whether it is in use.
     pub fn tool_cards(&self) -> Vec<(&'static tools::Card, bool)> {
         self.tools.cards().collect()
+    }
+
+    /// It waits for the result of work on another thread.
+    pub fn is_busy(&self) -> bool {
+        self.tools.is_busy() || self.pastes.is_reading()
     }
 
     /// Puts a tool to use.
@@ -261,7 +268,7 @@ impl MapState {
         if let Some(clip) = self.clip.take() {
             clipboard::carry_out(clip, ui, &canvas, queue);
         }
-        clipboard::run(ui, &mut self.menu, &canvas, queue);
+        clipboard::run(ui, &mut self.menu, &mut self.pastes, &canvas, queue);
         path::draw_cursor(&painter, view, scene, p);
         start::draw(&painter, view, scene, p);
         aircraft::draw(&painter, view, scene, p);

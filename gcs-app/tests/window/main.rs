@@ -133,8 +133,15 @@ impl Window {
         self.harness.state()
     }
 
+    /// So many frames, and those until what was begun in the background by then is there.
     fn steps(&mut self, steps: usize) {
         self.harness.run_steps(steps);
+        let deadline = Instant::now() + Duration::from_secs(20);
+        while self.app().is_busy() {
+            assert!(Instant::now() < deadline, "something in the background does not end");
+            self.harness.step();
+            std::thread::yield_now();
+        }
     }
 
     /// Draws until something is so; the workers behind the window take their time.

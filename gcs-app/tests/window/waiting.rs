@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread::ThreadId;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use terrain::Terrain;
 
 /// Elevations that nobody but the window's own thread gets until the gate is opened.
@@ -54,6 +54,75 @@ fn frames_and_edits_go_on_while_the_preview_waits_for_the_ground() {
     *gate.0.lock().unwrap() = true;
     gate.1.notify_all();
     window.until_analysed();
+}
+
+/// Whatever the ground does: a leg that is drawn is tried out over it in the background.
+#[test]
+fn drawing_goes_on_while_the_trial_of_a_leg_waits_for_the_ground() {
+    let gate = Arc::<(Mutex<bool>, Condvar)>::default();
+    let held = Held {
+        window: std::thread::current().id(),
+        gate: gate.clone(),
+        ground: gcs_app::assets::demo_terrain(),
+    };
+    let mut window = Window::open_over(SQUARE, vec2(1280.0, 800.0), None, Arc::new(held));
+    window.harness.run_steps(10);
+    window.harness.key_press(egui::Key::T);
+    window.harness.run_steps(2);
+    let at = window.centre("Map");
+    // none of these frames can wait for the trial: it does not end before they are over
+    for number in 0..30 {
+        window.harness.hover_at(at + vec2(number as f32, 40.0));
+        window.harness.run_steps(1);
+    }
+    assert!(window.app().is_busy(), "it is being tried out");
+    let legs = window.plan().all_legs().len();
+    window.harness.drag_at(at + vec2(30.0, 40.0));
+    window.harness.run_steps(1);
+    window.harness.drop_at(at + vec2(30.0, 40.0));
+    window.harness.run_steps(3);
+    assert_eq!(window.plan().all_legs().len(), legs + 1, "a click draws it all the same");
+    *gate.0.lock().unwrap() = true;
+    gate.1.notify_all();
+    window.harness.hover_at(at + vec2(60.0, 60.0));
+    window.steps(3);
+    assert!(!window.app().is_busy() && window.shows("Next leg: "));
+}
+
+/// The longest frame while something goes on, and how long all of them took.
+fn longest_frame(window: &mut Window) -> (Duration, Duration) {
+    let (began, mut longest) = (Instant::now(), Duration::ZERO);
+    while window.app().is_busy() {
+        let frame = Instant::now();
+        window.harness.step();
+        longest = longest.max(frame.elapsed());
+        assert!(began.elapsed() < Duration::from_secs(20));
+        std::thread::yield_now();
+    }
+    (longest, began.elapsed())
+}
+
+/// As long as it takes to read it, measured here, on whatever machine.
+#[test]
+fn no_frame_waits_for_a_large_drawing_that_is_pasted() {
+    let point =
+        "<Placemark><name>n</name><Point><coordinates>-84.15,36.33,0</coordinates></Point></Placemark>";
+    let text = format!("<kml>{}</kml>", point.repeat((4 << 20) / point.len() - 1));
+    let began = Instant::now();
+    interchange::features(interchange::Format::Kml, text.as_bytes()).unwrap();
+    let takes = began.elapsed();
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.harness.event(egui::Event::Paste(text));
+    let begun = Instant::now();
+    window.harness.step();
+    let first = begun.elapsed();
+    assert!(window.app().is_busy(), "it is being read");
+    let (longest, _) = longest_frame(&mut window);
+    assert!(first.max(longest) < takes / 2, "{first:?}, {longest:?} of {takes:?}");
+    window.until("the refusal", |app| {
+        app.view().notice.as_ref().is_some_and(|why| why.contains("100 can be pasted at once"))
+    });
 }
 
 /// A disk of which each read waits until the gate is opened. It has one long file and one that is read in many parts.

@@ -184,6 +184,10 @@ impl Tool for DrawLeg {
         self.pen.clear();
     }
 
+    fn is_busy(&self) -> bool {
+        self.trials.is_flying()
+    }
+
     fn cursor(&self) -> CursorIcon {
         CursorIcon::Crosshair
     }

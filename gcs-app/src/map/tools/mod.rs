@@ -131,6 +131,11 @@ pub trait Tool: std::fmt::Debug {
         None
     }
 
+    /// It waits for the result of work on another thread.
+    fn is_busy(&self) -> bool {
+        false
+    }
+
     /// Choices about what it draws, beside its status.
     fn options(&mut self, _ui: &mut Ui, _scene: &Scene<'_>) {}
 

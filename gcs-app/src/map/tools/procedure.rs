@@ -168,6 +168,10 @@ impl Tool for PlaceProcedure {
         self.trials.clear();
     }
 
+    fn is_busy(&self) -> bool {
+        self.trials.is_flying()
+    }
+
     fn cursor(&self) -> CursorIcon {
         CursorIcon::Crosshair
     }

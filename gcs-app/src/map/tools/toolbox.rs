@@ -73,6 +73,11 @@ impl Toolbox {
         self.sweep.is_active()
     }
 
+    /// The tool in use waits for the result of work on another thread.
+    pub fn is_busy(&self) -> bool {
+        self.in_use().is_some_and(|tool| tool.is_busy())
+    }
+
     /// What the tool in use says.
     pub fn status(&self, scene: &Scene<'_>) -> Option<String> {
         let status = self.in_use()?.status(scene)?;

@@ -165,6 +165,10 @@ impl Tool for Track {
         *self = Self { choice: self.choice, ..Self::default() };
     }
 
+    fn is_busy(&self) -> bool {
+        self.trials.is_flying()
+    }
+
     fn cursor(&self) -> CursorIcon {
         CursorIcon::Crosshair
     }

@@ -2,9 +2,9 @@
 
 use super::new_leg::{self, Aim};
 use super::{Canvas, pen};
+use crate::jobs::{Taken, Task};
 use crate::map::polyline::{self, Style};
 use crate::map::view::Mercator;
-use crate::panels::Scene;
 use crate::theme::Palette;
 use crate::units::{self, Units};
 use aircraft::Profile;
@@ -14,6 +14,7 @@ use flight_plan::create::{self, Approach, is_tried};
 use flight_plan::{Altitude, AltitudeReference, FlightPlan, Leg, Program, Spot, Value, compile};
 use geometry::LatLon;
 use std::sync::Arc;
+use terrain::Terrain;
 
 /// Longest part of a leg that is tried out, seconds of flight.
 const LONGEST_S: f64 = 300.0;
@@ -71,34 +72,70 @@ impl Trial {
     }
 }
 
-/// What was tried out: of which version of the plan, in which world.
-type Tried = (u64, WhatIf, Leg, Approach);
+/// What is tried out: in which version of the plan, in which world.
+#[derive(Debug, Clone, PartialEq)]
+struct Wanted {
+    version: u64,
+    what_if: WhatIf,
+    leg: Leg,
+    approach: Approach,
+}
 
-/// The last leg that was tried out.
+impl Wanted {
+    /// The trial of this one is near enough to be shown until that of the other one is known.
+    fn goes_on_as(&self, other: &Self) -> bool {
+        (self.version, self.approach) == (other.version, other.approach) && self.what_if == other.what_if
+    }
+}
+
+/// Legs are tried out one after the other, each on a thread of its own: no frame waits for one.
 #[derive(Debug, Default)]
 pub struct Trials {
-    tried: Option<Tried>,
-    trial: Trial,
+    wanted: Option<Wanted>,
+    flying: Option<(Wanted, Task<Trial>)>,
+    /// The last one that was tried out.
+    tried: Option<(Wanted, Trial)>,
 }
 
 impl Trials {
     /// A leg that would be put there; flown anew only when it is another.
     pub fn fly(&mut self, leg: Option<Leg>, aim: &Aim, approach: Option<Approach>, canvas: &Canvas<'_>) {
-        let (version, what_if) = (canvas.scene.document.version(), &canvas.scene.view.what_if);
-        let wanted = leg.zip(approach).map(|(leg, approach)| (version, what_if.clone(), leg, approach));
-        if wanted == self.tried {
+        self.take();
+        let scene = canvas.scene;
+        self.wanted = leg.zip(approach).map(|(leg, approach)| Wanted {
+            version: scene.document.version(),
+            what_if: scene.view.what_if.clone(),
+            leg,
+            approach,
+        });
+        let Some(wanted) = self.wanted.clone().filter(|_| self.flying.is_none()) else { return };
+        if self.tried.as_ref().is_some_and(|(tried, _)| *tried == wanted) {
             return;
         }
-        self.trial = match &wanted {
-            Some((_, _, leg, approach)) => fly(leg, aim, *approach, canvas.scene),
-            None => Trial::default(),
-        };
-        self.tried = wanted;
+        let (plan, ground) = (scene.document.plan().clone(), scene.layers.ground().clone());
+        let (aim, asked) = (aim.clone(), wanted.clone());
+        let task = Task::begin(scene.layers.wake(), move || fly(&asked, &aim, &plan, &ground));
+        self.flying = Some((wanted, task));
     }
 
-    /// What came out; `None`: nothing was tried out.
+    fn take(&mut self) {
+        let Some((wanted, task)) = self.flying.take() else { return };
+        match task.take() {
+            Taken::NotYet => self.flying = Some((wanted, task)),
+            Taken::Done(trial) => self.tried = Some((wanted, trial)),
+            Taken::Failed => self.tried = Some((wanted, Trial::default())),
+        }
+    }
+
+    /// What came out; `None`: nothing was tried out, or not yet.
     pub fn get(&self) -> Option<&Trial> {
-        self.tried.as_ref().map(|_| &self.trial)
+        let (tried, trial) = self.tried.as_ref()?;
+        self.wanted.as_ref().filter(|wanted| tried.goes_on_as(wanted)).map(|_| trial)
+    }
+
+    /// Something is being tried out.
+    pub fn is_flying(&self) -> bool {
+        self.flying.is_some()
     }
 
     /// Forgets it.
@@ -107,13 +144,13 @@ impl Trials {
     }
 }
 
-fn fly(leg: &Leg, aim: &Aim, approach: Approach, scene: &Scene<'_>) -> Trial {
-    let (plan, ground) = (scene.document.plan(), scene.layers.ground());
+fn fly(wanted: &Wanted, aim: &Aim, plan: &FlightPlan, ground: &Arc<dyn Terrain>) -> Trial {
+    let Wanted { what_if, leg, approach, .. } = wanted;
     let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
     let ground_amsl_m = ground.elevation_m(approach.from);
     let level_amsl_m =
         level_amsl_m(new_leg::level(plan, aim), home_amsl_m(plan, aim), ground_amsl_m.unwrap_or(0.0));
-    let tried = create::trial(plan, approach, level_amsl_m, leg);
+    let tried = create::trial(plan, *approach, level_amsl_m, leg);
     let program = match compile(tried, &profile, ground.as_ref()) {
         Ok(program) => Arc::new(program),
         Err(problems) => {
@@ -124,9 +161,8 @@ fn fly(leg: &Leg, aim: &Aim, approach: Approach, scene: &Scene<'_>) -> Trial {
     };
     let pace_mps = profile.cruise_airspeed_mps;
     // as the preview of the whole plan
-    let winds = scene.view.what_if.winds(plan);
-    let rehearsal = Rehearsal::new(profile, ground.clone(), winds, options());
-    Trial { pace_mps, ..flown(leg, approach, level_amsl_m, &program, rehearsal) }
+    let rehearsal = Rehearsal::new(profile, ground.clone(), what_if.winds(plan), options());
+    Trial { pace_mps, ..flown(leg, *approach, level_amsl_m, &program, rehearsal) }
 }
 
 fn options() -> Options {
