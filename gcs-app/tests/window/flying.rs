@@ -127,6 +127,7 @@ fn proposal_leaves_the_commands_of_the_flight_in_reach() {
         window.receive_status(value);
         while window.asked().is_some() {}
         window.harness.set_size(size);
+        window.steps(2);
         window.click("Push");
         let (ticket, _) = window.asked().unwrap();
         let hash = window.app().analysis().hash.clone();

@@ -20,6 +20,8 @@ pub fn drop_file(window: &mut Window, path: &Path) {
 
 fn until_imported(window: &mut Window) {
     window.until("the import", |app| app.view().imported.is_some());
+    // a dialog that is centred finds its place
+    window.steps(5);
 }
 
 #[test]
