@@ -141,6 +141,10 @@ impl Window {
             assert!(Instant::now() < deadline, "something in the background does not end");
             self.harness.step();
             std::thread::yield_now();
+            if !self.app().is_busy() {
+                // what came of it is drawn
+                self.harness.run_steps(2);
+            }
         }
     }
 

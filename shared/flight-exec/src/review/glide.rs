@@ -110,7 +110,7 @@ fn out_of_reach(
         return Problem::warning("glide-out-of-reach", message).of(&from.leg);
     };
     let message = format!(
-        "engine failure: its runway is out of glide on {:.0} % of the flight. Be ready to land elsewhere: no emergency plan is named for the cause `engine`, and at worst, from {from}, a glide {what}, or name a nearer plan for this cause",
+        "engine failure: runway out of glide on {:.0} % of the flight. Be ready to land elsewhere: no emergency plan is named for the cause `engine`, and at worst, from {from}, a glide {what}, or name a nearer plan for this cause",
         (100.0 * share).ceil()
     );
     Problem::warning("glide-out-of-reach", message).of(plan)
