@@ -46,6 +46,20 @@ fn a_flight_as_planned_succeeds_and_leaves_its_report() {
     for leg in ["take-off", "side1", "side2", "side3", "side4", "land"] {
         assert!(legs.lines().any(|line| line.starts_with(leg)), "{leg} is missing:\n{legs}");
     }
+    is_as_previewed(&legs);
+}
+
+/// All legs together took the previewed time within 3 %, and TF legs, with their corners, are within 5 m of the previewed path.
+fn is_as_previewed(legs: &str) {
+    let rows: Vec<Vec<&str>> = legs.lines().map(|line| line.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|head| *head == name).unwrap();
+    let number = |row: &[&str], name: &str| row[column(name)].parse::<f64>().unwrap();
+    let sum = |name: &str| rows[1..].iter().map(|row| number(row, name)).sum::<f64>();
+    let (flown_s, previewed_s) = (sum("time_s"), sum("planned_time_s"));
+    assert!((flown_s / previewed_s - 1.0).abs() < 0.03, "{flown_s} s, previewed {previewed_s} s:\n{legs}");
+    for row in rows[1..].iter().filter(|row| row[column("type")] == "TF") {
+        assert!(number(row, "cross_track_max_m") < 5.0, "{row:?}");
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Was the mission really flown as planned? Pure: from what was recorded to a verdict.
 
-use crate::report::{Findings, Record};
+use crate::report::{Findings, Record, clock};
 use flight_exec::Phase;
 use geometry::{LatLon, LocalFrame, Vec2};
 use usal::contract::GatewayState;
@@ -9,6 +9,8 @@ use usal::contract::GatewayState;
 const TF_LIMIT_M: f64 = 15.0;
 /// The same on RF legs.
 const RF_LIMIT_M: f64 = 25.0;
+/// Greatest difference between the flown and the previewed time, as a share of the previewed one.
+const TIME_LIMIT: f64 = 0.03;
 /// Least share of each scanned area that must have been seen.
 const COVERAGE_LIMIT: f64 = 0.99;
 /// How far beside the centre line a landed aircraft may stand, metres.
@@ -43,7 +45,7 @@ pub struct Outcome {
 
 /// The verdict's sentences, each with whether it holds.
 pub fn verdict(record: &Record, findings: &Findings, outcome: &Outcome) -> Vec<(bool, String)> {
-    let mut verdict = vec![landed(outcome), finished(outcome), as_previewed(record)];
+    let mut verdict = vec![landed(outcome), finished(outcome), as_previewed(record), on_time(findings)];
     if outcome.steps > 0 {
         verdict.push(scripted(outcome));
     }
@@ -114,6 +116,21 @@ fn as_previewed(record: &Record) -> (bool, String) {
         }
         None => (!flown.is_empty(), format!("all {} passages of legs as previewed", flown.len())),
     }
+}
+
+/// The passages that were previewed took as long as there, all together.
+fn on_time(findings: &Findings) -> (bool, String) {
+    let times = || findings.passages.iter().filter_map(|row| Some((row.time_s, row.planned_time_s?)));
+    let (flown_s, planned_s) = times().fold((0.0, 0.0), |sum, (f, p)| (sum.0 + f, sum.1 + p));
+    let off = (flown_s - planned_s) / planned_s.max(1.0);
+    let text = format!(
+        "flown in {}, previewed {}: {:+.1} % (limit {:.0} %)",
+        clock(flown_s),
+        clock(planned_s),
+        off * 100.0,
+        TIME_LIMIT * 100.0
+    );
+    (planned_s > 0.0 && off.abs() <= TIME_LIMIT, text)
 }
 
 fn scripted(outcome: &Outcome) -> (bool, String) {
@@ -241,6 +258,18 @@ mod tests {
     }
 
     #[test]
+    fn flight_that_takes_another_time_than_previewed_is_told() {
+        let mut findings = Findings::of(&crate::report::made_up_record());
+        assert!(on_time(&findings).0);
+        for (share, holds) in [(1.029, true), (0.971, true), (1.031, false), (0.969, false)] {
+            findings.passages.iter_mut().for_each(|row| row.time_s = share * row.planned_time_s.unwrap());
+            let (held, text) = on_time(&findings);
+            assert!(held == holds && text.contains("previewed"), "{text}");
+        }
+        assert!(!on_time(&Findings::default()).0, "nothing was flown");
+    }
+
+    #[test]
     fn legs_far_from_their_authored_path_are_missed_however_well_previewed() {
         let mut findings = Findings::of(&crate::report::made_up_record());
         assert_eq!(from_authored(&findings, "TF", TF_LIMIT_M), None, "no authored paths are known");
@@ -260,6 +289,8 @@ mod tests {
             .into_iter()
             .filter_map(|(holds, text)| (!holds).then_some(text))
             .collect();
-        assert_eq!(failed, ["no TF leg was flown", "nothing was scanned"]);
+        assert_eq!(failed.len(), 3, "{failed:?}");
+        assert!(failed[0].starts_with("flown in 0:00"), "{failed:?}");
+        assert_eq!(failed[1..], ["no TF leg was flown", "nothing was scanned"]);
     }
 }

@@ -1,6 +1,6 @@
 //! What the demo prints at its end.
 
-use crate::report::{Findings, Record, clock, flight_lines, from_authored};
+use crate::report::{Findings, Record, clock, flight_lines, from_authored, time_off};
 use std::path::Path;
 
 /// The leg table, the verdict and where the report is, on standard output.
@@ -32,19 +32,20 @@ pub fn print(record: &Record, findings: &Findings, wall_s: f64, folder: &Path) -
 
 fn table(findings: &Findings) -> String {
     let mut text = format!(
-        "{:<26} {:<10} {:>7} {:>7} {:>9}   {:<28}   from the authored path: RMS / max\n",
-        "leg", "type", "entered", "time", "distance", "cross-track RMS / 95 % / max"
+        "{:<26} {:<10} {:>7} {:>7} {:>9} {:>9}   {:<28}   from the authored path: RMS / max\n",
+        "leg", "type", "entered", "time", "time off", "distance", "cross-track RMS / 95 % / max"
     );
     for row in &findings.passages {
         let cross = row.cross_track.map_or("not previewed".to_owned(), |s| {
             format!("{:.1} / {:.1} / {:.1} m", s.rms_m, s.p95_m, s.max_m)
         });
         text += &format!(
-            "{:<26} {:<10} {:>7} {:>7} {:>6.2} km   {cross:<28}   {}\n",
+            "{:<26} {:<10} {:>7} {:>7} {:>9} {:>6.2} km   {cross:<28}   {}\n",
             row.passage.key.to_string(),
             row.passage.kind,
             clock(row.start_s),
             clock(row.time_s),
+            time_off(row),
             row.distance_m / 1000.0,
             from_authored(row)
         );

@@ -4,6 +4,7 @@ use super::record::{Passage, PassageKey, Record, Track, TrackPoint};
 use super::{authored, flights};
 use geometry::{LocalFrame, Vec2};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Points this long before and after a passage belong to it as well, for the ends of a passage are
 /// announced at slightly different places. Seconds.
@@ -55,6 +56,12 @@ pub struct PassageReport {
 }
 
 impl PassageReport {
+    /// How much longer it took than previewed, as a share of that; `None` where it was not, or took no time.
+    pub fn time_off(&self) -> Option<f64> {
+        let planned_s = self.planned_time_s.filter(|planned_s| *planned_s > 0.0)?;
+        Some((self.time_s - planned_s) / planned_s)
+    }
+
     /// The greatest deviation, metres; 0 where none could be measured.
     pub fn worst_m(&self) -> f64 {
         self.cross_track.map_or(0.0, |s| s.max_m)
@@ -114,25 +121,22 @@ fn segment_offset_m(a: Vec2, b: Vec2, p: Vec2) -> f64 {
 /// One row per flown passage.
 pub fn by_passage(record: &Record, deviations: &[Option<f64>]) -> Vec<PassageReport> {
     let track = record.main_track();
-    let rests: Vec<usize> = flights::of(track).iter().map(|flight| flight.points.end).collect();
+    let (rests, planned_rests) = (rests(track), rests(&record.planned));
     let planned: HashMap<&PassageKey, f64> = record
         .planned
         .passages()
         .iter()
         .enumerate()
-        .map(|(i, p)| (&p.key, times(&record.planned, i).1))
+        .map(|(i, p)| (&p.key, times(&record.planned, i, &planned_rests).1))
         .collect();
     track
         .passages()
         .iter()
         .enumerate()
         .map(|(i, passage)| {
-            let (start_s, time_s) = times(track, i);
+            let (start_s, time_s) = times(track, i, &rests);
             let range = track.range(i);
-            // what is behind the end of its flight is another one's, or no flight at all
-            let rest = rests.iter().copied().find(|rest| range.start < *rest).unwrap_or(range.end);
-            let rests_s = track.points().get(rest.saturating_sub(1)).map_or(f64::INFINITY, |p| p.time_s);
-            let time_s = time_s.min((rests_s - start_s).max(0.0));
+            let rest = rest(&rests, range.clone());
             let range = range.start..range.end.min(rest);
             let metres = deviations.get(range.clone()).unwrap_or(&[]);
             PassageReport {
@@ -151,13 +155,24 @@ pub fn by_passage(record: &Record, deviations: &[Option<f64>]) -> Vec<PassageRep
         .collect()
 }
 
-/// Start and duration of a passage, seconds; it lasts until the next one begins.
-fn times(track: &Track, passage: usize) -> (f64, f64) {
+/// Where each flight of a track comes to rest, as the index behind its last point.
+fn rests(track: &Track) -> Vec<usize> {
+    flights::of(track).iter().map(|flight| flight.points.end).collect()
+}
+
+/// The rest after a passage: what is behind it is another flight's, or no flight at all.
+fn rest(rests: &[usize], range: Range<usize>) -> usize {
+    rests.iter().copied().find(|rest| range.start < *rest).unwrap_or(range.end)
+}
+
+/// Start and duration of a passage, seconds; it lasts until the next one begins, or the aircraft has come to rest.
+fn times(track: &Track, passage: usize, rests: &[usize]) -> (f64, f64) {
     let range = track.range(passage);
     let points = track.points();
     let end = points.get(range.end).or(points.last()).map_or(0.0, |p| p.time_s);
     let start = points.get(range.start).map_or(end, |p| p.time_s);
-    (start, (end - start).max(0.0))
+    let rest_s = points.get(rest(rests, range).saturating_sub(1)).map_or(f64::INFINITY, |p| p.time_s);
+    (start, (end.min(rest_s) - start).max(0.0))
 }
 
 #[cfg(test)]
@@ -239,6 +254,7 @@ mod tests {
         assert_eq!(rows.len(), 3);
         assert_eq!((rows[0].start_s, rows[0].time_s, rows[0].planned_time_s), (0.0, 60.0, Some(60.0)));
         assert!((rows[0].distance_m - 1500.0).abs() < 0.1);
+        assert_eq!((rows[0].time_off(), rows[2].time_off()), (Some(0.0), None));
         assert!(rows[1].worst_m() < 2.1 && rows[1].cross_track.is_some());
         assert_eq!((rows[2].passage.key.occurrence, rows[2].cross_track), (1, None));
         assert!(record.places.iter().any(|p| matches!(p.kind, PlaceKind::Runway { .. })));

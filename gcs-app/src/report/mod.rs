@@ -28,7 +28,7 @@ pub use flights::FlightReport;
 #[cfg(test)]
 pub(crate) use record::tests::record as made_up_record;
 pub use record::{Area, Happening, Passage, PassageKey, Place, PlaceKind, Record, Track, TrackPoint};
-pub use tables::{clock, flights as flight_lines, from_authored};
+pub use tables::{clock, flights as flight_lines, from_authored, time_off};
 
 use crate::jobs::Progress;
 use std::path::Path;

@@ -5,14 +5,15 @@ use super::record::Record;
 use super::{Findings, FlightReport, PassageReport};
 use std::fmt::Write;
 
-const COLUMNS: [&str; 11] = [
+const COLUMNS: [&str; 12] = [
     "leg",
     "type",
     "stage",
     "iteration",
     "entered",
     "time",
-    "planned",
+    "previewed",
+    "time off",
     "distance",
     "deviation RMS / 95 % / max",
     "from the authored path: RMS / max",
@@ -74,7 +75,7 @@ fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n', '\r']) { format!("\"{}\"", field.replace('"', "\"\"")) } else { field }
 }
 
-fn cells(row: &PassageReport) -> [String; 11] {
+fn cells(row: &PassageReport) -> [String; 12] {
     let key = &row.passage.key;
     let cross = row
         .cross_track
@@ -87,6 +88,7 @@ fn cells(row: &PassageReport) -> [String; 11] {
         clock(row.start_s),
         clock(row.time_s),
         row.planned_time_s.map_or("–".to_owned(), clock),
+        time_off(row),
         format!("{:.2} km", row.distance_m / 1000.0),
         cross,
         from_authored(row),
@@ -124,6 +126,11 @@ pub fn flights(findings: &Findings) -> impl Iterator<Item = String> {
         let [number, begins, time, distance, energy, left] = flight_cells(flight);
         format!("flight {number}: begins {begins}, {time}, {distance}, {energy}, {left} left")
     })
+}
+
+/// How much longer it took than previewed, for people.
+pub fn time_off(row: &PassageReport) -> String {
+    row.time_off().map_or("–".to_owned(), |share| format!("{:+.1} %", share * 100.0))
 }
 
 /// Deviations from the authored path, for people.
