@@ -199,7 +199,7 @@ mod tests {
         for fails in [false, true] {
             let (open, gate) = channel::<()>();
             let (wake, woken) = channel();
-            let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || drop(wake.send(())));
+            let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || wake.send(()).unwrap_or_default());
             let task = Task::begin(wake, move || {
                 gate.recv().unwrap();
                 if fails {
