@@ -13,6 +13,7 @@ const LAYERS: &[&str] = &[
     "layout::expand",
     "layout::cursor",
     "layout::stretch",
+    "layout::way_back",
     "layout::translate",
     "flight",
     "executor",

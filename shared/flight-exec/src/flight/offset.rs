@@ -169,9 +169,20 @@ impl Offset {
 
 fn frames(one: &LoopFrame, other: &LoopFrame) -> bool {
     // an activation's number only matters to a loop with actions, whose passage is compared
-    let LoopFrame { index, iteration, reverse, mirrored, trail, back, patterns, entered, activation: _ } =
-        one;
+    let LoopFrame {
+        index,
+        iteration,
+        reverse,
+        mirrored,
+        trail,
+        back,
+        patterns,
+        entered,
+        activation: _,
+        back_to,
+    } = one;
     (index, iteration, reverse) == (&other.index, &other.iteration, &other.reverse)
+        && *back_to == other.back_to
         && (mirrored, back, entered) == (&other.mirrored, &other.back, &other.entered)
         && *trail == other.trail
         && *patterns == other.patterns

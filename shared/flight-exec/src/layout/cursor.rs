@@ -123,6 +123,16 @@ pub struct LoopFrame {
     pub entered: PathEnd,
     /// Number of the last passage before this activation: tells activations of the loop apart.
     pub activation: u64,
+    /// Where the leg being flown leads on the way back, if not to where it began: an update has moved or removed the leg before it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub back_to: Option<PathEnd>,
+}
+
+impl LoopFrame {
+    /// How many legs of its trail were passed before the one being flown: the path ends behind them.
+    pub(crate) fn passed_before(&self) -> usize {
+        if self.reverse { self.back.saturating_sub(1) } else { self.trail.len() }
+    }
 }
 
 /// A waypoint on its way out.

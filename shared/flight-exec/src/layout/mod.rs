@@ -9,4 +9,5 @@ pub mod expand;
 pub mod path;
 pub mod stretch;
 pub(crate) mod translate;
+mod way_back;
 pub mod world;

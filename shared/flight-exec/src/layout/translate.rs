@@ -2,11 +2,11 @@
 
 use super::cursor::control::is_control;
 use super::cursor::{Cursor, CursorPhase, LoopFrame};
-use super::expand::trail::{Trail, Visit};
+use super::path::PathEnd;
 use super::stretch::IssuedWaypoint;
+use super::way_back::{Moved, Worlds, remapped};
 use super::world::World;
 use flight_plan::{Id, Leg, LegPath, Program};
-use std::collections::HashMap;
 
 /// A bookmark of the old program in the new one: the same leg, the same loops with their counters and trails, found by their
 /// identifiers. In the middle of a leg that has become another kind of leg, it is the beginning of that one, on the same passage. If
@@ -95,6 +95,8 @@ fn restore_trails(
     let old_chain = old.chain(world);
     let new_chain = new.chain(target);
     let innermost = moved.loops.len().saturating_sub(1);
+    let worlds = Worlds { old: *world, new: World { program: new, ..*world } };
+    let mut around = None;
     for (depth, (frame, leg)) in moved.loops.iter_mut().zip(new_chain).enumerate() {
         let place = known.iter().position(|id| *id == leg.id);
         let was = place.and_then(|i| old.loops.get(i).zip(old_chain.get(i)));
@@ -103,8 +105,14 @@ fn restore_trails(
             // forth and back has become round and round, or the reverse: directions and trails mean nothing any more
             break;
         }
-        let trail = remap(before.trail.iter(), old_leg, leg);
-        let still = remap(before.trail.iter().take(before.back), old_leg, leg);
+        let legs = (*old_leg, leg);
+        let passed = before.passed_before();
+        let still = before.trail.first(before.back).unwrap_or_else(|| before.trail.clone());
+        let (still, _) = remapped(&still, passed, legs, around, &worlds);
+        let (trail, _) = remapped(&before.trail, passed, legs, around, &worlds);
+        let entered = Moved::applied(around, before.entered);
+        let first = before.trail.first(passed).unwrap_or_default();
+        (_, around) = remapped(&first, passed, legs, around, &worlds);
         let at_target = still.iter().position(|visit| visit.index == moved.index);
         let back = match stand {
             Relation::Behind if depth == innermost => at_target.unwrap_or(still.len()),
@@ -116,21 +124,18 @@ fn restore_trails(
             _ => still.len(),
         };
         let patterns = rpds::HashTrieMapSync::default();
-        *frame = LoopFrame { index: frame.index, trail, back, patterns, ..before.clone() };
+        let back_to = back_to(before, old, around);
+        *frame = LoopFrame { index: frame.index, trail, back, patterns, entered, back_to, ..before.clone() };
     }
 }
 
-/// A trail in the new body: legs that are gone are left out.
-fn remap<'a>(trail: impl Iterator<Item = &'a Visit>, old: &Leg, new: &Leg) -> Trail {
-    let places: HashMap<&Id, usize> = new.body().iter().enumerate().map(|(i, leg)| (&leg.id, i)).collect();
-    let moved = |visit: &Visit| {
-        let leg = old.body().get(visit.index)?;
-        let index = *places.get(&leg.id)?;
-        let inner = visit.inner.as_ref().zip(new.body().get(index));
-        let inner = inner.map(|(inner, new_leg)| remap(inner.iter(), leg, new_leg));
-        Some(Visit { index, highest: index, inner, ..visit.clone() })
-    };
-    trail.filter_map(moved).collect()
+/// Where the leg being flown forwards leads on the way back, if the end of the leg before it has `moved`.
+fn back_to(frame: &LoopFrame, cursor: &Cursor, moved: Option<Moved>) -> Option<PathEnd> {
+    let begun = cursor.doing == CursorPhase::Flying;
+    let began = if begun { cursor.leg_start.last } else { cursor.path.last };
+    let known = frame.back_to.unwrap_or(began);
+    let leads = Moved::applied(moved, known);
+    (!frame.reverse && leads != began).then_some(leads)
 }
 
 fn kind_of(program: &Program, id: &Id) -> Option<&'static str> {

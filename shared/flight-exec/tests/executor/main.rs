@@ -26,3 +26,4 @@ mod refused_by_gateway;
 mod reports;
 mod rig;
 mod updates;
+mod updates_on_the_way_back;

@@ -126,6 +126,7 @@ impl Cursor {
         let (index, start, end) = (self.index, self.leg_start.last, self.path.last);
         if let Some(frame) = self.loops.last_mut().filter(|_| goes_back) {
             let (level, airspeed_mps) = (self.level, self.airspeed_mps);
+            let start = frame.back_to.take().unwrap_or(start);
             frame.trail.pass(Visit { inner, flown, level, airspeed_mps, ..Visit::new(index, start, end) });
         }
     }
@@ -167,6 +168,7 @@ impl Cursor {
         }
         frame.reverse ^= passes.form == IterativeForm::Reverse;
         frame.back = frame.trail.len();
+        frame.back_to = None;
         if !frame.reverse {
             frame.trail = Trail::default();
         }
@@ -200,7 +202,12 @@ impl Cursor {
     pub(super) fn cross(&mut self, leg: &Leg, fork: Fork, world: &World, notes: &mut CursorLog) {
         let Fork { branches, default, .. } = fork;
         self.leg_start = self.path;
+        // a fork flies nothing: what is behind it begins where it is
+        let back_to = self.loops.last().and_then(|frame| frame.back_to);
         self.remember(world, None, None);
+        if let Some(frame) = self.loops.last_mut() {
+            frame.back_to = back_to;
+        }
         let list = self.list(world);
         if branches.len() < 2 {
             self.mark(leg, notes);

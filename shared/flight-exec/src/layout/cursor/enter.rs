@@ -56,6 +56,7 @@ impl Cursor {
     }
 
     fn enter_loop(&mut self, mirrored: bool, trail: Trail) {
+        let back_to = self.loops.last().and_then(|around| around.back_to);
         self.loops.push(LoopFrame {
             index: self.index,
             iteration: 1,
@@ -66,6 +67,7 @@ impl Cursor {
             patterns: rpds::HashTrieMapSync::default(),
             entered: self.path.last,
             activation: self.passage,
+            back_to,
         });
         self.index = 0;
     }

@@ -107,6 +107,7 @@ impl Cursor {
                 back: 0,
                 entered: self.path.last,
                 activation: old.map_or(self.passage, |f| f.activation),
+                back_to: None,
             }
         });
         // an emergency plan is flown from the home of the flight in which it came

@@ -1,8 +1,10 @@
 //! The leg being flown with other values: a variable was written, or the plan is another one.
 
 use super::{Cursor, CursorPhase, LayoutError, Origin, Step};
-use crate::layout::expand::track::{Approach, expand};
+use crate::layout::expand::track::{Approach, SAME_PLACE_M, expand, passed};
+use crate::layout::expand::trail::Visit;
 use crate::layout::expand::{ExpandError, Expansion};
+use crate::layout::path::distance_m;
 use crate::layout::world::World;
 use flight_plan::{FlightState, Id, Leg, LegKind};
 use std::sync::Arc;
@@ -13,12 +15,15 @@ impl Cursor {
     /// A scan and the patterns like it begin anew where the path is, without what is flown and unmoved; what goes round and
     /// round (an orbit, a figure-eight) goes on at the same angle. An arc, a course, a track or a holding that has become another
     /// one is flown to from where the path is; laps flown count on. The wind alone changes nothing: turns stay as they were laid
-    /// out. What is flown backwards stays as it was flown on the way out.
+    /// out. What is flown backwards stays as it was flown on the way out, but leads to where the leg before it ends now.
     ///
     /// # Errors
     /// The new values make no such leg; the old one stays.
     pub fn refresh_leg(&mut self, world: &World) -> Result<bool, LayoutError> {
-        let under_way = self.doing == CursorPhase::Flying && !self.is_reverse();
+        if self.is_reverse() {
+            return Ok(self.lead_back(world));
+        }
+        let under_way = self.doing == CursorPhase::Flying;
         let leg = self.leg(world).filter(|leg| under_way && leg.as_fork().is_none());
         let (Some(leg), Some(old)) = (leg, self.expansion.clone()) else { return Ok(false) };
         if matches!(*old, Expansion::Points(_)) && self.at_the_end_of_its_leg() {
@@ -40,6 +45,30 @@ impl Cursor {
         }
         *self = fresh;
         Ok(changed)
+    }
+
+    /// A leg being flown backwards leads to another place, if the end of the leg before it has moved. True: it has.
+    fn lead_back(&mut self, world: &World) -> bool {
+        let under_way = self.doing == CursorPhase::Flying && !self.at_the_end_of_its_leg();
+        let visit = self.loops.last().and_then(|frame| frame.trail.get(frame.passed_before())).cloned();
+        let visit = visit.filter(|visit| under_way && visit.index == self.index);
+        let (Some(visit), Some(leg), Some(old)) = (visit, self.leg(world), &self.expansion) else {
+            return false;
+        };
+        if old.led_back_to().is_none_or(|end| distance_m(end, visit.start.position) < SAME_PLACE_M) {
+            return false;
+        }
+        let (fresh, given) = match &leg.kind {
+            LegKind::Rf { .. } => {
+                let from_here = Visit { end: self.path.last, ..visit };
+                let approach = Approach { reversed: Some(&from_here), ..self.approach(&self.path) };
+                let Ok(arc) = expand(leg, &approach, world) else { return false };
+                (arc, 0)
+            }
+            _ => (old.leading_back_to(passed(&visit.start)), self.given),
+        };
+        (self.expansion, self.given) = (Some(Arc::new(fresh)), given);
+        true
     }
 
     /// Why a leg is passed over on the way to the next waypoint, if it is.

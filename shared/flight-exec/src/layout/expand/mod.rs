@@ -203,6 +203,29 @@ impl Expansion {
         }
     }
 
+    /// Where it ends, flown backwards; `None`: where that is doesn't depend on the leg before it.
+    pub fn led_back_to(&self) -> Option<LatLon> {
+        match self {
+            Expansion::Points(points) => points.last().map(|point| point.position),
+            Expansion::Reversed { start, .. } => Some(start.position),
+            _ => None,
+        }
+    }
+
+    /// The same, flown backwards, with another end.
+    pub fn leading_back_to(&self, end: Point) -> Expansion {
+        match self {
+            Expansion::Reversed { pattern, points, .. } => {
+                Expansion::Reversed { pattern: pattern.clone(), points: *points, start: end }
+            }
+            Expansion::Points(points) => {
+                let before = points.split_last().map_or(&[][..], |(_, before)| before);
+                Expansion::Points(before.iter().copied().chain([end]).collect())
+            }
+            _ => Expansion::Points(vec![end]),
+        }
+    }
+
     /// The same pattern backwards, ending at `start`; `with_last`: beginning with its last point, because the path isn't there.
     pub fn reversed(self: &Arc<Self>, start: Point, with_last: bool) -> Expansion {
         let points = self.count().unwrap_or(0) + u64::from(with_last);

@@ -126,7 +126,7 @@ fn backward(leg: &Leg, visit: &Visit, approach: &Approach, world: &World) -> Res
 }
 
 /// A point of the way out, as it was passed there.
-fn passed(passing: &PathEnd) -> Point {
+pub fn passed(passing: &PathEnd) -> Point {
     Point {
         fly_over: passing.fly_over,
         level: Some(passing.level),
