@@ -81,7 +81,7 @@ pub(super) const ALL: &[Description] = &[
                 P(property(
                     "order",
                     "Order",
-                    "Interleaved, no turn is tighter than the aircraft's; side by side the way is shorter, and turns swing wide.",
+                    "Interleaved, no turn is tighter than the aircraft's, and along a slanted edge tracks go on beyond it, up to abreast of the track that a turn leads to; side by side the way is shorter, and turns swing wide.",
                     Kind::Choice(ORDERS),
                 )
                 .without("interleaved")
