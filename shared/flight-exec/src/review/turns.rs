@@ -119,8 +119,11 @@ impl Turn {
         }
         let (lat, lon) = (self.at.lat_deg, self.at.lon_deg);
         let slower_mps = self.slower_mps();
+        let flies = slower_mps >= view.profile.min_airspeed_mps && view.program.written(leg).is_some();
+        let slower =
+            if flies { format!("fly no faster than {slower_mps:.1} m/s, or ") } else { String::new() };
         let message = format!(
-            "widen its turns by {:.0} m, or fly no faster than {slower_mps:.1} m/s: at {lat:.5}, {lon:.5} the wind makes it {:.0} m/s over the ground, at which its steepest bank of {:.0}° gives a radius of {:.0} m; there is room for {:.0} m",
+            "{slower}widen its turns by {:.0} m: at {lat:.5}, {lon:.5} the wind makes it {:.0} m/s over the ground, at which its steepest bank of {:.0}° gives a radius of {:.0} m; there is room for {:.0} m",
             self.needed_m - self.fits_m,
             self.ground_mps,
             view.profile.max_bank_deg,
@@ -128,7 +131,6 @@ impl Turn {
             self.fits_m
         );
         let problem = if self.circle { Problem::error } else { Problem::warning };
-        let flies = slower_mps >= view.profile.min_airspeed_mps && view.program.written(leg).is_some();
         let speed_mps = Some(Value::Constant(slower_mps));
         let fix = flies.then(|| Edit::SetSpeed { of: leg.clone(), speed_mps });
         Some(problem("turn-too-tight", message).of(leg).perhaps_fixed_by(fix))

@@ -33,8 +33,8 @@ fn too_tight(view: &Inspection, step: &Step, radius: &Value<f64>, problems: &mut
     let or_slower = or_slower(view, speed_mps);
     let message =
         format!("widen the circle to {wide_m:.0} m{or_slower}: its radius is {:.0} m", radius_m.floor());
-    let slower = slower(view, &leg.id, speed_mps);
-    let fix = slower.or_else(|| changed(leg, |kind| widen(kind, wide_m)));
+    let widened = changed(leg, |kind| widen(kind, wide_m));
+    let fix = widened.or_else(|| slower(view, &leg.id, speed_mps));
     problems.push(Problem::error("turn-too-tight", message).of(&leg.id).perhaps_fixed_by(fix));
 }
 
@@ -56,7 +56,8 @@ fn once(kind: &mut LegKind) -> Option<()> {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, fixed_legs};
+    use crate::checks::testing::{check_legs, fixed, fixed_legs, plan_with};
+    use crate::{LegKind, Value};
 
     #[test]
     fn circles_are_flyable() {
@@ -82,5 +83,15 @@ mod tests {
             (&orbit(r#"radius="200" turns="0.1""#), "bad-orbit"),
             (&eight(30), "turn-too-tight"),
         ]);
+    }
+
+    /// The message says so first; the speed is the other remedy.
+    #[test]
+    fn a_circle_that_is_too_tight_is_widened() {
+        let plan = plan_with(r#"<orbit id="o" turn="left" radius="100"><centre fix="A"/></orbit>"#);
+        let repaired = fixed(&plan, "turn-too-tight");
+        let leg = &repaired.leg(&"o".into()).unwrap().leg;
+        let LegKind::Orbit { radius_m, .. } = &leg.kind else { panic!("{leg:?}") };
+        assert_eq!((radius_m, &leg.speed_mps), (&Value::Constant(137.0), &None));
     }
 }

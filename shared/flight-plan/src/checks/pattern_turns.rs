@@ -5,7 +5,7 @@
 
 use super::Inspection;
 use super::path::{Path, SHORTEST_M, course_change_deg};
-use super::remedy::{changed, or_slower, slower, speed_for_radius_mps};
+use super::remedy::{changed, or_slower, slower, slower_or, speed_for_radius_mps};
 use super::spacings::spacing_m;
 use super::step::Step;
 use crate::{Area, LegKind, Pattern, Place, Problem, Spacing, Value, VariableValue};
@@ -60,8 +60,8 @@ impl Tight {
             self.fits_m.max(0.0),
             step.speed_mps
         );
-        let fix =
-            slower(view, &leg.id, speed_mps).or_else(|| changed(leg, |kind| (self.widen)(kind, wide_m)));
+        let widened = changed(leg, |kind| (self.widen)(kind, wide_m));
+        let fix = widened.or_else(|| slower(view, &leg.id, speed_mps));
         let problem = if self.is_error { Problem::error } else { Problem::warning };
         Some(problem(self.code, message).of(&leg.id).perhaps_fixed_by(fix))
     }
@@ -202,11 +202,10 @@ fn along(view: &Inspection, step: &Step, route: &[Place], beside_m: f64) -> Opti
     let (piece, fits_m) = pieces.iter().enumerate().filter_map(fits_m).min_by(|a, b| a.1.total_cmp(&b.1))?;
     let needed_m = view.turn_radius_m(step.speed_mps);
     let speed_mps = speed_for_radius_mps(view, fits_m);
-    let or_slower = or_slower(view, speed_mps);
+    let spaced = format!("space the points {} and {} of the route out", piece + 1, piece + 2);
     let message = format!(
-        "space the points {} and {} of the route out{or_slower}: between them the turns of the tracks have room for a radius of {:.0} m, the aircraft's is {needed_m:.0} m at {:.1} m/s",
-        piece + 1,
-        piece + 2,
+        "{}: between them the turns of the tracks have room for a radius of {:.0} m, the aircraft's is {needed_m:.0} m at {:.1} m/s",
+        slower_or(view, speed_mps, spaced),
         fits_m.max(0.0),
         step.speed_mps
     );

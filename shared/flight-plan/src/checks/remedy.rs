@@ -28,6 +28,12 @@ pub(super) fn or_slower(view: &Inspection, speed_mps: f64) -> String {
     slow_mps(view, speed_mps).map_or_else(String::new, said)
 }
 
+/// The advice to fly at a lower speed, where the aircraft can, before another one that no edit is offered for.
+pub(super) fn slower_or(view: &Inspection, speed_mps: f64, other: String) -> String {
+    let first = |mps| format!("fly no faster than {mps:.1} m/s, or {other}");
+    slow_mps(view, speed_mps).map_or_else(|| other.clone(), first)
+}
+
 /// A speed rounded down to tenths of m/s; `None`: the aircraft can't fly so slowly.
 pub(super) fn slow_mps(view: &Inspection, speed_mps: f64) -> Option<f64> {
     let tenths_mps = (speed_mps * 10.0).floor() / 10.0;

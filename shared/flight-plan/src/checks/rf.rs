@@ -3,7 +3,7 @@
 
 use super::Inspection;
 use super::path::{Path, course_change_deg};
-use super::remedy::{changed, or_slower, slower, speed_for_radius_mps};
+use super::remedy::{changed, slower, slower_or, speed_for_radius_mps};
 use super::step::Step;
 use crate::{Edit, LegKind, Problem, TurnDirection};
 use geometry::{LatLon, LocalFrame};
@@ -32,9 +32,8 @@ fn too_tight(view: &Inspection, step: &Step, radius_m: f64, problems: &mut Vec<P
     if radius_m < needed_m {
         let speed_mps = speed_for_radius_mps(view, radius_m);
         let message = format!(
-            "widen the arc to {:.0} m{}: its radius is {:.0} m, too tight at {:.0} m/s",
-            needed_m.ceil(),
-            or_slower(view, speed_mps),
+            "{}: its radius is {:.0} m, too tight at {:.0} m/s",
+            slower_or(view, speed_mps, format!("widen the arc to {:.0} m", needed_m.ceil())),
             radius_m.floor(),
             step.speed_mps
         );

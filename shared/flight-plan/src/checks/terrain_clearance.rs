@@ -58,6 +58,11 @@ impl Lowest {
         MARGIN_M - self.clearance_m
     }
 
+    /// Not at the leg's end: its altitude alone would have to rise by more than what is lacking.
+    fn is_on_the_way(&self) -> bool {
+        self.share < 1.0
+    }
+
     /// The leg is only still climbing there: at the altitude of its end it would pass. So much higher it has to begin, metres.
     fn begin_higher_by_m(&self) -> Option<f64> {
         (self.below_end_m >= self.lacks_m()).then(|| self.lacks_m() / (1.0 - self.share))
@@ -67,7 +72,9 @@ impl Lowest {
 /// What has to change: the leg, or where it begins.
 fn advice(view: &Inspection, step: &Step, lowest: &Lowest) -> String {
     let Some(by_m) = lowest.begin_higher_by_m() else {
-        return format!("raise this leg by {:.0} m", lowest.lacks_m().ceil());
+        let before = view.before(step).filter(|_| lowest.is_on_the_way());
+        let too = before.map_or_else(String::new, |before| format!(" and `{}` before it", before.leg.id));
+        return format!("raise this leg{too} by {:.0} m", lowest.lacks_m().ceil());
     };
     let before = match view.before(step) {
         Some(before) => format!("`{}`", before.leg.id),
@@ -87,7 +94,8 @@ fn is_high(view: &Inspection, step: &Step) -> Option<bool> {
     Some(lowest_m - view.terrain.at_most_m(south_west, north_east)? >= MARGIN_M)
 }
 
-/// Begun higher, where it only has to climb before; else raised at both ends by what it lacks. To whole metres.
+/// Begun higher, where it only has to climb before; else raised by what it lacks, at both ends if it is nearest to the ground on the way.
+/// To whole metres.
 fn raised(view: &Inspection, step: &Step, lowest: &Lowest) -> Option<Edit> {
     let lift = |of: &Step, by_m| relevelled(view, &of.leg.id, of.altitude(), of.end?.altitude_amsl_m?, by_m);
     let before = view.before(step);
@@ -95,7 +103,7 @@ fn raised(view: &Inspection, step: &Step, lowest: &Lowest) -> Option<Edit> {
         return lift(before?, by_m);
     }
     let end = lift(step, lowest.lacks_m())?;
-    let Some(before) = before else { return Some(end) };
+    let Some(before) = before.filter(|_| lowest.is_on_the_way()) else { return Some(end) };
     Some(Edit::All(vec![lift(before, lowest.lacks_m())?, end]))
 }
 
@@ -132,7 +140,7 @@ fn clearance_m(view: &Inspection, at: Point, altitude_m: f64) -> Option<(f64, f6
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{codes_over, fixed, plan_with};
+    use crate::checks::testing::{codes_over, fixed, message_of, plan_with};
     use crate::{check, read};
     use aircraft::Profile;
     use geometry::LatLon;
@@ -172,7 +180,20 @@ mod tests {
         }
         let same = plan_with(&low.replace("700", "500"));
         let found = check(&read(same).plan, &Profile::default(), &Ridge(470.0));
-        assert!(found[0].message.starts_with("raise this leg by 20 m"), "{found:?}");
+        assert!(found[0].message.starts_with("raise this leg and `a` before it by 20 m"), "{found:?}");
+    }
+
+    /// A leg that leads too low, from one that is high enough, over flat ground at 300 m.
+    #[test]
+    fn only_the_leg_that_is_named_is_raised() {
+        let legs = r#"<IF id="a" fix="A"/><TF id="b" fix="B" altitude="250" altitudeReference="amsl"/>"#;
+        let plan = read(plan_with(legs)).plan;
+        let repaired = fixed(&plan_with(legs), "below-terrain");
+        let altitude = |plan: &crate::FlightPlan, id: &str| {
+            plan.leg(&id.into()).and_then(|context| context.leg.altitude.clone())
+        };
+        assert_eq!(altitude(&repaired, "a"), altitude(&plan, "a"));
+        assert!(message_of(legs, "below-terrain").starts_with("raise this leg by 100 m"));
     }
 
     /// Over flat ground at 300 m.
