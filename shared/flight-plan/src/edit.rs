@@ -196,6 +196,15 @@ pub enum Edit {
         /// What it is to name.
         to: Id,
     },
+    /// Corrects a variable's name in the expressions of a leg or stage.
+    CorrectName {
+        /// The leg or stage.
+        of: Id,
+        /// What it reads, or writes.
+        from: Id,
+        /// What it is to read, or write.
+        to: Id,
+    },
     /// Gives a leg, stage, fix, runway, zone, procedure, emergency plan or variable another identifier, and whatever refers to
     /// it. (Of a variable and a thing with one name: the thing.)
     SetId {
@@ -385,6 +394,7 @@ impl Edit {
             Edit::ReplaceLeg { leg, with } => *leg_mut(plan, leg)? = with.as_ref().clone(),
             Edit::Distinguish { id, to } => return repair::distinguish(plan, id, to),
             Edit::Refer { of, from, to } => return repair::refer(plan, of.as_ref(), from, to),
+            Edit::CorrectName { of, from, to } => return rename::in_expressions(plan, of, from, to),
             Edit::SetId { id, to } => return rename::anything(plan, id, to),
             Edit::SetTitle(name) => plan.name.clone_from(name),
             Edit::SetAircraft(name) => plan.aircraft.clone_from(name),

@@ -4,7 +4,7 @@
 use super::Inspection;
 use super::step::Step;
 use crate::expression::Type;
-use crate::{Id, Problem, Use};
+use crate::{Edit, Id, Problem, Use};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
@@ -33,7 +33,12 @@ fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, prob
         return problems.push(Problem::error("expression-too-large", message).of(of));
     };
     match compiled {
-        Err(error) => problems.push(Problem::error(error.code, error.to_string()).of(of)),
+        Err(error) => {
+            let problem = Problem::error(error.code, error.to_string()).of(of);
+            let correction = error.correction.clone();
+            let fix = correction.map(|(from, to)| Edit::CorrectName { of: of.clone(), from, to });
+            problems.push(problem.perhaps_fixed_by(fix));
+        }
         Ok(compiled) if wanted.is_some_and(|wanted| !compiled.gives(wanted)) => {
             let wanted = wanted.map_or_else(String::new, |wanted| wanted.to_string());
             let message = format!(
@@ -57,7 +62,26 @@ fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, prob
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{codes, document_with};
+    use crate::checks::testing::{codes, document_with, fixed};
+
+    /// Wherever the leg, or the stage, reads it; a text that says the same is no name.
+    #[test]
+    fn a_name_that_is_misspelt_is_corrected() {
+        let variables = r#"<variable name="orbit_radius" type="number" initial="300"/> <variable name="note" type="text" initial="x"/>"#;
+        let stage = |own: &str, inside: &str| {
+            let stages = format!(
+                r#"<stage id="s" type="mission" altitude="500" altitudeReference="amsl" {own}><IF id="a" fix="A"/>{inside}<TF id="b" fix="B"/></stage>"#
+            );
+            document_with(variables, &stages, "")
+        };
+        let orbit = r#"<orbit id="o" radius="= 2.0 * orbit_radiuz - orbit_radiuz" turn="left"><centre fix="C"/></orbit>"#;
+        let hold = r#"<HM id="h" fix="A" turn="left" length="600" until="note == 'orbit_radiuz' &amp;&amp; orbit_radiuz &gt; 1.0"/>"#;
+        for document in [stage("", orbit), stage("", hold), stage(r#"speed="= orbit_radiuz / 12.0""#, "")] {
+            let text = crate::write(&fixed(&document, "unknown-name"));
+            assert!(!text.replace("'orbit_radiuz'", "").contains("orbit_radiuz"), "{text}");
+            assert_eq!(text.contains("'orbit_radiuz'"), document.contains("'orbit_radiuz'"), "{text}");
+        }
+    }
 
     #[test]
     fn expressions_are_typed() {

@@ -48,6 +48,7 @@ pub fn look(plan: &FlightPlan, of: &Subject, source: &str, used: Use) -> Result<
             column: 1,
             source_text: source.into(),
             message: format!("this is {}, but {wanted} is needed here", compiled.kind),
+            correction: None,
         });
     }
     let mut variables = Variables::initial(plan);

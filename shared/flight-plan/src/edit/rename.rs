@@ -90,6 +90,17 @@ fn variable(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(), EditError> {
     Ok(())
 }
 
+/// Whatever reads or writes a variable in a leg or stage reads or writes another one.
+pub(super) fn in_expressions(plan: &mut FlightPlan, of: &Id, from: &Id, to: &Id) -> Result<(), EditError> {
+    let reader = Reader { from, to };
+    if plan.stage(of).is_some() {
+        stages_mut(plan).filter(|stage| stage.id == *of).for_each(|stage| reader.stage(stage));
+    } else {
+        reader.leg(super::leg_mut(plan, of)?);
+    }
+    Ok(())
+}
+
 /// Whatever reads or writes a variable.
 struct Reader<'a> {
     from: &'a Id,

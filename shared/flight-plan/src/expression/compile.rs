@@ -1,7 +1,7 @@
 //! From CEL source to a checked tree.
 
 use super::{Expression, ExpressionError, FlightName, Function, Node, Operator, Type};
-use crate::suggest::did_you_mean;
+use crate::suggest::{did_you_mean, meant, question};
 use crate::{FlightPlan, Id, Variable, VariableValue};
 use cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, SourceInfo, operators};
 use cel::parser::Parser;
@@ -49,8 +49,13 @@ pub fn compile(source: &str, plan: &FlightPlan) -> Result<Expression, Expression
 /// # Errors
 /// As [`compile`].
 pub fn compile_with(source: &str, names: &Names) -> Result<Expression, ExpressionError> {
-    let at_start =
-        |code, message: String| ExpressionError { code, column: 1, source_text: shorten(source), message };
+    let at_start = |code, message: String| ExpressionError {
+        code,
+        column: 1,
+        source_text: shorten(source),
+        message,
+        correction: None,
+    };
     if source.len() > MAX_LENGTH || bracket_depth(source) > MAX_DEPTH {
         return Err(at_start(
             "expression-too-large",
@@ -105,6 +110,7 @@ fn syntax_error(source: &str, errors: cel::ParseErrors) -> ExpressionError {
         column,
         source_text: shorten(source),
         message: format!("this is not a CEL expression, correct it: {complaint}"),
+        correction: None,
     }
 }
 
@@ -127,6 +133,7 @@ impl Checker<'_> {
             column: offset + 1,
             source_text: shorten(self.source),
             message: message.into(),
+            correction: None,
         }
     }
 
@@ -175,9 +182,11 @@ impl Checker<'_> {
             return Ok((Node::Flight(*flight), *kind));
         }
         let Some(variable) = self.names.variables.get(name) else {
-            let message =
-                format!("declare the variable `{name}` or correct its name{}", self.name_meant(name));
-            return Err(self.error(at, "unknown-name", message));
+            let meant = self.name_meant(name);
+            let asked = meant.map_or_else(String::new, question);
+            let message = format!("declare the variable `{name}` or correct its name{asked}");
+            let correction = meant.map(|meant| (Id::new(name), Id::new(meant)));
+            return Err(ExpressionError { correction, ..self.error(at, "unknown-name", message) });
         };
         let kind = match variable.initial {
             VariableValue::Bool(_) => Type::Bool,
@@ -193,9 +202,9 @@ impl Checker<'_> {
     }
 
     /// What a name that nobody knows was probably meant to be.
-    fn name_meant(&self, name: &str) -> String {
+    fn name_meant(&self, name: &str) -> Option<&str> {
         let of_flight = super::flight_names().map(|(known, _)| known);
-        did_you_mean(name, self.names.variables.keys().copied().chain(of_flight))
+        meant(name, self.names.variables.keys().copied().chain(of_flight))
     }
 
     fn call(&mut self, at: &IdedExpr, call: &CallExpr, depth: usize) -> Checked {

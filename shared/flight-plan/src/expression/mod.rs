@@ -63,6 +63,8 @@ pub struct ExpressionError {
     pub source_text: String,
     /// Says what to do.
     pub message: String,
+    /// A name that nobody knows, and the one that was probably meant.
+    pub correction: Option<(Id, Id)>,
 }
 
 /// A checked expression.
