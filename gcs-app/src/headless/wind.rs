@@ -3,8 +3,9 @@
 use aircraft::{Autopilot, Wind};
 use flight_exec::Conditions;
 use flight_exec::rehearse::Start;
-use flight_plan::FlightPlan;
+use flight_plan::{FlightPlan, LOWEST_AMSL_M};
 use geometry::LatLon;
+use geometry::geodesy::NEAR_POLE;
 
 /// Strongest wind that is accepted, m/s.
 const MAX_MPS: f64 = 50.0;
@@ -69,9 +70,14 @@ pub fn parse(text: &str) -> Result<Wind, String> {
 fn in_flight(text: &str) -> Result<Start, String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
     match numbers.as_deref() {
+        Some(&[lat, lon, ..])
+            if LatLon::new(lat, lon).is_valid() && !LatLon::new(lat, lon).is_navigable() =>
+        {
+            Err(format!("begin elsewhere: {NEAR_POLE}"))
+        }
         Some(&[lat, lon, altitude_amsl_m, heading_deg])
             if LatLon::new(lat, lon).is_navigable()
-                && (-500.0..=12_000.0).contains(&altitude_amsl_m)
+                && (LOWEST_AMSL_M..=12_000.0).contains(&altitude_amsl_m)
                 && (0.0..=360.0).contains(&heading_deg) =>
         {
             Ok(Start::InFlight { position: LatLon::new(lat, lon), altitude_amsl_m, heading_deg })
@@ -108,6 +114,12 @@ mod tests {
         ] {
             assert!(in_flight(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn near_a_pole_that_is_what_is_wrong() {
+        assert!(in_flight("89.5,0,500,0").is_err_and(|why| why.contains("pole")));
+        assert!(in_flight("95,0,500,0").is_err_and(|why| why.starts_with("write LAT,LON")));
     }
 
     #[test]

@@ -25,7 +25,7 @@ pub mod walk;
 pub mod xml;
 
 pub use alternate::{Alternates, InForce};
-pub use checks::{IncrementalCache, check, check_again};
+pub use checks::{IncrementalCache, LOWEST_AMSL_M, check, check_again};
 pub use diff::{Change, ChangeKind, Difference};
 pub use edit::shape::radius_of;
 pub use edit::{Edit, EditError, Spot, Thing};

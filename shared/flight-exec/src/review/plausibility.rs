@@ -3,12 +3,13 @@
 
 use crate::api::{Action, FARTHEST_M, Waypoint};
 use aircraft::Profile;
+use flight_plan::LOWEST_AMSL_M;
 use geometry::LatLon;
 use geometry::geodesy::{NEAR_POLE, normalise_180};
 use terrain::Terrain;
 
 /// Highest and lowest altitudes that make sense at all, metres AMSL.
-pub const ALTITUDES_M: std::ops::RangeInclusive<f64> = -500.0..=12_000.0;
+pub const ALTITUDES_M: std::ops::RangeInclusive<f64> = LOWEST_AMSL_M..=12_000.0;
 /// Height that an en-route waypoint keeps above the ground, metres.
 pub const TERRAIN_MARGIN_M: f64 = 20.0;
 /// Share by which a gradient may exceed the aircraft's: plans are checked to their own margins.

@@ -1,9 +1,12 @@
-//! `above-ceiling`: higher than the aircraft flies; `no-altitude`: nothing says how high a leg is flown.
+//! `above-ceiling`: higher than the aircraft flies; `bad-value`: far below any land; `no-altitude`: nothing says how high a leg is flown.
 
 use super::Inspection;
 use super::remedy::relevelled;
 use super::step::Step;
 use crate::{Altitude, AltitudeReference, Id, LegKind, Problem};
+
+/// Lower than any land (the shore of the Dead Sea is at −430 m), metres AMSL.
+pub const LOWEST_AMSL_M: f64 = -500.0;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     let main = view.plan.stages.iter().enumerate().map(|(i, stage)| (stage, view.home_at_m(i)));
@@ -12,7 +15,7 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         let own = stage.runway.as_ref().and_then(|id| view.runways.get(id).copied());
         let at = own.or(view.home()).map(|r| r.threshold);
         let amsl_m = stage.altitude.as_ref().zip(at).and_then(|(a, at)| view.altitude_amsl_m(a, at, home_m));
-        ceiling(view, amsl_m, (&stage.id, stage.altitude.as_ref()), problems);
+        bounds(view, amsl_m, (&stage.id, stage.altitude.as_ref()), problems);
     }
     // legs in document order: the first one is the main plan's first, if that has any
     view.steps().first().into_iter().for_each(|step| unknown(view, step, problems));
@@ -21,7 +24,7 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 /// That of a leg itself.
 pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = &step.leg;
-    ceiling(view, own_altitude_m(view, step), (&leg.id, leg.altitude.as_ref()), problems);
+    bounds(view, own_altitude_m(view, step), (&leg.id, leg.altitude.as_ref()), problems);
 }
 
 /// The altitude that is written on a leg, at its end or (if that is not known) over sea level.
@@ -35,12 +38,19 @@ fn own_altitude_m(view: &Inspection, step: &Step) -> Option<f64> {
     }
 }
 
-fn ceiling(
+fn bounds(
     view: &Inspection,
     amsl_m: Option<f64>,
     (of, written): (&Id, Option<&Altitude>),
     problems: &mut Vec<Problem>,
 ) {
+    // over unknown ground what is written has to be enough
+    let lowest_m = amsl_m.or_else(|| view.number(&written?.metres));
+    if lowest_m.is_some_and(|m| m < LOWEST_AMSL_M) {
+        let message =
+            format!("raise the altitude: {LOWEST_AMSL_M:.0} m AMSL is below any land, and this is lower");
+        problems.push(Problem::error("bad-value", message).of(of));
+    }
     let ceiling_m = view.profile.ceiling_amsl_m;
     if let Some(amsl_m) = amsl_m.filter(|m| *m > ceiling_m) {
         let message = format!(
@@ -64,7 +74,7 @@ fn unknown(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, codes, document, fixed_legs};
+    use crate::checks::testing::{check_legs, codes, document, fixed_legs, message_of, plan_with};
 
     #[test]
     fn above_the_ceiling_in_any_datum() {
@@ -76,6 +86,20 @@ mod tests {
             (&with(r#"altitude="2701" altitudeReference="home""#), &["above-ceiling"]),
         ]);
         fixed_legs(&[(&with(r#"altitude="2701" altitudeReference="agl""#), "above-ceiling")]);
+    }
+
+    #[test]
+    fn below_any_land_in_any_datum() {
+        for (reference, written) in [("amsl", "-501"), ("home", "-801"), ("agl", "-801"), ("amsl", "-1e308")]
+        {
+            let low = format!(r#"<DF id="a" fix="A" altitude="{written}" altitudeReference="{reference}"/>"#);
+            let message = message_of(&low, "bad-value");
+            assert!(message.starts_with("raise the altitude"), "{message}");
+        }
+        let stage = r#"<stage id="s" type="en-route" altitude="-1e308" altitudeReference="amsl"><DF id="a" fix="A"/></stage>"#;
+        assert!(codes(&document(stage)).contains(&"bad-value"));
+        let dead_sea = r#"<DF id="a" fix="A" altitude="-400" altitudeReference="amsl"/>"#;
+        assert!(!codes(&plan_with(dead_sea)).contains(&"bad-value"));
     }
 
     /// The second flight takes off from a field at 2400 m; what answers in both may be at either height.

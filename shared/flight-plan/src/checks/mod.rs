@@ -52,6 +52,7 @@ mod zones;
 #[cfg(test)]
 mod testing;
 
+pub use altitudes::LOWEST_AMSL_M;
 pub use incremental_cache::IncrementalCache;
 pub(crate) use inspection::Expressions;
 pub use scans::untied;
