@@ -2,7 +2,7 @@
 
 use crate::Export;
 use crate::note::Notes;
-use flight_plan::{Leg, LegContext, LegKind, Runway, Zone};
+use flight_plan::{Leg, LegContext, LegKind, Runway, Stage, Turnaround, Zone};
 use std::collections::HashSet;
 
 /// What a format keeps.
@@ -56,7 +56,17 @@ pub fn note_losses(export: &Export<'_>, kept: Kept, whole: &dyn Fn(&Leg) -> bool
             notes.push("emergency-not-carried", emergency.id.as_str(), message);
         }
     }
+    turnarounds(export, &flown, notes);
     places(export, kept, notes);
+}
+
+/// What the author states of the ground between two flights: no format has it, and energy is what a flight ends for.
+fn turnarounds(export: &Export<'_>, flown: &HashSet<&str>, notes: &mut Notes) {
+    let stated = |stage: &&Stage| stage.turnaround != Turnaround::default();
+    for stage in export.plan.stages.iter().filter(stated).filter(|stage| flown.contains(stage.id.as_str())) {
+        let message = "the turnaround of this landing is left out: whoever reads the file takes the next flight to begin at once, with all the energy";
+        notes.push("turnaround-not-carried", stage.id.as_str(), message);
+    }
 }
 
 fn places(export: &Export<'_>, kept: Kept, notes: &mut Notes) {
@@ -96,4 +106,47 @@ fn left_out(runway: &Runway) -> &'static str {
 
 fn has_limits(zone: &Zone) -> bool {
     zone.floor.is_some() || zone.ceiling.is_some() || !zone.active.is_empty()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Step;
+    use flight_exec::{Action, Token, Waypoint};
+    use geometry::LatLon;
+
+    const TWO_FLIGHTS: &str = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><mainPlan>
+        <stage id="m" type="mission"><DF id="a" lat="36.3" lon="-84.1" altitude="500" altitudeReference="amsl"/></stage>
+        <stage id="l" type="land" runway="R" turnaroundEnergy="0.5" turnaroundTime="900"/>
+        <stage id="t" type="take-off" runway="R" altitude="80" altitudeReference="home"/>
+        <stage id="l2" type="land" runway="R"/></mainPlan></flightPlan>"#;
+
+    fn step(leg: &str) -> Step {
+        let waypoint = Waypoint {
+            token: Token(1),
+            position: LatLon::new(36.3, -84.1),
+            altitude_amsl_m: 500.0,
+            airspeed_mps: 25.0,
+            action: Action::Fly,
+            fly_over: false,
+            on_arc: false,
+            leg: leg.into(),
+            end_of_plan: false,
+        };
+        Step { waypoint, passage: 0 }
+    }
+
+    #[test]
+    fn energy_between_two_flights_is_not_lost_in_silence() {
+        let plan = flight_plan::read(TWO_FLIGHTS.as_bytes()).plan;
+        let told = |flown: &[&str]| {
+            let steps: Vec<Step> = flown.iter().map(|leg| step(leg)).collect();
+            let mut notes = Notes::default();
+            note_losses(&Export { plan: &plan, steps: &steps }, Kept::default(), &|_| false, &mut notes);
+            let notes = notes.into_vec().into_iter().filter(|n| n.code == "turnaround-not-carried");
+            notes.map(|note| note.place).collect::<Vec<_>>()
+        };
+        assert_eq!(told(&["a", "l", "t", "l2"]), ["l"]);
+        assert_eq!(told(&["a"]), [""; 0]);
+    }
 }
