@@ -205,3 +205,64 @@ fn areas_become_what_is_asked_for() {
     let point = import(Format::GeoJson, br#"{"type":"Point","coordinates":[-84,36]}"#);
     assert!(!point.has_areas());
 }
+
+/// A plan of stages in the research's XML, of one stage.
+fn stage(legs: &str) -> Import {
+    let text =
+        format!("<FlightPlan><MainFP><stages><stage id='A'>{legs}</stage></stages></MainFP></FlightPlan>");
+    import(Format::FpXml, text.as_bytes())
+}
+
+fn track(id: &str, lat: f64, next: &str) -> String {
+    let next = if next.is_empty() { String::new() } else { format!("<next>{next}</next>") };
+    format!(
+        "<leg id='{id}' xsi_type='TFLeg'><dest><coordinates>{lat} -84</coordinates><altitude>500</altitude></dest>{next}</leg>"
+    )
+}
+
+#[test]
+fn branches_that_lead_back_into_a_loop_belong_to_it() {
+    let body = |body: &str| {
+        stage(&format!(
+            "<leg id='loop' xsi_type='IterativeLeg'><body>{body}</body><upperBound>2</upperBound><first>in</first><last>out</last>\
+             <next>end</next></leg>{}<leg id='ask' xsi_type='IntersectionLeg'><nextList>left right away</nextList></leg>\
+             {}{}{}{}{}",
+            track("in", 36.1, ""),
+            track("left", 36.2, "left2"),
+            track("left2", 36.3, "out"),
+            track("right", 36.4, "out"),
+            track("out", 36.5, ""),
+            track("end", 36.6, "") + &track("away", 36.7, "end"),
+        ))
+    };
+    for named in ["in ask out", "in ask"] {
+        let import = body(named);
+        let lines = outline(&import.plan);
+        let fork = lines.iter().find(|line| line.contains("ask: fork")).unwrap();
+        assert!(fork.contains("left to left") || fork.contains("left to the next"), "{lines:#?}");
+        assert!(fork.contains("right to right"), "{lines:#?}");
+        let inside = |leg: &str| lines.iter().any(|line| line.starts_with(&format!("    {leg}: ")));
+        assert!(["in", "left", "left2", "right", "out"].into_iter().all(inside), "{lines:#?}");
+        assert!(!inside("end") && !inside("away"));
+        // nothing can be done for a branch that leaves the loop
+        assert_eq!(said(&import, "branch-across-loop"), 1, "{named}");
+    }
+}
+
+#[test]
+fn stage_that_does_not_say_where_it_begins_begins_where_nobody_leads_to() {
+    let backwards = stage(&(track("fin", 36.1, "") + &track("mid", 36.2, "fin") + &track("go", 36.3, "mid")));
+    assert_eq!(
+        outline(&backwards.plan),
+        [
+            "A",
+            "  go: DF 36.3 -84, 500 amsl, then mid",
+            "  fin: TF 36.1 -84, 500 amsl, then A.end",
+            "  mid: TF 36.2 -84, 500 amsl, then fin",
+            "  A.end: fork"
+        ]
+    );
+    assert_eq!(said(&backwards, "order-assumed"), 1);
+    let forwards = stage(&(track("go", 36.3, "mid") + &track("mid", 36.2, "fin") + &track("fin", 36.1, "")));
+    assert_eq!((outline(&forwards.plan).len(), said(&forwards, "order-assumed")), (4, 0));
+}

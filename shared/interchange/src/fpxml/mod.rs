@@ -6,6 +6,7 @@
 //! itself: a loop names its body, a fork its branches, a leg the one that comes after it. Here loops hold their bodies, and
 //! branches meet where the stage ends.
 
+mod flow;
 mod leg;
 mod listed;
 mod locale;

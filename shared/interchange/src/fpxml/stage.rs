@@ -16,19 +16,19 @@ const MAX_DEPTH: usize = 8;
 const DECIDE_BEFORE_S: f64 = 30.0;
 
 /// The legs of a stage as they are written, by their place in the document.
-struct Flat<'a> {
-    legs: Vec<&'a Element>,
+pub(super) struct Flat<'a> {
+    pub(super) legs: Vec<&'a Element>,
     /// Their identifiers in the document, and in the plan.
-    names: Vec<String>,
+    pub(super) names: Vec<String>,
     ids: Vec<Id>,
-    index: HashMap<String, usize>,
+    pub(super) index: HashMap<String, usize>,
     known: HashSet<String>,
     /// The loop that each is in.
     inside: Vec<Option<usize>>,
     /// The bodies of the loops.
     bodies: HashMap<usize, Vec<usize>>,
     /// Legs that the stage ends with.
-    last: HashSet<usize>,
+    pub(super) last: HashSet<usize>,
 }
 
 impl Flat<'_> {
@@ -63,11 +63,14 @@ enum After {
 impl Reader<'_> {
     /// The legs of a stage.
     pub(super) fn legs(&mut self, stage: &Element, of: &Id) -> Vec<Arc<Leg>> {
-        let flat = self.flat(stage);
+        let mut flat = self.flat(stage);
         let mut list: Vec<usize> =
             (0..flat.legs.len()).filter(|leg| flat.inside.get(*leg) == Some(&None)).collect();
         let initial = flat.listed(stage.text_of("initialLegs"));
-        self.first(&flat, &mut list, initial.first());
+        match initial.first() {
+            Some(first) => self.first(&flat, &mut list, Some(first)),
+            None => self.begin_by_next(&mut flat, &mut list, stage),
+        }
         self.list(&flat, &list, of, false)
     }
 
@@ -104,12 +107,13 @@ impl Reader<'_> {
         let Some(element) = flat.legs.get(at).copied().filter(|leg| kind_of(leg) == "iterative") else {
             return;
         };
+        let end = |name: &str| flat.index.get(&spaced(element.text_of(name))).copied();
         let mut members: Vec<usize> = self.found(flat, Some(element), "body").into_iter().flatten().collect();
         if members.is_empty() {
-            let end = |name: &str| flat.index.get(&spaced(element.text_of(name))).copied();
             members =
                 end("first").zip(end("last")).map_or(Vec::new(), |(first, last)| (first..=last).collect());
         }
+        let members = self.with_branches(flat, members, end("last"));
         for name in flat.listed(element.text_of("body")).iter().filter(|name| !flat.index.contains_key(*name))
         {
             self.unknown(element, name);
@@ -133,7 +137,7 @@ impl Reader<'_> {
     }
 
     /// The legs that a child of a leg names; `None`: not one of this stage.
-    fn found(&self, flat: &Flat<'_>, element: Option<&Element>, list: &str) -> Vec<Option<usize>> {
+    pub(super) fn found(&self, flat: &Flat<'_>, element: Option<&Element>, list: &str) -> Vec<Option<usize>> {
         let text = element.map_or("", |element| element.text_of(list));
         flat.listed(text).iter().map(|name| flat.index.get(name).copied()).collect()
     }
@@ -150,7 +154,7 @@ impl Reader<'_> {
     }
 
     /// Brings the leg that a list begins with to its front.
-    fn first(&mut self, flat: &Flat<'_>, list: &mut [usize], name: Option<&String>) {
+    pub(super) fn first(&mut self, flat: &Flat<'_>, list: &mut [usize], name: Option<&String>) {
         let first = name.and_then(|name| flat.index.get(name));
         if let Some(at) = first.and_then(|first| list.iter().position(|leg| leg == first))
             && let Some(front) = list.get_mut(..=at)
@@ -175,6 +179,14 @@ impl Reader<'_> {
             if let LegKind::Intersection { branches, .. } = &mut leg.kind {
                 let heads = self.found(flat, flat.legs.get(at).copied(), "nextList");
                 for (branch, head) in branches.iter_mut().zip(heads) {
+                    if head.is_some_and(|head| !order.after.contains_key(&head)) {
+                        let place = flat.legs.get(at).map_or(String::new(), |fork| fork.place());
+                        let message = format!(
+                            "branch `{}` leads into or out of a loop, which no branch can: it goes on where the legs around the fork end",
+                            branch.id
+                        );
+                        self.notes.push("branch-across-loop", place, message);
+                    }
                     branch.next = name(order.goal(head.map_or(After::End, After::Leg)));
                 }
             } else {
@@ -191,11 +203,7 @@ impl Reader<'_> {
     /// Where it goes on behind each leg of a list.
     fn order(&mut self, flat: &Flat<'_>, list: &[usize], kept: Vec<usize>, is_body: bool) -> Order {
         let place: HashMap<usize, usize> = list.iter().enumerate().map(|(at, leg)| (*leg, at)).collect();
-        let mut heads = HashSet::new();
-        for at in list {
-            let element = flat.legs.get(*at).copied().filter(|leg| kind_of(leg) == "intersection");
-            heads.extend(self.found(flat, element, "nextList").into_iter().flatten());
-        }
+        let heads: HashSet<usize> = list.iter().flat_map(|leg| self.heads(flat, *leg)).collect();
         let mut after = HashMap::new();
         for (at, leg) in list.iter().enumerate() {
             let Some(element) = flat.legs.get(*leg) else { continue };
@@ -311,7 +319,7 @@ impl Order {
 }
 
 /// The leg that comes after one, as its text names it: of the leg, or of its destination.
-fn next_of(element: &Element) -> &str {
+pub(super) fn next_of(element: &Element) -> &str {
     let next = element.text_of("next");
     if next.is_empty() { element.child("dest").map_or("", |dest| dest.text_of("next")) } else { next }
 }
