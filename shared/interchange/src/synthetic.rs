@@ -141,11 +141,43 @@ pub fn plan(assumptions: &Assumptions, vehicle: Vehicle, notes: &mut Notes) -> F
     FlightPlan { name: assumptions.name.clone(), aircraft, ..FlightPlan::default() }
 }
 
+/// Speeds nearer than this are the same, m/s: in words, and for what is flown.
+const ABOUT_MPS: f64 = 1.0;
+const SAME_MPS: f64 = 0.05;
+
+fn cruise_mps(aircraft: &str) -> Option<f64> {
+    Profile::by_name(aircraft).ok().map(|profile| profile.cruise_airspeed_mps)
+}
+
+/// The usual airspeed of the file, m/s, where the aircraft chosen has another; `None`, with a note, if it can't fly it. Of an aircraft
+/// that is not one of ours a check of the plan knows better.
+pub fn own_cruise_mps(aircraft: &str, vehicle: Vehicle, notes: &mut Notes) -> Option<f64> {
+    let speed_mps = vehicle.cruise_mps.filter(|speed| *speed > 0.0)?;
+    let Ok(Profile { min_airspeed_mps, max_airspeed_mps, cruise_airspeed_mps, .. }) =
+        Profile::by_name(aircraft)
+    else {
+        return Some(speed_mps);
+    };
+    if (min_airspeed_mps..=max_airspeed_mps).contains(&speed_mps) {
+        return Some(speed_mps).filter(|speed| (speed - cruise_airspeed_mps).abs() > SAME_MPS);
+    }
+    let message = format!(
+        "the file's usual speed of {speed_mps} m/s is left out: the aircraft flies {min_airspeed_mps} to {max_airspeed_mps} m/s, and {cruise_airspeed_mps} m/s where no leg says otherwise"
+    );
+    notes.push("speed-not-flown", "file", message);
+    None
+}
+
 fn suiting(vehicle: Vehicle, notes: &mut Notes) -> &'static str {
     let name = Profile::suiting(vehicle.cruise_mps, vehicle.is_vtol);
     let why = match vehicle {
         Vehicle { is_vtol: true, .. } => "it takes off or lands upright".to_owned(),
-        Vehicle { cruise_mps: Some(speed), .. } => format!("it flies at {speed:.0} m/s"),
+        Vehicle { cruise_mps: Some(speed), .. } => match cruise_mps(name) {
+            Some(own) if (own - speed).abs() > ABOUT_MPS => {
+                format!("of those there are, its {own:.0} m/s are nearest to the {speed:.0} m/s of the file")
+            }
+            _ => format!("it flies at {speed:.0} m/s"),
+        },
         Vehicle { .. } => "the file doesn't say how fast it flies".to_owned(),
     };
     let message = format!(

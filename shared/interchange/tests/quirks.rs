@@ -266,3 +266,58 @@ fn stage_that_does_not_say_where_it_begins_begins_where_nobody_leads_to() {
     let forwards = stage(&(track("go", 36.3, "mid") + &track("mid", 36.2, "fin") + &track("fin", 36.1, "")));
     assert_eq!((outline(&forwards.plan).len(), said(&forwards, "order-assumed")), (4, 0));
 }
+
+#[test]
+fn speed_of_the_file_is_flown_where_the_aircraft_can() {
+    let square = |speed: &str| {
+        let text = format!(
+            r#"{{"fileType":"Plan","version":1,"mission":{{"cruiseSpeed":{speed},"items":[{{"type":"SimpleItem","command":16,"frame":3,
+            "params":[0,0,0,null,36.1,-84.1,90]}}],"plannedHomePosition":[36,-84,300],"version":2}}}}"#
+        );
+        let import = import(Format::Plan, text.as_bytes());
+        let told = import.notes.iter().find(|note| note.code == "aircraft-assumed").unwrap().message.clone();
+        (import.plan.stages[0].speed_mps.clone(), told, said(&import, "speed-not-flown"))
+    };
+    let (speed, told, _) = square("18");
+    assert_eq!(speed, Some(flight_plan::Value::Constant(18.0)));
+    assert!(told.contains("18 m/s") && told.contains("20 m/s"), "{told}");
+    let (speed, told, left_out) = square("20");
+    assert_eq!((speed, left_out), (None, 0));
+    assert!(told.contains("it flies at 20 m/s"), "{told}");
+    let (speed, told, left_out) = square("90");
+    assert_eq!((speed, left_out), (None, 1));
+    assert!(told.contains("`fast-wing`") && told.contains("90 m/s") && told.contains("38 m/s"), "{told}");
+}
+
+/// Home is at 36/-84; the mission comes back from the north.
+fn there_and_back(take_off: &str, end: &str) -> Import {
+    let text = format!(
+        "QGC WPL 110\n0 1 0 16 0 0 0 0 36 -84 300 1\n1 0 3 22 0 0 0 0 {take_off} 50 1\n\
+         2 0 3 16 0 0 0 0 36.01 -83.99 100 1\n3 0 3 16 0 0 0 0 36.02 -84 100 1\n4 0 {end} 1\n"
+    );
+    import(Format::Waypoints, text.as_bytes())
+}
+
+#[test]
+fn take_off_and_landing_at_one_place_have_one_runway_towards_what_is_flown() {
+    for (take_off, end) in
+        [("0 0", "3 20 0 0 0 0 0 0 0"), ("36 -84", "3 20 0 0 0 0 0 0 0"), ("36 -84", "3 21 0 0 0 0 36 -84 0")]
+    {
+        let import = there_and_back(take_off, end);
+        let [runway] = &import.plan.runways[..] else { panic!("{:?}", import.plan.runways) };
+        assert!((38.0..40.0).contains(&runway.heading_deg), "{take_off}: {runway:?}");
+        assert_eq!((said(&import, "runway-made-up"), said(&import, "landing-direction")), (1, 1));
+        assert!(
+            import.plan.stages.iter().all(|stage| stage.runway.as_ref().is_none_or(|id| *id == runway.id))
+        );
+    }
+    let elsewhere = there_and_back("0 0", "3 21 0 0 0 0 36.001 -84 0");
+    assert_eq!((elsewhere.plan.runways.len(), said(&elsewhere, "landing-direction")), (2, 0));
+}
+
+#[test]
+fn command_beyond_every_number_is_told_as_what_it_is() {
+    let import = list("1 0 3 123456789012345678901 0 0 0 0 36.01 -83.99 100 1\n");
+    let told = import.notes.iter().find(|note| note.code == "command-not-carried").unwrap();
+    assert!(!told.message.contains("65535"), "{told}");
+}

@@ -142,6 +142,8 @@ const DESCRIBED: &[(u16, &str)] = &[
 pub fn shown(command: u16) -> String {
     match DESCRIBED.iter().find(|(number, _)| *number == command) {
         Some((number, name)) => format!("command {number} ({name})"),
+        // what a file has beyond it is kept as it
+        None if command == u16::MAX => "a command that MAVLink doesn't have".to_owned(),
         None => format!("command {command}"),
     }
 }

@@ -38,8 +38,9 @@ impl Importer<'_> {
     fn home_runway(&mut self, item: &Item, ahead: Option<LatLon>) -> Option<(Id, LatLon)> {
         let position = self.home.or(item.position()).or(ahead)?;
         let elevation_m = self.home_amsl_m(&item.place);
-        let direction =
-            Direction { heading_deg: item.param(4), towards: item.position().or(ahead), from: None };
+        // many write the take-off at home itself
+        let away = item.position().filter(|at| at.distance_m(position) > SAME_M);
+        let direction = Direction { heading_deg: item.param(4), towards: away.or(ahead), from: None };
         let naming = (&mut *self.names, &mut *self.notes);
         let id = self.runways.at("runway", (position, elevation_m), direction, &item.place, naming);
         Some((id, position))

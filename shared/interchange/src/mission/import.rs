@@ -21,6 +21,7 @@ pub fn read(mut mission: Mission, assumptions: &Assumptions, mut notes: Notes) -
     let mut names = Names::default();
     let runways = Runways::new(assumptions, &mut names);
     let mut plan = synthetic::plan(assumptions, mission.vehicle(), &mut notes);
+    let cruise_mps = synthetic::own_cruise_mps(&plan.aircraft, mission.vehicle, &mut notes);
     let has_take_off = takes_off(&mission);
     let home_amsl_m = mission.home_amsl_m.or(assumptions.runway.as_ref().map(|r| r.elevation_amsl_m));
     let mut importer = Importer {
@@ -39,6 +40,7 @@ pub fn read(mut mission: Mission, assumptions: &Assumptions, mut notes: Notes) -
         legs: Vec::new(),
         pending: Vec::new(),
         speed_mps: None,
+        cruise_mps,
         level: None,
         last: None,
         passed: None,
@@ -113,6 +115,8 @@ pub(super) struct Importer<'a> {
     /// Actions that wait for the leg they begin with.
     pending: Vec<LegAction>,
     speed_mps: Option<f64>,
+    /// The airspeed of what no item gives one, m/s; `None`: the aircraft's own.
+    cruise_mps: Option<f64>,
     /// The altitude of the last leg that has one, before that of the take-off.
     pub(super) level: Option<Altitude>,
     /// Where the last leg ends, if the file says.
@@ -353,6 +357,7 @@ impl Importer<'_> {
             {
                 first.kind = LegKind::Df { to: to.clone(), turn: None };
             }
+            mission.speed_mps = self.cruise_mps.map(Value::Constant);
             mission.legs = legs.into_iter().map(Into::into).collect();
             self.flown.push(mission);
         }

@@ -30,7 +30,7 @@ pub fn add(
         let nearest = plan.runways.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let Some(runway) = nearest.filter(|r| distance(r) <= NEAR_M) else {
             let message = format!(
-                "rally point {:.7} {:.7} is left out: an emergency plan ends on a runway, and none is within {NEAR_M:.0} m",
+                "rally point {:.7} {:.7} is left out: an emergency plan ends on a runway, and none is within {NEAR_M:.0} m; where an aeroplane can land there, add a runway (without the mission the point becomes one)",
                 position.lat_deg, position.lon_deg
             );
             notes.push("rally-without-runway", place, message);

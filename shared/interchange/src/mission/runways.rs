@@ -5,6 +5,7 @@ use crate::note::Notes;
 use crate::synthetic::{Assumptions, runway};
 use flight_plan::{Id, Runway};
 use geometry::LatLon;
+use geometry::geodesy::{normalise_180, normalise_360};
 
 /// Two points nearer than this are one place, metres: one runway, which they give no direction; no track leads from one to the other.
 pub const SAME_M: f64 = 1.0;
@@ -40,9 +41,21 @@ impl<'a> Runways<'a> {
             return given.id.clone();
         }
         let heading_deg = direction.heading_deg(point.0);
-        if let Some(same) = self.list.iter().find(|r| {
-            r.threshold.distance_m(point.0) < SAME_M && (r.heading_deg - heading_deg).abs() < SAME_DEG
-        }) {
+        let off_deg = |r: &Runway| normalise_180(r.heading_deg - heading_deg).abs();
+        // what only shows from where somebody comes makes no second runway
+        let is_same = |r: &&Runway| {
+            let is_as_high = (r.elevation_amsl_m - point.1).abs() <= SAME_M;
+            let may_turn = is_as_high && !direction.is_said();
+            r.threshold.distance_m(point.0) < SAME_M && (may_turn || off_deg(r) < SAME_DEG)
+        };
+        if let Some(same) = self.list.iter().find(is_same) {
+            if off_deg(same) >= SAME_DEG {
+                let message = format!(
+                    "this lands on runway `{}`, which begins at the same place, in its direction {:.0}°, not in that of the arrival, {heading_deg:.0}°; give the landing a runway of its own if that is wrong",
+                    same.id, same.heading_deg
+                );
+                notes.push("landing-direction", place, message);
+            }
             if (same.elevation_amsl_m - point.1).abs() > SAME_M {
                 let message = format!(
                     "the altitude of this landing, {:.0} m AMSL, is left out: runway `{}` is {:.0} m high",
@@ -78,9 +91,14 @@ pub struct Direction {
 }
 
 impl Direction {
+    /// The mission gives it.
+    fn is_said(self) -> bool {
+        self.heading_deg.is_finite() && self.heading_deg != 0.0
+    }
+
     fn heading_deg(self, at: LatLon) -> f64 {
-        if self.heading_deg.is_finite() && self.heading_deg != 0.0 {
-            return geometry::geodesy::normalise_360(self.heading_deg % 360.0);
+        if self.is_said() {
+            return normalise_360(self.heading_deg % 360.0);
         }
         let far = |p: &LatLon| p.distance_m(at) > SAME_M;
         match (self.towards.filter(far), self.from.filter(far)) {

@@ -101,7 +101,7 @@ fn versions(file: &Value, notes: &mut Notes) {
 }
 
 /// Legwork flies aeroplanes: what another vehicle flies by turning on the spot comes out with turns.
-/// QGC's cruise speed chooses the aircraft; no item commands it, so no leg gets it.
+/// QGC's cruise speed chooses the aircraft, and is flown where no item commands another.
 fn vehicle(mission: &Value, notes: &mut Notes) -> Vehicle {
     let kind = mission.get("vehicleType").and_then(Value::as_u64).unwrap_or(0);
     if kind != 0 && kind != FIXED_WING && !VTOL.contains(&kind) {
