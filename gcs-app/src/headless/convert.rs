@@ -18,7 +18,7 @@ pub struct Target {
     #[arg(id = "written", value_name = "OUTPUT", help_heading = None::<&str>)]
     pub file: PathBuf,
     /// Its format, instead of the one that its extension names.
-    #[arg(long, value_name = "FORMAT", value_parser = foreign::format)]
+    #[arg(long, value_name = "FORMAT", value_parser = foreign::written)]
     pub to: Option<FileFormat>,
     /// Exit status 1 if anything was assumed or left out.
     #[arg(long)]

@@ -7,6 +7,7 @@ use super::wind::Air;
 use super::{Source, check, forecast, foreign};
 use crate::export::{self, Unflown};
 use crate::formats::FileFormat;
+use crate::say;
 use flight_exec::rehearse::Preview;
 use flight_plan::Program;
 use interchange::{Export, Note, csv};
@@ -23,8 +24,8 @@ pub struct Written {
     /// CSV of all that is sent, with tokens and times (what comes without options, too).
     #[arg(long, conflicts_with_all = ["json", "to"])]
     pub csv: bool,
-    /// Another program's format: plan, waypoints, kml, kmz, geojson, gpx or fpxml; csv is what `legwork convert` writes.
-    #[arg(long, value_name = "FORMAT", value_parser = foreign::format)]
+    /// Another program's format: plan, waypoints, kml, kmz, geojson or gpx; csv is what `legwork convert` writes.
+    #[arg(long, value_name = "FORMAT", value_parser = foreign::written)]
     pub to: Option<FileFormat>,
     /// A file instead of standard output; its extension is the format.
     #[arg(long, short, value_name = "FILE")]
@@ -80,7 +81,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, written: &Written) 
             anyhow::bail!("a flight plan holds legs, not waypoints: use `legwork convert`")
         }
         None if written.json || written.is_named("json") => {
-            format!("{:#}\n", document(&preview, selection)).into_bytes()
+            format!("{}\n", say::json(&document(&preview, selection, &notes))).into_bytes()
         }
         None => csv(&preview, selection).into_bytes(),
     };
@@ -94,7 +95,7 @@ pub struct Flown {
     pub program: Arc<Program>,
     /// How.
     pub preview: Preview,
-    /// What was assumed or left out of a plan of another program.
+    /// What was assumed or left out of a plan of another program, and which legs could not be laid out.
     pub notes: Vec<Note>,
 }
 
@@ -117,10 +118,12 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
             complain!("{}: the flight never reaches the named leg", source.file.display());
             Ok(Err(ExitCode::from(1)))
         }
-        Ok((_, preview)) if !selection.goes_without(&forecast::left_out(&preview), &source.file) => {
-            Ok(Err(ExitCode::from(1)))
+        Ok((program, preview)) => {
+            let without = selection.without(&forecast::left_out(&preview), &source.file);
+            let flown =
+                without.map(|left_out| Flown { program, preview, notes: [loaded.notes, left_out].concat() });
+            Ok(flown.ok_or(ExitCode::from(1)))
         }
-        Ok((program, preview)) => Ok(Ok(Flown { program, preview, notes: loaded.notes })),
         Err(unflown) => Ok(Err(print_unflown(&source.file, &loaded, &unflown))),
     }
 }
@@ -144,9 +147,9 @@ fn print_unflown(file: &Path, loaded: &Loaded, unflown: &Unflown) -> ExitCode {
     ExitCode::from(1)
 }
 
-fn document(preview: &Preview, selection: &Selection) -> serde_json::Value {
+fn document(preview: &Preview, selection: &Selection, notes: &[Note]) -> serde_json::Value {
     let selected: Vec<_> = preview.waypoints.iter().filter(|w| selection.takes(w.passage, preview)).collect();
-    serde_json::json!({"waypoints": selected})
+    serde_json::json!({"waypoints": selected, "notes": notes})
 }
 
 /// One line for each waypoint as it is sent, those that are replaced before they are reached too.
@@ -259,5 +262,10 @@ mod tests {
             "{left_out:?}"
         );
         assert!(flown.preview.waypoints.iter().all(|w| w.waypoint.leg.as_str() != "b"));
+        let document = document(&flown.preview, &without, &flown.notes);
+        assert_eq!(
+            (&document["notes"][0]["code"], &document["notes"][0]["place"]),
+            (&"leg-left-out".into(), &"b".into())
+        );
     }
 }

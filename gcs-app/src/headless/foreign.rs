@@ -10,7 +10,7 @@ use std::path::Path;
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct Foreign {
     /// Format of the file, instead of guessing it from its name and content.
-    #[arg(long, value_name = "FORMAT", value_parser = format)]
+    #[arg(long, value_name = "FORMAT", value_parser = read)]
     pub from: Option<FileFormat>,
     /// Name of the aircraft profile that the plan is for [default: the one that suits what the file says of its vehicle].
     #[arg(long, value_name = "NAME")]
@@ -29,13 +29,26 @@ pub struct Foreign {
     pub areas: Areas,
 }
 
-/// A format's name on the command line.
+/// The name of a format that is read, on the command line.
+fn read(name: &str) -> Result<FileFormat, String> {
+    format(name, Format::is_read)
+}
+
+/// The name of a format that is written, on the command line.
 ///
 /// # Errors
 /// The names there are.
-pub fn format(name: &str) -> Result<FileFormat, String> {
-    let known = || Format::ALL.map(|(name, _)| name).join(", ");
-    FileFormat::by_name(name).ok_or_else(|| format!("write one of xml, {}", known()))
+pub fn written(name: &str) -> Result<FileFormat, String> {
+    format(name, Format::is_written)
+}
+
+/// A format by its name. What another format is not good for is said when it is used.
+fn format(name: &str, is_good: fn(Format) -> bool) -> Result<FileFormat, String> {
+    FileFormat::by_name(name).ok_or_else(|| {
+        let good = Format::ALL.iter().filter(|(_, format)| is_good(*format));
+        let names: Vec<_> = good.map(|(name, _)| *name).collect();
+        format!("write one of xml, {}", names.join(", "))
+    })
 }
 
 fn areas(name: &str) -> Result<Areas, String> {
@@ -122,7 +135,10 @@ mod tests {
 
     #[test]
     fn formats_there_are_are_listed() {
-        assert!(format("dwg").unwrap_err().contains("geojson"));
+        let (read, written) = (read("dwg").unwrap_err(), written("dwg").unwrap_err());
+        assert!(read.contains("geojson") && written.contains("geojson"));
+        assert!(read.contains("fpxml") && !read.contains("csv"), "{read}");
+        assert!(written.contains("csv") && !written.contains("fpxml"), "{written}");
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::report;
 use crate::say;
 use flight_exec::rehearse::{Glide, Preview, Stop, glide_instead};
 use flight_plan::{Cause, Id};
+use interchange::Note;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -76,9 +77,11 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
         complain!("{}: refused after {seconds:.0} s: {refusal}", source.file.display());
         return Ok(ExitCode::from(1));
     }
-    if !selection.goes_without(&forecast::left_out(&preview), &source.file) {
+    let Some(without) = selection.without(&forecast::left_out(&preview), &source.file) else {
         return Ok(ExitCode::from(1));
-    }
+    };
+    foreign::print_notes(&source.file, &without);
+    let notes = [loaded.notes.as_slice(), &without].concat();
     let glide = match selection.cause {
         Some(Cause::Engine) => glide_instead(&program, profile, loaded.terrain.as_ref(), air.wind, &preview),
         _ => None,
@@ -95,7 +98,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
             report::write(&record, &target.out, &Progress::default())?;
         }
     }
-    print(&source.file, target, &preview, glide.as_deref())?;
+    print(&source.file, target, (&preview, &notes), glide.as_deref())?;
     if let Some(error) = cut_short {
         complain!("{}: shown as far as it goes: {}", source.file.display(), forecast::why(&program, &error));
     }
@@ -103,10 +106,15 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
 }
 
 /// The outcome on standard output.
-fn print(file: &Path, target: &Target, preview: &Preview, glide: Option<&str>) -> std::io::Result<()> {
+fn print(
+    file: &Path,
+    target: &Target,
+    (preview, notes): (&Preview, &[Note]),
+    glide: Option<&str>,
+) -> std::io::Result<()> {
     if target.json {
         let pictures = target.diagram.as_ref().unwrap_or(&target.out);
-        return say::document(&document(file, preview, pictures, glide));
+        return say::document(&document(file, (preview, notes), pictures, glide));
     }
     say!("{}", line(file, preview, target))?;
     match glide {
@@ -153,7 +161,12 @@ fn stops(preview: &Preview) -> String {
     preview.stops.iter().map(stop).collect()
 }
 
-fn document(file: &Path, preview: &Preview, out: &Path, glide: Option<&str>) -> serde_json::Value {
+fn document(
+    file: &Path,
+    (preview, notes): (&Preview, &[Note]),
+    out: &Path,
+    glide: Option<&str>,
+) -> serde_json::Value {
     serde_json::json!({
         "file": file.display().to_string(),
         "out": out.display().to_string(),
@@ -165,6 +178,7 @@ fn document(file: &Path, preview: &Preview, out: &Path, glide: Option<&str>) -> 
         "legs": preview.legs,
         "stops": preview.stops,
         "glide": glide,
+        "notes": notes,
     })
 }
 

@@ -8,7 +8,7 @@ use flight_exec::{Branching, Command};
 use flight_plan::suggest::did_you_mean;
 use flight_plan::{Cause, FlightPlan, Id, LegKind, Variable, VariableValue};
 use geometry::LatLon;
-use interchange::Step;
+use interchange::{Note, Step};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -63,13 +63,9 @@ impl Selection {
     pub fn prepare(&self, loaded: &mut Loaded) -> anyhow::Result<()> {
         for (name, text) in &self.set {
             let plan = loaded.plan_mut();
-            let names = || plan.variables.iter().map(|v| v.name.to_string()).collect::<Vec<_>>().join(", ");
-            let known = names();
+            let known = names_there_are(name, plan.variables.iter().map(|v| v.name.as_str()));
             let variable = plan.variables.iter_mut().find(|v| v.name.as_str() == name);
-            let variable = variable.ok_or_else(|| {
-                let meant = did_you_mean(name, known.split(", "));
-                anyhow!("there is no variable `{name}`: there are {known}{meant}")
-            })?;
+            let variable = variable.ok_or_else(|| anyhow!("there is no variable `{name}`: {known}"))?;
             let value = value(variable, text)?;
             variable.accepts(&value).map_err(|e| anyhow!("{name}: {e}"))?;
             variable.initial = value;
@@ -109,9 +105,8 @@ impl Selection {
         let Some(name) = &self.emergency else { return Ok(None) };
         let found = plan.emergency_plans.iter().find(|e| e.id.as_str() == name);
         found.map(|emergency| Some(emergency.id.clone())).ok_or_else(|| {
-            let names: Vec<_> = plan.emergency_plans.iter().map(|e| e.id.to_string()).collect();
-            let meant = did_you_mean(name, names.iter().map(String::as_str));
-            anyhow!("there is no emergency plan `{name}`: there are {}{meant}", names.join(", "))
+            let known = names_there_are(name, plan.emergency_plans.iter().map(|e| e.id.as_str()));
+            anyhow!("there is no emergency plan `{name}`: {known}")
         })
     }
 
@@ -140,27 +135,55 @@ impl Selection {
         leg.is_some_and(|l| matches!(&l.place.plan, Branching::Emergency(id) if is_it(id)))
     }
 
-    /// Legs of a flight that could not be laid out are told, each with its reason; true if the flight may be written without them.
-    pub fn goes_without(&self, left_out: &[(&Id, &str)], file: &Path) -> bool {
-        let mut by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-        left_out.iter().for_each(|(leg, reason)| by_reason.entry(reason).or_default().push(leg.as_str()));
-        for (reason, legs) in by_reason {
-            let are = if legs.len() == 1 { "is" } else { "are" };
-            complain!("{}: {} {are} left out: {reason}", file.display(), legs.join(", "));
+    /// A note of each leg of a flight that could not be laid out; `None`, after it was said, if the flight may not be written without
+    /// them.
+    pub fn without(&self, left_out: &[(&Id, &str)], file: &Path) -> Option<Vec<Note>> {
+        if !left_out.is_empty() && !self.leave_out_legs {
+            print_left_out(left_out, file);
+            return None;
         }
-        let allowed = left_out.is_empty() || self.leave_out_legs;
-        if !allowed {
-            let file = file.display();
-            complain!(
-                "{file}: nothing is written without them; mend the plan, or write the rest with --leave-out-legs"
-            );
-        }
-        allowed
+        let note = |(leg, reason): &(&Id, &str)| Note {
+            code: "leg-left-out",
+            place: leg.to_string(),
+            message: format!("this leg is left out: {reason}"),
+        };
+        Some(left_out.iter().map(note).collect())
     }
 
     /// The waypoints of the way selected, in the order in which they are flown; those replaced before they were reached are none.
     pub fn steps(&self, preview: &Preview) -> Vec<Step> {
         crate::export::steps(preview, |passage| self.takes(passage, preview))
+    }
+}
+
+/// Why nothing is written: the first legs of each reason.
+fn print_left_out(left_out: &[(&Id, &str)], file: &Path) {
+    const MOST: usize = 10;
+    let file = file.display();
+    let mut by_reason: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    left_out.iter().for_each(|(leg, reason)| by_reason.entry(reason).or_default().push(leg.as_str()));
+    for (reason, legs) in by_reason {
+        let named = legs.iter().take(MOST).copied().collect::<Vec<_>>().join(", ");
+        let more = match legs.len().saturating_sub(MOST) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        complain!("{file}: {named}{more} can't be laid out: {reason}");
+    }
+    complain!(
+        "{file}: nothing is written without them; mend the plan, or write the rest with --leave-out-legs"
+    );
+}
+
+/// The names there are, and which of them was meant; in a sentence about another one.
+fn names_there_are<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.collect();
+    match known.is_empty() {
+        true => "the plan has none".to_owned(),
+        false => {
+            let meant = did_you_mean(name, known.iter().copied());
+            format!("there are {}{meant}", known.join(", "))
+        }
     }
 }
 
@@ -328,6 +351,9 @@ mod tests {
             let error = selection.scenario(&plan).unwrap_err().to_string();
             assert!(error.contains(said), "{error}");
         }
+        let none = flight_plan::FlightPlan { emergency_plans: Vec::new(), ..plan.clone() };
+        let error = emergency("nope", None).scenario(&none).unwrap_err().to_string();
+        assert!(error.ends_with("`nope`: the plan has none"), "{error}");
         assert_eq!(decide("ask=close").scenario(&plan).unwrap().triggers.len(), 1);
         assert_eq!(emergency("return", None).scenario(&plan).unwrap().triggers.len(), 1);
     }
