@@ -13,7 +13,15 @@ macro_rules! complain {
 
 /// A JSON document; what can't be seen in its texts is written as JSON escapes.
 pub fn json(value: &serde_json::Value) -> String {
-    let text = format!("{value:#}");
+    seen(&format!("{value:#}"))
+}
+
+/// [`json`] in one line.
+pub fn json_line(value: &serde_json::Value) -> String {
+    seen(&value.to_string())
+}
+
+fn seen(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
@@ -45,6 +53,7 @@ mod tests {
     fn document_keeps_its_content_and_shows_nothing_that_can_not_be_seen() {
         let value = serde_json::json!({"a\u{202e}": ["b\u{9b}\u{e0001}\n", 1.5]});
         let text = json(&value);
+        assert!(!json_line(&value).chars().any(flight_plan::legible::is_unseen));
         assert!(!text.chars().any(|c| c != '\n' && flight_plan::legible::is_unseen(c)), "{text:?}");
         assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap(), value);
     }

@@ -3,6 +3,8 @@
 use super::flights::Energy;
 use super::record::Record;
 use super::{Findings, FlightReport, PassageReport};
+use crate::say;
+use flight_plan::legible;
 use std::fmt::Write;
 
 const COLUMNS: [&str; 12] = [
@@ -68,10 +70,11 @@ pub fn flights_csv(findings: &Findings) -> String {
     text
 }
 
-/// RFC 4180; a leading sign that a spreadsheet would take for a formula is defused.
+/// RFC 4180, and fit to be shown; a leading sign that a spreadsheet would take for a formula is defused.
 fn quoted(field: &str) -> String {
-    let formula = field.starts_with(['=', '+', '-', '@']);
-    let field = if formula { format!("'{field}") } else { field.to_owned() };
+    let shown = legible(field);
+    let formula = shown.starts_with(['=', '+', '-', '@']);
+    let field = if formula { format!("'{shown}") } else { shown.into_owned() };
     if field.contains([',', '"', '\n', '\r']) { format!("\"{}\"", field.replace('"', "\"\"")) } else { field }
 }
 
@@ -142,13 +145,13 @@ pub fn from_authored(row: &PassageReport) -> String {
 pub fn markdown(record: &Record, findings: &Findings) -> String {
     let mut text = format!(
         "# {}\n\n{}\n\n![map](map.png)\n\n![profile](profile.png)\n",
-        record.title,
-        record.notes.join(" · ")
+        legible(&record.title),
+        legible(&record.notes.join(" · "))
     );
     if !record.verdict.is_empty() {
         text += "\n## Verdict\n\n";
         for (holds, sentence) in &record.verdict {
-            text += &format!("- {} {sentence}\n", if *holds { "✓" } else { "✗" });
+            text += &format!("- {} {}\n", if *holds { "✓" } else { "✗" }, legible(sentence));
         }
     }
     if findings.flights.len() > 1 {
@@ -164,8 +167,8 @@ pub fn markdown(record: &Record, findings: &Findings) -> String {
         for c in &findings.coverages {
             text += &format!(
                 "| {} | {} | {:.2} km² | {:.2} % |\n",
-                c.label,
-                c.passage,
+                legible(&c.label),
+                legible(&c.passage.to_string()),
                 c.area_m2 / 1e6,
                 c.share * 100.0
             );
@@ -173,7 +176,7 @@ pub fn markdown(record: &Record, findings: &Findings) -> String {
     }
     text += "\n## What happened\n\n";
     for happening in &record.happenings {
-        text += &format!("- {} {}\n", clock(happening.time_s), happening.text);
+        text += &format!("- {} {}\n", clock(happening.time_s), legible(&happening.text));
     }
     text
 }
@@ -182,7 +185,7 @@ pub fn markdown(record: &Record, findings: &Findings) -> String {
 fn pipes<const N: usize>(head: &[&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
     let mut text = format!("| {} |\n|{}\n", head.join(" | "), "---|".repeat(N));
     for row in rows {
-        text += &format!("| {} |\n", row.map(|cell| cell.replace('|', "\\|")).join(" | "));
+        text += &format!("| {} |\n", row.map(|cell| legible(&cell).replace('|', "\\|")).join(" | "));
     }
     text
 }
@@ -249,8 +252,9 @@ fn table<const N: usize>(head: &[String; N], rows: impl Iterator<Item = [String;
     format!("<table>\n{}{body}</table>\n", row("th", head))
 }
 
+/// Fit for a page, and to be shown.
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    legible(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// One JSON object a line: `time_s`, `text` and what the service said.
@@ -259,7 +263,8 @@ pub fn events(record: &Record) -> String {
         .happenings
         .iter()
         .map(|h| {
-            format!("{}\n", serde_json::json!({"time_s": h.time_s, "text": h.text, "details": h.details}))
+            let event = serde_json::json!({"time_s": h.time_s, "text": h.text, "details": h.details});
+            say::json_line(&event) + "\n"
         })
         .collect()
 }
@@ -283,6 +288,30 @@ mod tests {
         assert_eq!(quoted("=1+1"), "'=1+1");
         assert_eq!(quoted("a,\"b\""), "\"a,\"\"b\"\"\"");
         assert_eq!(escaped("<script>&\""), "&lt;script&gt;&amp;&quot;");
+    }
+
+    #[test]
+    fn names_can_not_steer_whoever_reads_a_report() {
+        const HOSTILE: &str = "a\u{202e}b\u{9b}2J\u{2066}c\u{1b}[1m";
+        let mut record = report::record::tests::record();
+        let mut flown = record.flown.clone();
+        let key = report::PassageKey { leg: HOSTILE.into(), ..record.flown.passages()[0].key.clone() };
+        flown.begin(key, "TF", HOSTILE.into());
+        record.flown.points().iter().for_each(|p| {
+            flown.push(report::TrackPoint { time_s: p.time_s + 5000.0, ..*p });
+        });
+        record.flown = flown;
+        record.title = HOSTILE.into();
+        record.notes.push(HOSTILE.into());
+        record.verdict.push((true, HOSTILE.into()));
+        record.areas.iter_mut().for_each(|area| area.label = HOSTILE.into());
+        record.happenings.iter_mut().for_each(|happening| happening.text = HOSTILE.into());
+        let findings = Findings::of(&record);
+        for text in [markdown(&record, &findings), html(&record, &findings), csv(&findings), events(&record)]
+        {
+            let raw = text.chars().find(|c| *c != '\n' && flight_plan::legible::is_unseen(*c));
+            assert!(raw.is_none() && text.contains("202e"), "{raw:?} in {text}");
+        }
     }
 
     #[test]
