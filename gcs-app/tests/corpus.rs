@@ -4,7 +4,7 @@
 
 use flight_exec::rehearse::Scenario;
 use flight_exec::{Action, Conditions};
-use flight_plan::{Leg, LegKind, Place, Value};
+use flight_plan::{FlightPlan, Leg, LegKind, Place, Value};
 use gcs_app::export::{flown, steps};
 use gcs_app::formats::{self, FileFormat};
 use gcs_app::headless::wind::Air;
@@ -98,7 +98,7 @@ fn become_of(format: Format, import: &Import, lines: &mut Vec<String>) {
             let export = Export { plan: program.flown(), steps: &steps };
             let written = interchange::write(format, &export).unwrap();
             lines.extend(notes(&written.notes));
-            lines.push(back(format, &written.bytes, &steps));
+            lines.push(back(format, &written.bytes, (program.flown(), &steps)));
         }
         Err(_) => lines.push("not flown".into()),
     }
@@ -119,15 +119,29 @@ fn assert_passed(import: &Import, steps: &[Step]) {
     }
 }
 
-/// What was written is read again: its waypoints are those that were flown, in their order.
-fn back(format: Format, bytes: &[u8], steps: &[Step]) -> String {
+/// What was written is read again: its waypoints are those that were flown, all of them and in their order. A QGC plan holds surveys and
+/// corridors as what they are.
+fn back(format: Format, bytes: &[u8], (plan, steps): (&FlightPlan, &[Step])) -> String {
     let again = interchange::read(format, bytes, &Assumptions::default()).unwrap();
-    let mut flown = steps.iter().filter(|step| matches!(step.waypoint.action, Action::Fly));
-    let places = places(&again);
+    let (places, patterns) = (places(&again), patterns(&again));
+    let whole = |step: &&Step| {
+        let leg = plan.leg(&step.waypoint.leg);
+        format == Format::Plan && patterns > 0 && leg.is_some_and(|context| is_pattern(context.leg))
+    };
+    let flown: Vec<LatLon> = steps
+        .iter()
+        .filter(|step| matches!(step.waypoint.action, Action::Fly) && !whole(step))
+        .map(|step| step.waypoint.position)
+        .collect();
+    let near = |a: LatLon, b: LatLon| a.distance_m(b) < NEAR_M;
+    let mut in_order = flown.iter();
     for place in &places {
-        assert!(flown.any(|step| step.waypoint.position.distance_m(*place) < NEAR_M), "{place:?}");
+        assert!(in_order.any(|at| near(*at, *place)), "{place:?} was not flown there");
     }
-    format!("{} waypoints and {} patterns came back", places.len(), patterns(&again))
+    for at in &flown {
+        assert!(places.iter().any(|place| near(*place, *at)), "{at:?} was flown, and did not come back");
+    }
+    format!("{} waypoints and {patterns} patterns came back", places.len())
 }
 
 fn places(import: &Import) -> Vec<LatLon> {
@@ -147,6 +161,9 @@ fn collect(leg: &Leg, into: &mut Vec<LatLon>) {
 }
 
 fn patterns(import: &Import) -> usize {
-    let is_pattern = |leg: &Leg| matches!(leg.kind, LegKind::Scan(_) | LegKind::Pattern(_));
     import.plan.all_legs().iter().filter(|context| is_pattern(context.leg)).count()
+}
+
+fn is_pattern(leg: &Leg) -> bool {
+    matches!(leg.kind, LegKind::Scan(_) | LegKind::Pattern(_))
 }
