@@ -1,12 +1,15 @@
-"""Files as other programs' own writers make them: pymavlink, gpxpy, fastkml and geojson write, `legwork convert` reads."""
+"""Files as other programs' own writers make them: pymavlink, gpxpy, fastkml and geojson write, and a writer after DroneKit's documents;
+`legwork convert` reads them, tells what it assumed or lost, and writes what they meant again."""
 
 import json
+import subprocess
 
 import fastkml
 import geojson
 import gpxpy.gpx
 import pygeoif
 import pytest
+from conftest import BIN
 from lxml import etree
 from pymavlink import mavutil, mavwp
 from test_interchange import legwork
@@ -37,11 +40,22 @@ def agree(found, rows, degrees=NEAR):
         assert altitude == pytest.approx(row[2], abs=0.01)
 
 
-def comes_back(file, tmp_path, extension):
-    """The same waypoints from what is exported again."""
-    again = tmp_path / f"again.{extension}"
-    legwork("convert", file, again)
-    agree(legs(imported(again, tmp_path, "--force")), SQUARE)
+def notes(source, target):
+    """The codes of what a conversion tells."""
+    command = [str(BIN / "legwork"), "convert", "--json", "--force", str(source), str(target)]
+    result = subprocess.run(command, capture_output=True, timeout=300)
+    assert result.returncode == 0, result.stderr.decode(errors="replace")
+    return sorted(note["code"] for note in json.loads(result.stderr)["notes"])
+
+
+def comes_back(file, tmp_path, extension, assumed=(), lost=("speeds-not-carried",)):
+    """It may be flown, and what is exported again has the same waypoints, before those of a final approach. The codes are those of the
+    notes that import and export must have, no others."""
+    plan, again = tmp_path / "checked.xml", tmp_path / f"again.{extension}"
+    assert notes(file, plan) == sorted(["aircraft-assumed", *assumed])
+    legwork("check", plan)
+    assert notes(plan, again) == sorted(lost)
+    agree(legs(imported(again, tmp_path, "--force"))[: len(SQUARE)], SQUARE)
 
 
 def test_gpxpy_writes_a_route_and_waypoints(tmp_path):
@@ -95,7 +109,7 @@ def test_geojson_writes_lines_areas_and_nothing(tmp_path):
     file = tmp_path / "square.geojson"
     file.write_text(geojson.dumps(geojson.FeatureCollection([geojson.Feature(geometry=line, properties={"name": "Square"})])))
     agree(legs(imported(file, tmp_path)), SQUARE)
-    comes_back(file, tmp_path, "geojson")
+    comes_back(file, tmp_path, "geojson", ["ellipsoid"])
     far = tmp_path / "far.geojson"
     far.write_text(geojson.dumps(geojson.LineString([(179.9, -16.8, 300), (180.1, -16.8, 300)])))
     assert [leg[1] for leg in legs(imported(far, tmp_path, "--force"))] == [pytest.approx(179.9), pytest.approx(-179.9)]
@@ -119,6 +133,44 @@ def item(sequence, command, *params, place=(0.0, 0.0, 0.0), frame=3):
     return mavutil.mavlink.MAVLink_mission_item_message(1, 1, sequence, frame, command, 0, 1, *params, *place)
 
 
+def home_and_square(add):
+    """Home, take-off, the square above home, and a return to launch."""
+    add(16, place=(36.319, -84.173, 349.0), frame=0)
+    add(22, place=(36.319, -84.173, 60.0))
+    for lat, lon, altitude in SQUARE:
+        add(16, place=(lat, lon, altitude - 349.0))
+    add(20)
+
+
+# what both lists leave open: the runway, how a return to launch ends, and from where it is landed on
+ASSUMED = ["landing-direction", "return-to-launch", "runway-made-up"]
+ABOVE_HOME = [(lat, lon, altitude - 349.0) for lat, lon, altitude in SQUARE]
+
+
+def test_pymavlink_writes_a_mission(tmp_path):
+    mission = mavwp.MAVWPLoader()
+    home_and_square(lambda command, **where: mission.add(item(mission.count(), command, **where)))
+    file = tmp_path / "mission.txt"
+    mission.save(str(file))
+    agree(legs(imported(file, tmp_path)), ABOVE_HOME)
+    comes_back(file, tmp_path, "waypoints", ASSUMED, ["runway-not-carried"])
+
+
+def test_dronekit_like_writer_saves_a_mission(tmp_path):
+    """As the export of DroneKit's guide ("Example: Mission Import/Export") has it: the home position and the vehicle's commands, each
+    value as Python shows it, behind one another with tabs."""
+    rows = []
+
+    def add(command, place=(0, 0, 0), frame=3):
+        rows.append([len(rows), int(not rows), frame, command, 0.0, 0.0, 0.0, 0.0, *place, 1])
+
+    home_and_square(add)
+    file = tmp_path / "saved_mission.txt"
+    file.write_text("QGC WPL 110\n" + "".join("\t".join(map(str, row)) + "\n" for row in rows))
+    agree(legs(imported(file, tmp_path)), ABOVE_HOME)
+    comes_back(file, tmp_path, "waypoints", ASSUMED, ["runway-not-carried"])
+
+
 def test_pymavlink_writes_loops_fences_and_rally_points(tmp_path):
     mission = mavwp.MAVWPLoader()
     mission.add(item(0, 16, place=(36.319, -84.173, 349.0), frame=0))
@@ -127,6 +179,7 @@ def test_pymavlink_writes_loops_fences_and_rally_points(tmp_path):
     mission.add(item(mission.count(), 177, 1, -1))
     file = tmp_path / "mission.txt"
     mission.save(str(file))
+    assert notes(file, tmp_path / "noted.xml") == ["aircraft-assumed", "endless-jump"]
     [loop] = imported(file, tmp_path).findall(".//p:mainPlan/p:stage/p:iterative", SPACE)
     assert loop.get("count") is None and "battery" in loop.get("until") and len(loop) == len(SQUARE)
 
@@ -136,6 +189,7 @@ def test_pymavlink_writes_loops_fences_and_rally_points(tmp_path):
     fences.save(str(file))
     root = imported(file, tmp_path, "--force")
     assert len(root.findall(".//p:zones/p:keepIn/p:corner", SPACE)) == len(FENCE)
+    assert notes(file, tmp_path / "noted.xml") == ["aircraft-assumed"]
 
     points = mavwp.MAVFenceLoader()
     for lat, lon in [(36.319, -84.173), *FENCE, FENCE[0]]:
@@ -143,9 +197,11 @@ def test_pymavlink_writes_loops_fences_and_rally_points(tmp_path):
     points.save(str(file))
     root = imported(file, tmp_path, "--force")
     assert len(root.findall(".//p:zones/p:keepIn/p:corner", SPACE)) == len(FENCE)
+    assert notes(file, tmp_path / "noted.xml") == ["aircraft-assumed", "breach-return"]
 
     rally = mavwp.MAVRallyLoader()
     rally.create_and_append_rally_point(36.319e7, -84.173e7, 100, 40, 5200, 0)
     rally.save(str(file))
     [runway] = imported(file, tmp_path, "--force").findall(".//p:runways/p:runway", SPACE)
     assert float(runway.get("lat")) == pytest.approx(36.319, abs=1e-5)
+    assert notes(file, tmp_path / "noted.xml") == ["aircraft-assumed", "rally-as-runway", "rally-break-off", "runway-made-up"]
