@@ -1,5 +1,6 @@
 //! The plan being edited: immutable states, undo and redo over all of them, and its file.
 
+use crate::command::Selection;
 use crate::files::Stamp;
 use flight_plan::{Edit, FlightPlan, History, Id, Problem};
 use std::collections::BTreeMap;
@@ -25,6 +26,8 @@ pub struct Document {
     version: u64,
     /// The first version.
     id: u64,
+    /// Its changes were not wanted any more when another took its place.
+    is_discarded: bool,
 }
 
 impl Default for Document {
@@ -53,6 +56,7 @@ impl Document {
             names: BTreeMap::new(),
             version: 0,
             id: 0,
+            is_discarded: false,
         };
         document.changed();
         document.id = document.version;
@@ -115,6 +119,14 @@ impl Document {
     pub fn is_dirty(&self) -> bool {
         !self.history.is_saved()
     }
+    /// It differs from its file, and nobody said that it need not be kept.
+    pub fn would_be_missed(&self) -> bool {
+        self.is_dirty() && !self.is_discarded
+    }
+    /// Its changes are not wanted any more, or wanted again. Whoever edits it wants them.
+    pub fn set_discarded(&mut self, is_discarded: bool) {
+        self.is_discarded = is_discarded;
+    }
     /// Its file holds what could not be read: written over it, that would be lost.
     pub fn is_partial(&self) -> bool {
         self.is_partial
@@ -151,6 +163,13 @@ impl Document {
         let inner = text.match_indices('.').filter_map(|(dot, _)| text.get(dot + 1..)).map(Id::new);
         let mut made = inner.filter(|_| !self.kinds.contains_key(flown));
         made.find(|id| self.plan().procedure_leg(id).is_some()).unwrap_or_else(|| flown.clone())
+    }
+
+    /// What a flown leg is in the document: a leg, also of a procedure, or a stage that is flown without legs.
+    pub fn part_of(&self, flown: &Id) -> Selection {
+        let written = self.written(flown);
+        let is_stage = self.plan().all_stages().any(|(_, stage)| stage.id == written);
+        if is_stage { Selection::Stage(written) } else { Selection::Leg(written) }
     }
 
     /// Replaces the plan by another one, as a step that can be undone.
@@ -228,6 +247,7 @@ impl Document {
     }
 
     fn changed(&mut self) {
+        self.is_discarded = false;
         if self.version > 0 {
             self.reading_problems.clear();
         }

@@ -69,6 +69,8 @@ pub struct Passage {
     pub stage: Id,
     /// Pass of each loop around it, from 1, outermost first.
     pub passes: Vec<u64>,
+    /// It is flown backwards.
+    pub reverse: bool,
     /// Index of its first point.
     pub first: usize,
     /// Index after its last point.
@@ -182,6 +184,7 @@ mod tests {
             leg: leg.into(),
             stage: "s".into(),
             passes: vec![pass],
+            reverse: false,
             first,
             end,
             energy_left: 1.0,

@@ -13,6 +13,9 @@ const ASIDE_M: f64 = 2000.0;
 /// Shortest and longest runway that is taken from a drawing, metres.
 const LENGTH_M: (f64, f64) = (50.0, 5000.0);
 
+/// So far from the runway no aircraft here comes to a mission and back, metres.
+const FARTHEST_M: f64 = 500_000.0;
+
 /// What was answered so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guide {
@@ -214,6 +217,16 @@ impl Guide {
         self.extent.clone().or_else(|| {
             Some(Extent::Around { centre: self.beside(self.threshold?), radius_m: self.radius_m })
         })
+    }
+
+    /// How far the mission is from the runway, metres; `None` as long as no place is known.
+    pub fn way_m(&self) -> Option<f64> {
+        Some(self.threshold?.distance_m(self.extent()?.centre()))
+    }
+
+    /// Nobody flies so far.
+    pub fn is_too_far(&self) -> bool {
+        self.way_m().is_some_and(|way_m| way_m > FARTHEST_M)
     }
 
     /// Abeam of the runway, clear of it.

@@ -51,9 +51,10 @@ impl Shelf {
         shown.can_redo() || !self.after.is_empty()
     }
 
-    /// Documents with unsaved changes, the one that is shown first.
+    /// Documents with unsaved changes, the one that is shown first; none of which the changes were discarded.
     pub fn unsaved<'d>(&'d self, shown: &'d Document) -> impl Iterator<Item = &'d Document> {
-        std::iter::once(shown).chain(&self.before).chain(&self.after).filter(|document| document.is_dirty())
+        let kept = self.before.iter().chain(&self.after).filter(|document| document.would_be_missed());
+        std::iter::once(shown).filter(|document| document.is_dirty()).chain(kept)
     }
 
     /// Turns to the document with this number. True: another is shown.
@@ -82,14 +83,16 @@ impl Shelf {
 fn forget_oldest(documents: &mut Vec<Document>, most_bytes: usize) {
     let mut bytes: usize = documents.iter().map(Document::bytes).sum();
     documents.retain(|document| {
-        let is_forgotten = bytes > most_bytes && !document.is_dirty();
+        let is_forgotten = bytes > most_bytes && !document.would_be_missed();
         bytes -= if is_forgotten { document.bytes() } else { 0 };
         !is_forgotten
     });
 }
 
 fn turn(from: &mut Vec<Document>, shown: &mut Document, to: &mut Vec<Document>) -> bool {
-    let Some(next) = from.pop() else { return false };
+    let Some(mut next) = from.pop() else { return false };
+    // who brings it back wants it again
+    next.set_discarded(false);
     to.push(std::mem::replace(shown, next));
     true
 }

@@ -10,6 +10,7 @@ use crate::map::{clipboard, drawings};
 use crate::panels::browse::Browsing;
 use crate::recovery::{Keeper, LeftBehind};
 use crate::state::Level;
+use flight_exec::rehearse::WhatIf;
 use interchange::{Format, Note};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -57,7 +58,7 @@ impl App {
                 opened.path().into_iter().for_each(|path| self.recent.add(path));
                 self.shelf.open(&mut self.document, *opened);
                 self.show_another();
-                (self.view.notice, self.view.browsing) = (None, None);
+                self.view.browsing = None;
             }
             FileEvent::Opened(Content::Foreign(imported)) => {
                 self.view.browsing = None;
@@ -196,11 +197,17 @@ impl App {
 
     /// Another document took the place of the one that was shown.
     pub(super) fn show_another(&mut self) {
-        self.view.select(None);
-        self.view.cursor_s = None;
-        self.view.alarm = None;
-        self.view.changed_outside = None;
+        self.forget_the_last();
         self.map.fit();
+    }
+
+    /// What was selected in the document that was shown, said of it, and tried with it.
+    pub(super) fn forget_the_last(&mut self) {
+        self.view.select(None);
+        (self.view.notice, self.view.changed_outside) = (None, None);
+        (self.view.cursor_s, self.view.playing, self.view.alarm) = (None, false, None);
+        self.view.what_if = WhatIf::default();
+        self.map.close_menu();
     }
 
     /// Has the document's file looked at, as long as nobody is asked about it and it is not being written.

@@ -77,6 +77,9 @@ impl App {
                 });
             }
             over_map(ui, floor, &scene, queue);
+            if let Some(found) = scene.left_behind {
+                floating(ui, "recover", floor, Align2::CENTER_CENTER, |ui| recover::show(ui, found, queue));
+            }
             notice(ui, floor, &scene, queue);
             toasts::show(ui, floor, &scene, queue);
         });
@@ -104,7 +107,6 @@ fn dialogs(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     changed::show(ui, scene, queue);
     browse::show(ui, scene, queue);
     interchange::show(ui, scene, queue);
-    recover::show(ui, scene, queue);
     tour::show(ui, scene, queue);
 }
 

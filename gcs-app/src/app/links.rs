@@ -9,7 +9,10 @@ impl App {
     /// Opens a link to a vehicle and shows that one; an older link to the same vehicle is closed.
     pub(super) fn connect(&mut self, endpoint: &str, vehicle: &VehicleName, now_s: f64) {
         self.disconnect(vehicle);
-        self.connections.add(endpoint, vehicle.as_str());
+        // a demo's vehicle is gone with its window
+        if !self.view.is_demo {
+            self.connections.add(endpoint, vehicle.as_str());
+        }
         let link = self.links.connect(endpoint, vehicle);
         self.vehicles.open(vehicle, link, endpoint, now_s);
     }

@@ -20,6 +20,7 @@ impl App {
     pub fn listen_to(&mut self, story: Story) {
         let chapter = story.chapter();
         self.story = Some((story, chapter));
+        self.view.is_demo = true;
     }
 
     /// Closes the window for another one, in which the story begins anew.

@@ -69,7 +69,10 @@ impl App {
                 self.after_saving = Some(with);
             }
             DocumentCommand::Replace(with) => self.ask_or_replace(with),
-            DocumentCommand::Discard(with) => self.replace(with),
+            DocumentCommand::Discard(with) => {
+                self.document.set_discarded(true);
+                self.replace(with);
+            }
             DocumentCommand::Create(outline) => self.create(*outline),
             DocumentCommand::Recover => self.recover(),
             DocumentCommand::ForgetLeftBehind => drop(self.take_left_behind()),
@@ -124,8 +127,7 @@ impl App {
             Replacement::New => {
                 self.shelf.open(&mut self.document, Document::default());
                 self.view.guide.open();
-                self.view.select(None);
-                self.view.alarm = None;
+                self.forget_the_last();
             }
             Replacement::AskOpen => self.files.ask_open(false),
             Replacement::AskImport => self.files.ask_open(true),
@@ -336,7 +338,7 @@ impl App {
         if let (Some(vehicle), Some(ticket)) = (self.vehicles.get_mut(name), ticket) {
             vehicle.outlook.asked_what_follows(ticket);
             if vehicle.open_link().is_none() {
-                vehicle.outlook.answered(ticket, Err("there is no link: connect first".into()), now_s);
+                vehicle.outlook.answered(ticket, Err("there is no link: connect first".into()), None);
             }
         }
     }

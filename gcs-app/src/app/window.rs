@@ -98,6 +98,9 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
     let links = Links::spawn(Arc::new(move || ctx.request_repaint()))?;
     let terrain = assets::demo_terrain();
     let mut app = App::new(creation, options.document.unwrap_or_default(), links, terrain)?;
+    if let Some(story) = options.story {
+        app.listen_to(story);
+    }
     if let Some((vehicle, endpoint)) = options.connect {
         app.connect(&endpoint, &vehicle.as_str().into(), creation.egui_ctx.input(|i| i.time));
     }
@@ -117,9 +120,6 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
     app.screenshot = options.screenshot;
     if options.tour {
         app.offer_tour();
-    }
-    if let Some(story) = options.story {
-        app.listen_to(story);
     }
     if let Some(theme) = options.theme {
         app.view.theme = theme.into();

@@ -5,6 +5,9 @@ use flight_exec::rehearse::Preview;
 use flight_plan::{FlightPlan, Id, Section};
 use std::collections::{HashMap, HashSet};
 
+/// A leg on which less way is made is not flown, metres.
+const LEAST_M: f64 = 1.0;
+
 /// A leg of the plan that is not flown where the flight comes by.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeftOut {
@@ -26,7 +29,9 @@ pub(super) fn of(preview: &Preview, flown: &FlightPlan) -> Vec<LeftOut> {
     }
     let places = places(flown);
     let place = |id: &Id| places.get(id).copied();
-    let passed: HashSet<&Id> = preview.legs.iter().map(|passage| &passage.place.leg).collect();
+    // a loop comes by one that can't be laid out, and makes no way on it
+    let on_the_way = preview.legs.iter().filter(|passage| passage.distance_m > LEAST_M);
+    let passed: HashSet<&Id> = on_the_way.map(|passage| &passage.place.leg).collect();
     let main = flown.all_legs().into_iter().filter(|context| context.section == Section::Main);
     // one of which only the new pattern was refused is flown by its old one
     let left = main.filter(|context| !passed.contains(&context.leg.id));
@@ -81,6 +86,24 @@ mod tests {
         fn elevation_m(&self, _: LatLon) -> Option<f64> {
             None
         }
+    }
+
+    #[test]
+    fn a_leg_in_a_loop_is_left_out_though_the_loop_comes_by() {
+        let text = include_str!("../../../assets/plans/square.xml");
+        let (plain, high) = (r#"<TF id="side3" fix="C"/>"#, r#"altitude="120" altitudeReference="agl""#);
+        let body = format!(r#"<TF id="l1" fix="B"/><TF id="l2" fix="C" {high}/>"#);
+        let there = format!(
+            r#"<iterative id="loop" form="reverse" count="2" turn="left"><IF id="l0" fix="A"/>{body}</iterative>"#
+        );
+        assert!(text.contains(plain));
+        let plan = flight_plan::read(text.replace(plain, &there)).plan;
+        let (profile, ground): (_, Arc<dyn Terrain>) = (Profile::default(), Arc::new(Nothing));
+        let program = Arc::new(compile(plan, &profile, ground.as_ref()).unwrap());
+        let forecast = Forecaster::new(profile, ground).fly(&program, &WhatIf::default()).unwrap();
+        let left: Vec<_> = forecast.left_out.iter().map(|l| l.leg.as_str()).collect();
+        assert_eq!(left, ["l2"]);
+        assert!(forecast.passages.iter().any(|passage| passage.reverse), "and comes back");
     }
 
     #[test]

@@ -163,6 +163,7 @@ fn passages(preview: &Preview, points: &[Point], energy_j: f64) -> Vec<Passage> 
             leg: leg.place.leg.clone(),
             stage: leg.place.stage.clone(),
             passes: leg.place.iterations.iter().map(|place| place.iteration).collect(),
+            reverse: leg.place.reverse,
             first,
             end,
             energy_left,

@@ -238,6 +238,7 @@ mod tests {
             leg: leg.into(),
             stage: "s".into(),
             passes: Vec::new(),
+            reverse: false,
             first: n,
             end: n + 1,
             energy_left: 1.0,

@@ -68,6 +68,11 @@ impl Menu {
         }
     }
 
+    /// Nothing is offered any more.
+    pub fn close(&mut self) {
+        self.opened = None;
+    }
+
     /// Where what is pasted goes, if a place was chosen for it; asked for once.
     pub fn paste_at(&mut self) -> Option<LatLon> {
         self.paste.take()

@@ -98,6 +98,11 @@ impl MapState {
         self.fit = true;
     }
 
+    /// Another plan is shown: what was asked about the last one is not asked any more.
+    pub fn close_menu(&mut self) {
+        self.menu.close();
+    }
+
     /// Brings it nearer in the next frame, by so many levels of zoom.
     pub fn zoom(&mut self, by: f64) {
         self.navigation.zoom(by);

@@ -5,6 +5,8 @@ use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
 use crate::files::{Entry, Purpose};
 use crate::formats;
 use crate::theme;
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{Align, Id, Key, Layout, Modal, RichText, ScrollArea, Ui};
 use std::path::PathBuf;
 
@@ -171,11 +173,21 @@ fn name_row(ui: &mut Ui, browsing: &Browsing, queue: &mut Queue) -> bool {
     let response = ui.add(field).labelled_by(label.id);
     if ui.memory(|m| m.focused().is_none()) && !response.lost_focus() {
         response.request_focus();
+        select_stem(ui, response.id, &browsing.name);
     }
     if response.changed() {
         queue.view(ViewCommand::NameFile(name));
     }
     response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter))
+}
+
+/// The name without what says its format: that is what is typed anew.
+fn select_stem(ui: &Ui, id: Id, name: &str) {
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let range = CCursorRange::two(CCursor::new(0), CCursor::new(stem.chars().count()));
+    let mut state = TextEditState::load(ui.ctx(), id).unwrap_or_default();
+    state.cursor.set_char_range(Some(range));
+    state.store(ui.ctx(), id);
 }
 
 fn buttons(ui: &mut Ui, browsing: &Browsing, typed: bool, queue: &mut Queue) {

@@ -151,11 +151,15 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.disable();
     }
     let phase = scene.vehicle.phase();
+    let flying = matches!(phase, Phase::Flying | Phase::AwaitingDecision);
+    // first: it keeps its place, whatever else there is to command
+    if flying || phase == Phase::Holding {
+        emergency(ui, scene, queue);
+    }
     let start = if phase == Phase::Grounded { "Start the next flight" } else { "Start and take off" };
     if can_launch(scene) && field::hold_button(ui, start, p.accent, 150.0) {
         queue.fly(FlyCommand::Launch);
     }
-    let flying = matches!(phase, Phase::Flying | Phase::AwaitingDecision);
     if flying && ui.button("⏸ Hold").clicked() {
         queue.plan(Command::Hold);
     }
@@ -164,9 +168,6 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
     if flying && ui.button("⏭ Skip leg").on_hover_text("Shows what would follow, then asks").clicked() {
         queue.consider(Command::SkipLeg);
-    }
-    if flying || phase == Phase::Holding {
-        emergency(ui, scene, queue);
     }
     recover(ui, scene, queue);
     if can_rewind(scene) && field::hold_button(ui, "Rewind to the start", p.caution, 0.0) {
@@ -228,6 +229,9 @@ pub fn can_rewind(scene: &Scene<'_>) -> bool {
     on_ground && stands && scene.vehicle.phase() != Phase::Idle && scene.vehicle.active_hash().is_some()
 }
 
+/// Least width of the emergency's button, screen points: most names fit, and what is beside it stays in its place.
+const EMERGENCY: f32 = 240.0;
+
 /// Which emergency plan, then hold: named by its effect.
 fn emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
@@ -239,6 +243,15 @@ fn emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         .or(in_force.as_ref())
         .map_or_else(|| "the alternate in force".to_owned(), |id| scene.vehicle.name_of(id));
     let plans = scene.vehicle.aboard.as_ref().map(|a| a.plan.emergency_plans.as_slice()).unwrap_or_default();
+    let flown = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency.as_ref());
+    let flown = flown.filter(|flown| chosen.as_ref().is_none_or(|chosen| chosen == *flown));
+    let text = match flown {
+        Some(flown) => format!("Emergency: flying {}", scene.vehicle.name_of(flown)),
+        None => format!("Emergency: fly {name}"),
+    };
+    if field::hold_button(ui, &text, p.warning, EMERGENCY) {
+        queue.plan(Command::Emergency { cause: Cause::Operator, plan: chosen.clone() });
+    }
     if plans.len() > 1 {
         let combo = egui::ComboBox::from_id_salt("alternate").width(110.0).selected_text(&name);
         let shown = combo.show_ui(ui, |ui| {
@@ -249,16 +262,7 @@ fn emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             }
         });
         shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Alternate"));
-        ui.data_mut(|d| d.insert_temp(id, chosen.clone()));
-    }
-    let flown = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency.as_ref());
-    let flown = flown.filter(|flown| chosen.as_ref().is_none_or(|chosen| chosen == *flown));
-    let text = match flown {
-        Some(flown) => format!("Emergency: flying {}", scene.vehicle.name_of(flown)),
-        None => format!("Emergency: fly {name}"),
-    };
-    if field::hold_button(ui, &text, p.warning, 0.0) {
-        queue.plan(Command::Emergency { cause: Cause::Operator, plan: chosen });
+        ui.data_mut(|d| d.insert_temp(id, chosen));
     }
 }
 

@@ -21,8 +21,8 @@ use crate::command::Queue;
 use crate::theme;
 use crate::units;
 use egui::{RichText, ScrollArea, Ui};
-use flight_plan::Edit;
 use flight_plan::describe::{Draft, Subject};
+use flight_plan::{Edit, Id};
 use page::Page;
 pub use raise::focus as focus_raise;
 
@@ -57,14 +57,17 @@ fn selected(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let legs = scene.selected_legs();
     let set = scene.selected_set();
     if set.len() > 1 && (set.len() > legs.len() || set.len() > together::MOST) {
-        return together::mixed(ui, scene, &set, queue);
+        together::mixed(ui, scene, &set, queue);
+        if !legs.is_empty() && set.len() <= together::MOST {
+            ui.separator();
+            common(ui, scene, &legs, queue);
+        }
+        return;
     }
     if legs.len() > 1 {
-        let drafts: Vec<Draft> =
-            legs.iter().filter_map(|leg| Draft::of(plan, &Subject::Leg(leg.clone()))).collect();
         together::head(ui, scene, &legs, queue);
-        ui.push_id("several legs", |ui| form(ui, scene, &drafts, queue));
-        together::foot(ui, scene.document.plan(), &legs, queue);
+        common(ui, scene, &legs, queue);
+        together::foot(ui, plan, &legs, queue);
         return;
     }
     let subject = page::subject(scene.view.selection.as_ref());
@@ -72,6 +75,13 @@ fn selected(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         Some(draft) => ui.push_id(&subject, |ui| part(ui, scene, draft, queue)).inner,
         None => drop(ui.label("It is no longer in the plan.")),
     }
+}
+
+/// What holds for each of them.
+fn common(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
+    let draft = |leg: &Id| Draft::of(scene.document.plan(), &Subject::Leg(leg.clone()));
+    let drafts: Vec<Draft> = legs.iter().filter_map(draft).collect();
+    ui.push_id("several legs", |ui| form(ui, scene, &drafts, queue));
 }
 
 fn part(ui: &mut Ui, scene: &Scene<'_>, draft: Draft, queue: &mut Queue) {

@@ -143,13 +143,15 @@ fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.close();
     }
     ui.label(scene.vehicle.link.text());
-    super::field::row(ui, "Gateway at", |ui| {
+    let gateway = super::field::row(ui, "Gateway at", |ui| {
         ui.add(text(&mut form.endpoint))
             .on_hover_text("Where the vehicle's gateway listens, as tcp/127.0.0.1:7447")
     });
-    super::field::row(ui, "Vehicle", |ui| {
+    let vehicle = super::field::row(ui, "Vehicle", |ui| {
         ui.add(text(&mut form.vehicle)).on_hover_text("The vehicle's name, as its agent was started with")
     });
+    let entered =
+        (gateway.lost_focus() || vehicle.lost_focus()) && ui.input(|i| i.key_pressed(egui::Key::Enter));
     let endpoint = connections::endpoint(&form.endpoint);
     let wrong = endpoint.as_ref().err().cloned().or_else(|| connections::name_problem(&form.vehicle));
     let p = theme::of(ui);
@@ -158,7 +160,8 @@ fn form(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
     ui.horizontal(|ui| {
         let may = wrong.is_none();
-        if ui.add_enabled(may, super::primary_button("Connect", p)).clicked()
+        let clicked = ui.add_enabled(may, super::primary_button("Connect", p)).clicked();
+        if (clicked || (entered && may))
             && let Ok(endpoint) = endpoint
         {
             form.connect(endpoint, queue);

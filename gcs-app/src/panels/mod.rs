@@ -203,6 +203,8 @@ pub struct ViewState {
     pub coverage: bool,
     /// Since when what is shown is not what was asked for, seconds on the window's clock.
     pub behind_since_s: Option<f64>,
+    /// A demo is flown: its aircraft ends with the window.
+    pub is_demo: bool,
     /// What was answered of a new plan.
     pub guide: Guide,
     /// What would replace a plan with unsaved changes, until the operator has decided.
@@ -340,8 +342,7 @@ impl<'a> Scene<'a> {
     }
     /// A question or a dialog has the operator's attention: keys mean nothing to what is behind it.
     pub fn is_asking(&self) -> bool {
-        self.left_behind.is_some()
-            || self.view.unsaved.is_some()
+        self.view.unsaved.is_some()
             || self.view.changed_outside.is_some()
             || self.view.browsing.is_some()
             || self.view.imported.is_some()

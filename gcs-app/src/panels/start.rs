@@ -46,7 +46,14 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, height: f32, queue: &mut Queue) {
     let closed = title(ui);
     let most = (height - AROUND).max(60.0);
     let questions = ScrollArea::vertical().id_salt("questions").max_height(most).min_scrolled_height(most);
-    questions.show(ui, |ui| ask(ui, scene, &mut guide, queue));
+    questions.show(ui, |ui| {
+        ask(ui, scene, &mut guide, queue);
+        if guide.threshold.is_some() {
+            // the buttons below keep their place when fields come and go
+            let used = ui.min_rect().height();
+            ui.add_space((HEIGHT - AROUND - used).clamp(0.0, most));
+        }
+    });
     ui.add_space(6.0);
     buttons(ui, &guide, queue);
     if guide != scene.view.guide {
@@ -84,9 +91,14 @@ fn ask(ui: &mut Ui, scene: &Scene<'_>, guide: &mut Guide, queue: &mut Queue) {
 
 fn buttons(ui: &mut Ui, guide: &Guide, queue: &mut Queue) {
     ui.horizontal(|ui| {
-        let create = ui.add_enabled(guide.threshold.is_some(), primary_button("Create", theme::of(ui)));
-        let create =
-            create.on_disabled_hover_text("Say first where you fly: click the map, or type it above.");
+        let why_not = if guide.is_too_far() {
+            "The mission is too far from the runway: draw it again, or give the runway another place."
+        } else {
+            "Say first where you fly: click the map, or type it above."
+        };
+        let may = guide.threshold.is_some() && !guide.is_too_far();
+        let create = ui.add_enabled(may, primary_button("Create", theme::of(ui)));
+        let create = create.on_disabled_hover_text(why_not);
         if let Some(outline) = guide.outline().filter(|_| create.clicked()) {
             queue.document(DocumentCommand::Create(Box::new(outline)));
         }
@@ -155,6 +167,7 @@ fn mission(ui: &mut Ui, figure: MissionFigure, guide: &mut Guide, u: Units, queu
         let size = u.distance().show(2.0 * extent.as_ref().map_or(0.0, Extent::radius_m));
         let text = format!("{} of {} points, {size} across", figure.name(), places.len());
         field::row(ui, "Mission", |ui| ui.add(egui::Label::new(text).truncate()));
+        away(ui, guide, u);
         draw_button(ui, &format!("Draw the {} again", figure.name()), Drawing::Mission, guide);
         return;
     }
@@ -171,6 +184,15 @@ fn mission(ui: &mut Ui, figure: MissionFigure, guide: &mut Guide, u: Units, queu
         guide.extent = Some(Extent::Around { centre: moved.unwrap_or(centre), radius_m });
     }
     guide.radius_m = radius_m;
+}
+
+/// A drawing may come from elsewhere: how far it is, where that is far.
+fn away(ui: &mut Ui, guide: &Guide, u: Units) {
+    const FAR_M: f64 = 20_000.0;
+    if let Some(way_m) = guide.way_m().filter(|way_m| *way_m > FAR_M) {
+        let text = RichText::new(format!("⚠ {} from the runway", u.distance().show(way_m)));
+        field::row(ui, "", |ui| ui.label(text.color(theme::of(ui).caution)));
+    }
 }
 
 /// A button that has the next clicks on the map answer.

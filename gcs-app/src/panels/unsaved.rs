@@ -24,7 +24,10 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         }
         if let Some(flying) = &flying {
             ui.strong(flying);
-            ui.label("It flies on by its plan, and nobody watches it from this window any more.");
+            ui.label(match scene.view.is_demo {
+                true => "The demo ends with this window.",
+                false => "It flies on by its plan, and nobody watches it from this window any more.",
+            });
         }
         ui.add_space(8.0);
         ui.horizontal(|ui| {

@@ -1,7 +1,7 @@
 //! What happened, in sentences.
 
 use flight_exec::{Event, Phase};
-use flight_plan::VariableValue;
+use flight_plan::{Id, VariableValue};
 use std::collections::VecDeque;
 use usal::contract::{GatewayEvent, Severity};
 
@@ -104,40 +104,44 @@ pub fn is_announced(event: &Event) -> bool {
         || matches!(event, Event::PhaseChanged { phase: Phase::AwaitingDecision | Phase::Grounded })
 }
 
-/// A plan event as a sentence.
-pub fn plan_event(event: &Event) -> (Level, String) {
+/// A plan event as a sentence; `name` says what people call a part of the plan.
+pub fn plan_event(event: &Event, name: impl Fn(&Id) -> String) -> (Level, String) {
     let info = |text: String| (Level::Info, text);
     match event {
-        Event::LegEntered { place } => info(format!("Leg {} of stage {}", place.leg, place.stage)),
+        Event::LegEntered { place } => info(entered(&place.leg, &place.stage, name)),
         Event::IterationFinished { leg, finished, of } => info(format!(
-            "Loop {leg}: pass {finished}{} done",
+            "Loop {}: pass {finished}{} done",
+            name(leg),
             of.map(|n| format!(" of {n}")).unwrap_or_default()
         )),
         Event::DecisionRequested(d) => {
-            (Level::Caution, format!("Decision asked for at {}: {} choices", d.leg, d.options.len()))
+            (Level::Caution, format!("Decision asked for at {}: {} choices", name(&d.leg), d.options.len()))
         }
-        Event::DecisionTaken { leg, branch, by } if by == BY_DEFAULT => {
-            (Level::Caution, format!("Nobody decided at {leg} in time: {branch} was taken by default"))
+        Event::DecisionTaken { leg, branch, by } if by == BY_DEFAULT => (
+            Level::Caution,
+            format!("Nobody decided at {} in time: {} was taken by default", name(leg), name(branch)),
+        ),
+        Event::DecisionTaken { leg, branch, by } => {
+            info(format!("{}: branch {}, decided by {by}", name(leg), name(branch)))
         }
-        Event::DecisionTaken { leg, branch, by } => info(format!("{leg}: branch {branch}, decided by {by}")),
         Event::VariableChanged { name, value, by } => {
             info(format!("{name} is now {}, written by {by}", variable(value)))
         }
-        Event::ActionDone { leg, act, .. } => info(format!("{leg}: {act}")),
+        Event::ActionDone { leg, act, .. } => info(format!("{}: {act}", name(leg))),
         Event::ActionRefused { leg, reason, .. } => {
-            (Level::Caution, format!("{leg}: an action was not done: {reason}"))
+            (Level::Caution, format!("{}: an action was not done: {reason}", name(leg)))
         }
         Event::ExpressionFailed { leg, reason } => {
-            (Level::Caution, format!("{leg}: an expression has no value: {reason}"))
+            (Level::Caution, format!("{}: an expression has no value: {reason}", name(leg)))
         }
         Event::PatternRefused { leg, reason } => {
-            (Level::Caution, format!("{leg} keeps its old pattern: {reason}"))
+            (Level::Caution, format!("{} keeps its old pattern: {reason}", name(leg)))
         }
         Event::PlanActivated { hash, revision } => {
             info(format!("Plan {} is active, revision {revision}", short_hash(hash)))
         }
         Event::EmergencyStarted { cause, plan, .. } => {
-            (Level::Warning, format!("Emergency plan {plan} is being flown ({cause:?})"))
+            (Level::Warning, format!("Emergency plan {} is being flown ({cause:?})", name(plan)))
         }
         Event::EmergencyUnanswered { cause } => {
             (Level::Warning, format!("No emergency plan for {cause:?}: Safe mode decides"))
@@ -150,11 +154,11 @@ pub fn plan_event(event: &Event) -> (Level, String) {
         }
         Event::PhaseChanged { phase } => info(format!("Phase: {phase:?}")),
         Event::WaypointsRejected { leg, reason } => {
-            let leg = leg.as_ref().map(|l| format!(" of {l}")).unwrap_or_default();
+            let leg = leg.as_ref().map(|l| format!(" of {}", name(l))).unwrap_or_default();
             (Level::Warning, format!("Waypoints{leg} were refused: {reason}"))
         }
         Event::ProblemAhead { leg, code, reason } => {
-            let leg = leg.as_ref().map(|l| format!(" on {l}")).unwrap_or_default();
+            let leg = leg.as_ref().map(|l| format!(" on {}", name(l))).unwrap_or_default();
             (Level::Warning, format!("The way ahead has a problem{leg}: {reason} [{code}]"))
         }
         Event::NotGranted { request, reason } => {
@@ -162,6 +166,15 @@ pub fn plan_event(event: &Event) -> (Level, String) {
         }
         Event::NotJournalled { reason } => (Level::Caution, format!("The flight is not recorded: {reason}")),
         Event::Journalled => info("The flight is recorded again".to_owned()),
+    }
+}
+
+/// A stage that is flown without legs is its own leg.
+fn entered(leg: &Id, stage: &Id, name: impl Fn(&Id) -> String) -> String {
+    if leg == stage {
+        format!("Stage {}", name(stage))
+    } else {
+        format!("Leg {} of stage {}", name(leg), name(stage))
     }
 }
 
@@ -201,6 +214,15 @@ pub fn short_hash(hash: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn events_are_told_by_names() {
+        let name = |id: &Id| if id.as_str() == "n1" { "To the ridge".to_owned() } else { id.to_string() };
+        let event = Event::IterationFinished { leg: "n1".into(), finished: 1, of: Some(2) };
+        assert_eq!(plan_event(&event, name).1, "Loop To the ridge: pass 1 of 2 done");
+        assert_eq!(entered(&"n1".into(), &"home".into(), name), "Leg To the ridge of stage home");
+        assert_eq!(entered(&"n1".into(), &"n1".into(), name), "Stage To the ridge");
+    }
 
     #[test]
     fn two_logs_are_one_by_time() {

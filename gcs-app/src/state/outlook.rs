@@ -20,7 +20,7 @@ pub struct Considered {
 #[derive(Debug, Default)]
 pub struct Outlook {
     considered: Option<Considered>,
-    /// When the flight will have landed, seconds of the window's clock.
+    /// When the flight will have landed, seconds of the aircraft's clock: that of a simulation may run faster than the window's.
     landing_s: Option<f64>,
     asked: Option<(Ticket, f64)>,
 }
@@ -34,9 +34,9 @@ impl Outlook {
         self.considered.as_ref()
     }
 
-    /// Seconds until it has landed.
-    pub fn lands_in_s(&self, now_s: f64) -> Option<f64> {
-        self.landing_s.map(|landing_s| (landing_s - now_s).max(0.0))
+    /// Seconds of the flight until it has landed; `aircraft_s` is the aircraft's clock.
+    pub fn lands_in_s(&self, aircraft_s: f64) -> Option<f64> {
+        self.landing_s.map(|landing_s| (landing_s - aircraft_s).max(0.0))
     }
 
     /// A command is considered; nothing is known of it yet.
@@ -71,11 +71,16 @@ impl Outlook {
         self.asked = Some((ticket, now_s));
     }
 
-    /// What was asked for, or why there is no answer.
-    pub fn answered(&mut self, ticket: Ticket, answer: Result<Box<Foresight>, String>, now_s: f64) {
+    /// What was asked for, or why there is no answer; `aircraft_s` is the aircraft's clock, if it is known.
+    pub fn answered(
+        &mut self,
+        ticket: Ticket,
+        answer: Result<Box<Foresight>, String>,
+        aircraft_s: Option<f64>,
+    ) {
         if self.asked.is_some_and(|(asked, _)| asked == ticket) {
             let landing = answer.ok().filter(|foresight| foresight.landed);
-            self.landing_s = landing.map(|foresight| now_s + foresight.time_s);
+            self.landing_s = landing.zip(aircraft_s).map(|(foresight, now_s)| now_s + foresight.time_s);
         } else if let Some(considered) = self.considered.as_mut().filter(|c| c.ticket == Some(ticket)) {
             considered.foresight = Some(answer);
         }

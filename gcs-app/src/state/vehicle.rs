@@ -255,10 +255,12 @@ impl Vehicle {
     }
 
     fn plan_event(&mut self, event: &Numbered<Event>, now_s: f64) {
-        let (level, text) = log::plan_event(&event.event.value);
-        if !self.plan_events.is_new(event.sequence, event.event.time_s, &text) {
+        // names may become known between an event and its repetition
+        let (_, said) = log::plan_event(&event.event.value, Id::to_string);
+        if !self.plan_events.is_new(event.sequence, event.event.time_s, &said) {
             return;
         }
+        let (level, text) = log::plan_event(&event.event.value, |id| self.name_of(id));
         self.log.add(now_s, level, "plan", &text);
         let event = &event.event.value;
         if log::is_announced(event) {
@@ -291,7 +293,8 @@ impl Vehicle {
                 Reply::Foresight(foresight) => Ok(foresight),
                 _ => Err("it answered something else".into()),
             });
-            return self.outlook.answered(ticket, foresight, now_s);
+            let aircraft_s = self.clock_s();
+            return self.outlook.answered(ticket, foresight, aircraft_s);
         }
         if let Outcome::Refused(reason) = &outcome {
             self.log.add(now_s, Level::Caution, "command", &format!("{label}: refused, {reason}"));
@@ -332,6 +335,11 @@ impl Vehicle {
     /// Hash of the plan that the FP Manager says is active.
     pub fn active_hash(&self) -> Option<Arc<str>> {
         self.status.as_ref()?.value.plan.clone()
+    }
+
+    /// The aircraft's clock as it was last heard, seconds.
+    pub fn clock_s(&self) -> Option<f64> {
+        self.position.as_ref().map(|position| position.time_s)
     }
 
     /// What the executor is doing; idle when nothing is known.

@@ -216,6 +216,7 @@ fn what_is_selected_elsewhere_is_unfolded_and_brought_into_view() {
     let mut window = Window::open_with(FIRE_WATCH, vec2(1280.0, 500.0), None);
     window.until_analysed();
     window.click("Main plan");
+    window.press(Key::ArrowLeft);
     assert!(!window.shows("T/O Take-off"), "folded");
     window.ask_for("go to leg look");
     window.press(Key::Enter);

@@ -6,6 +6,7 @@ use egui::accesskit::Role;
 use egui::vec2;
 use egui_kittest::kittest::Queryable;
 use gcs_app::link::{LinkEvent, LinkState, Order};
+use gcs_app::story::Story;
 use std::collections::HashMap;
 use std::sync::Mutex;
 
@@ -84,6 +85,27 @@ fn connections_are_remembered_from_run_to_run() {
     window.click("falcon at tcp/10.0.0.2:7447");
     let Ok(Order::Connect { endpoint, vehicle, .. }) = window.far.orders.try_recv() else { panic!() };
     assert_eq!((endpoint.as_str(), vehicle.as_str()), ("tcp/10.0.0.2:7447", "falcon"));
+}
+
+#[test]
+fn return_connects_and_a_demos_connection_is_not_offered_again() {
+    let mut store = Box::new(Store::default());
+    let mut window = Window::open(SQUARE);
+    window.harness.state_mut().listen_to(Story::default());
+    window.click("○ Connect");
+    type_into(&mut window, 0, "127.0.0.1:37973");
+    window.press(egui::Key::Enter);
+    let Ok(Order::Connect { endpoint, .. }) = window.far.orders.try_recv() else { panic!() };
+    assert_eq!(endpoint, "tcp/127.0.0.1:37973");
+    eframe::App::save(window.harness.state_mut(), store.as_mut());
+    drop(window);
+
+    let mut window = Window::open_with(SQUARE, vec2(1280.0, 800.0), Some(Box::leak(store)));
+    window.click("○ Connect");
+    assert!(!window.shows("37973"));
+    window.click("Connect");
+    let Ok(Order::Connect { endpoint, .. }) = window.far.orders.try_recv() else { panic!() };
+    assert_eq!(endpoint, "tcp/127.0.0.1:7447");
 }
 
 #[test]

@@ -10,14 +10,14 @@ use flight_plan::{LegKind, Pattern};
 pub const EMPTY: &str = "<flightPlan xmlns='urn:legwork:flight-plan:1' name='New plan' aircraft='trainer'/>";
 
 /// A window without a plan, at the example's hills.
-fn begun(size: egui::Vec2) -> Window {
+pub fn begun(size: egui::Vec2) -> Window {
     let mut window = Window::open_with(EMPTY, size, None);
     window.steps(3);
     window.click("Among the example's hills");
     window
 }
 
-const SIZE: egui::Vec2 = vec2(1280.0, 800.0);
+pub const SIZE: egui::Vec2 = vec2(1280.0, 800.0);
 
 /// Clicks these places of the map, from the middle of what the card leaves free.
 fn draw(window: &mut Window, offsets: &[egui::Vec2]) {
@@ -299,6 +299,37 @@ fn plan_with_unsaved_changes_gives_way_only_when_told_to() {
     assert!(stages(&window) == 0 && !window.shows("has unsaved changes"));
     window.press_ctrl(Key::N);
     assert!(!window.shows("has unsaved changes"), "there is nothing to be lost");
+}
+
+/// As other programs draw it, about this place.
+fn drawn_area(lat: f64, lon: f64) -> String {
+    let ring: Vec<String> = [(0.0, 0.0), (0.0, 0.02), (0.02, 0.02), (0.02, 0.0), (0.0, 0.0)]
+        .iter()
+        .map(|(up, right)| format!("[{},{}]", lon + right, lat + up))
+        .collect();
+    format!(r#"{{"type":"Polygon","coordinates":[[{}]]}}"#, ring.join(","))
+}
+
+#[test]
+fn a_mission_pasted_far_away_is_said_to_be_and_create_keeps_its_place() {
+    let mut window = begun(SIZE);
+    let create = window.centre("Create");
+    window.paste(&drawn_area(36.34, -84.15));
+    assert!(
+        window.shows("area of 4 points") && window.is_enabled("Create") && !window.shows("from the runway")
+    );
+    assert_eq!(window.centre("Create"), create);
+    window.paste(&drawn_area(36.34, -4.15));
+    assert!(window.shows("km from the runway") && !window.is_enabled("Create"));
+    assert_eq!(window.centre("Create"), create);
+}
+
+#[test]
+fn the_beginning_of_the_only_place_of_that_name_is_enough() {
+    let mut window = Window::open(EMPTY);
+    window.steps(3);
+    type_into(&mut window, "Place", "Salzbu");
+    assert!(guide(&window).threshold.unwrap().distance_m(geometry::LatLon::new(47.79, 13.0)) < 5000.0);
 }
 
 #[test]

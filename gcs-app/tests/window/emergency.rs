@@ -2,7 +2,7 @@
 
 use super::considering::foresight;
 use super::flying::flying;
-use super::vehicle::place;
+use super::vehicle::{place, position};
 use super::{SQUARE, Window};
 use flight_exec::{Branching, Command, Event};
 use flight_plan::Cause;
@@ -52,7 +52,10 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     }
     assert!(window.shows("Emergency: flying return (hold)") && !window.shows("Emergency: fly return"));
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
-    assert!(window.shows("lands in 6"));
+    assert!(window.shows("lands in 6:20"));
+    // by the aircraft's clock, that of a simulation may run faster
+    window.receive(position(101.0, 500.0, false));
+    assert!(window.shows("lands in 4:40"));
     window.click("Return to the main plan at side3");
     let back = Command::ReturnToMain { leg: "side3".into() };
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(back))));

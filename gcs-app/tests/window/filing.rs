@@ -163,7 +163,7 @@ pub fn window_on(path: &Path, text: &str) -> Window {
     window
 }
 
-fn open(window: &mut Window, path: &Path) {
+pub fn open(window: &mut Window, path: &Path) {
     window.press_ctrl(egui::Key::O);
     until_listed(window);
     name(window, path);
@@ -317,6 +317,9 @@ fn two_unsaved(folder: &Path) -> Window {
     name(&mut window, &second);
     window.click("Open");
     window.until("opened", move |app| app.document().path() == Some(second.as_path()));
+    // the first is wanted after all
+    window.press_ctrl(egui::Key::Z);
+    window.press_ctrl(egui::Key::Y);
     edit(&mut window);
     window
 }

@@ -410,3 +410,14 @@ fn a_window_that_watches_a_flight_asks_before_it_closes() {
     window.click("Close all the same");
     assert!(window.app().is_leaving());
 }
+
+#[test]
+fn the_emergency_button_keeps_its_place() {
+    let (mut window, mut value) = flying();
+    let name = "Emergency: fly the alternate in force (hold)";
+    let before = window.harness.get_by_label(name).rect();
+    value.phase = Phase::Holding;
+    window.receive_status(value);
+    assert!(!window.shows("Skip leg"));
+    assert_eq!(window.harness.get_by_label(name).rect(), before);
+}

@@ -44,6 +44,7 @@ mod reach;
 mod reading;
 mod recovering;
 mod recreating;
+mod replacing;
 mod states;
 mod store;
 mod table;

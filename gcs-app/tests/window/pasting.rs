@@ -112,6 +112,13 @@ fn legs_fixes_and_zones_are_one_set() {
     }
     assert!(window.shows("3 together"));
     let before = window.plan();
+    window.click("Raise them");
+    let altitude = |window: &Window, leg: &str| window.plan().leg(&leg.into()).unwrap().leg.altitude.clone();
+    assert!(
+        altitude(&window, "side4").is_some() && altitude(&window, "side3").is_none(),
+        "the leg among them"
+    );
+    window.click("Undo");
     let grip = window.centre("Move what is selected");
     window.drag(grip, vec2(-25.0, 30.0));
     let moved = window.plan();

@@ -117,3 +117,17 @@ fn on_a_narrow_map_the_legend_is_behind_a_button() {
     wide.until_analysed();
     assert!(wide.colour_within("Map", "alternate").is_some() && !wide.shows("What the lines mean"));
 }
+
+#[test]
+fn a_click_on_the_runway_means_the_take_off_as_a_stage() {
+    let mut window = window();
+    let threshold = window.plan().runways[0].threshold;
+    let take_off = window.plan().stages[0].id.clone();
+    let forecast = window.app().analysis().forecast.clone();
+    assert!(
+        forecast.passages[0].leg == take_off && forecast.points[0].position.distance_m(threshold) < 2000.0
+    );
+    let runway = window.harness.get_by_label("Runway R05").rect().center();
+    window.click_at(runway);
+    assert!(!window.shows("It is no longer in the plan") && !window.shows("Leg Take-off"));
+}

@@ -1,7 +1,11 @@
 //! A window that is killed, and the next one.
 
+use super::vehicle::status;
 use super::{SQUARE, Window};
+use egui_kittest::kittest::Queryable;
+use flight_exec::{Command, Phase};
 use flight_plan::FlightPlan;
+use gcs_app::link::Call;
 use std::path::Path;
 
 fn window_in(folder: &Path, text: &str) -> Window {
@@ -55,4 +59,34 @@ fn copies_that_cannot_be_kept_are_said() {
     assert!(window.shows("No copy of unsaved changes"));
     window.click("TF side2");
     assert_eq!(window.selected(), "side2");
+}
+
+#[test]
+fn the_question_hides_no_command_and_return_recovers() {
+    let folder = tempfile::tempdir().unwrap();
+    let lost = edit_and_kill(folder.path());
+    let mut window = window_in(folder.path(), "");
+    window.connect();
+    let mut value = status(Phase::Flying);
+    value.plan = Some("the plan that is aboard".into());
+    window.receive_position(false);
+    window.receive_status(value);
+    while window.asked().is_some() {}
+    let question = window.harness.get_by_label("Recover the changes").rect();
+    let emergency = window.harness.get_by_label("Emergency: fly the alternate in force (hold)").rect();
+    assert!(!question.intersects(emergency));
+    window.press(egui::Key::Enter);
+    assert!(window.plan() == lost && !window.shows("ended without saving"));
+    drop(window);
+
+    let mut window = window_in(folder.path(), "");
+    window.connect();
+    let mut value = status(Phase::Flying);
+    value.plan = Some("the plan that is aboard".into());
+    window.receive_position(false);
+    window.receive_status(value);
+    while window.asked().is_some() {}
+    window.click("⏸ Hold");
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Hold)));
+    assert!(window.shows("ended without saving"));
 }

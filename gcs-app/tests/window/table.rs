@@ -174,6 +174,7 @@ fn drawn(mut panel: Box<dyn Panel>, scrolled: f32, look: impl Fn(&Harness<'_>)) 
         leg: format!("leg{n}").as_str().into(),
         stage: "circuit".into(),
         passes: Vec::new(),
+        reverse: false,
         first: n,
         end: n + 1,
         energy_left: 1.0,

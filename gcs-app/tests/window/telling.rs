@@ -114,6 +114,14 @@ fn a_story_that_failed_is_read_whole_and_can_be_tried_again_or_closed() {
 }
 
 #[test]
+fn a_demo_that_is_quit_is_not_said_to_fly_on() {
+    let (mut window, _) = flying();
+    window.harness.state_mut().listen_to(Story::default());
+    window.press_ctrl(egui::Key::Q);
+    assert!(window.shows("The demo ends with this window") && !window.shows("flies on by its plan"));
+}
+
+#[test]
 fn the_report_of_a_demo_is_made_in_sight_and_can_be_cancelled() {
     let mut window = Window::open(SQUARE);
     let story = Story::default();

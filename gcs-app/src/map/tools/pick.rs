@@ -34,9 +34,8 @@ pub fn things_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
 
 /// Everything whose line is under the pointer.
 pub fn lines_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
-    let written = |leg: Id| Selection::Leg(canvas.scene.document.written(&leg));
-    let mut things: Vec<Selection> =
-        path::legs_near(at, canvas.view, canvas.scene).into_iter().map(written).collect();
+    let flown = path::legs_near(at, canvas.view, canvas.scene);
+    let mut things: Vec<Selection> = flown.iter().map(|leg| canvas.scene.document.part_of(leg)).collect();
     if things.is_empty() {
         things.extend(ways_near(at, canvas));
     }

@@ -17,7 +17,8 @@ const NAMED: usize = 40;
 
 /// Above the properties that they have in common.
 pub fn head(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
-    ui.label(RichText::new(format!("{} legs", legs.len())).size(15.0).strong());
+    let count = if legs.len() == 1 { "1 leg".to_owned() } else { format!("{} legs", legs.len()) };
+    ui.label(RichText::new(count).size(15.0).strong());
     ui.add(named(ui, scene, legs).truncate());
     ui.add_space(4.0);
     raise::show(ui, scene, legs, queue);

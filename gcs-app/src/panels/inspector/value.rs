@@ -342,6 +342,7 @@ pub fn unit(quantity: Quantity, u: Units) -> Unit {
         Quantity::Angle => of("°", 1.0, 0),
         Quantity::Time => of("s", 1.0, 0),
         Quantity::Count => of("×", 1.0, 0),
+        Quantity::Rank => of("", 1.0, 0),
         Quantity::Share => of("%", 100.0, 0),
         Quantity::Plain => of("", 1.0, 2),
     }

@@ -104,7 +104,7 @@ impl Levels {
         queue: &mut Queue,
     ) {
         if response.clicked() || response.drag_started() {
-            queue.view(ViewCommand::Select(Some(Selection::Leg(passage.leg.clone()))));
+            queue.view(ViewCommand::Select(Some(scene.document.part_of(&passage.leg))));
         }
         if response.drag_started()
             && let Some(from) = response.ctx.input(|i| i.pointer.press_origin())

@@ -75,10 +75,12 @@ fn read(typed: &str, u: Units) -> Result<LatLon, (Vec<Named>, String)> {
     }
     let exact = world::exact(typed, places);
     let meant = if exact.is_empty() { world::like(typed, places, OFFERED) } else { exact };
-    match known(Some(places)) {
-        Ok(at) if meant.len() < 2 => Ok(at),
-        Ok(_) => Err((offered(&meant, places, u), String::new())),
-        Err(why) => Err((offered(&meant, places, u), why)),
+    match (known(Some(places)), meant.as_slice()) {
+        (Ok(at), [] | [_]) => Ok(at),
+        // who typed the beginning of the only one means that
+        (Err(_), [only]) => Ok(only.position()),
+        (Ok(_), _) => Err((offered(&meant, places, u), String::new())),
+        (Err(why), _) => Err((offered(&meant, places, u), why)),
     }
 }
 

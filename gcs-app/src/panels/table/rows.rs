@@ -98,8 +98,7 @@ pub(super) fn said(plan: &FlightPlan) -> HashMap<Id, Said> {
 
 /// What a row is of: a leg, also that of a procedure, or a stage without legs.
 pub(super) fn part(scene: &Scene<'_>, entry: &Entry<'_>) -> Selection {
-    let leg = scene.document.written(entry.leg);
-    if leg == *entry.stage { Selection::Stage(leg) } else { Selection::Leg(leg) }
+    scene.document.part_of(entry.leg)
 }
 
 /// What people call it.
@@ -136,7 +135,7 @@ pub(super) fn heads(units: crate::units::Units) -> [String; Column::COUNT] {
 pub(super) fn cells(scene: &Scene<'_>, entry: &Entry<'_>, said: &Said) -> [String; Column::COUNT] {
     let kind = scene.document.kind_name(entry.leg);
     let passage = entry.flown.ok();
-    let pass = passage.and_then(|passage| passage.passes.last()).map_or_else(String::new, u64::to_string);
+    let pass = passage.map_or_else(String::new, pass);
     let points = passage.and_then(|passage| scene.forecast().part(passage)).unwrap_or_default();
     let name = label(scene, entry);
     let (altitude, airspeed) = (altitude_text(scene, said, points), airspeed_text(scene, said));
@@ -177,6 +176,12 @@ fn altitude_text(scene: &Scene<'_>, said: &Said, points: &[Point]) -> String {
         || "–".into(),
         |altitude| format!("{}, {}", inherited::altitude_text(scene, &altitude.value), altitude.from),
     )
+}
+
+/// `2`, or `2 ◀ back` of a leg that is flown from its end to its beginning.
+fn pass(passage: &Passage) -> String {
+    let number = passage.passes.last().map_or_else(String::new, u64::to_string);
+    if passage.reverse { format!("{number} ◀ back") } else { number }
 }
 
 fn airspeed_text(scene: &Scene<'_>, said: &Said) -> String {

@@ -87,7 +87,29 @@ pub(super) fn own_in_short(plan: &FlightPlan, all: &Alternates, of: Option<&Id>)
     let usual = own().find(|f| all.get(Cause::Operator) == Some(f)).or_else(|| own().next())?;
     let others: BTreeSet<&Id> = own().map(|f| &f.plan).filter(|id| **id != usual.plan).collect();
     let more = if others.is_empty() { String::new() } else { format!(" +{}", others.len()) };
-    Some(format!("{}{more}", plan_name(plan, &usual.plan)))
+    Some(format!("{}{}{more}", only_for(all, usual), plan_name(plan, &usual.plan)))
+}
+
+/// `engine, link: `, where it is not for every cause.
+fn only_for(all: &Alternates, usual: &InForce) -> String {
+    if all.iter().all(|(_, in_force)| in_force.is_some_and(|f| f.from == usual.from)) {
+        return String::new();
+    }
+    let causes = all.iter().filter(|(_, in_force)| *in_force == Some(usual));
+    let causes: Vec<&str> = causes.map(|(cause, _)| short_name(cause)).collect();
+    format!("{}: ", causes.join(", "))
+}
+
+fn short_name(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Engine => "engine",
+        Cause::Energy => "energy",
+        Cause::Gps => "GPS",
+        Cause::Link => "link",
+        Cause::Traffic => "traffic",
+        Cause::Payload => "payload",
+        Cause::Operator => "operator",
+    }
 }
 
 /// The emergency plan for every cause, and who names it.
@@ -140,7 +162,7 @@ mod tests {
         };
         assert_eq!(own_in_short(&plan, &whole, None).as_deref(), Some("home"), "the plan itself");
         assert_eq!(said(&[]), "");
-        assert_eq!(said(&[(Some(Cause::Engine), "field")]), "field");
+        assert_eq!(said(&[(Some(Cause::Engine), "field")]), "engine: field");
         assert_eq!(said(&[(None, "strip"), (Some(Cause::Engine), "field")]), "strip +1");
     }
 }

@@ -100,7 +100,9 @@ fn done(row: &Row, response: &Response, rect: Rect, queue: &mut Queue) -> Option
     {
         queue.view(ViewCommand::JumpTo(selection));
     }
-    match (response.clicked(), row.folds && (on_triangle || row.selection.is_none())) {
+    // the main plan's heading stands for the plan
+    let is_heading = row.selection.is_none() && row.group != Some(Group::Stages);
+    match (response.clicked(), row.folds && (on_triangle || is_heading)) {
         (false, _) => None,
         (true, true) => Some(Done::Folded),
         (true, false) => Some(Done::Chosen),

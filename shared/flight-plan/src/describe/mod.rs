@@ -132,6 +132,8 @@ pub enum Quantity {
     Time,
     /// How often or how many.
     Count,
+    /// Which in an order; 1 is the first.
+    Rank,
     /// A part of one.
     Share,
     /// In a unit that the plan names, or none.

@@ -55,7 +55,7 @@ const RUNWAY: Description = element(
         P(number("heading", "Heading", Quantity::Angle, 0.0, "0")
             .help("The landing direction, degrees true.")),
         P(number("length", "Length", Quantity::Length, 1.0, "600").help("What can be used of it.")),
-        P(number("priority", "Priority", Quantity::Count, 1.0, "1")
+        P(number("priority", "Priority", Quantity::Rank, 1.0, "1")
             .help("Which of several runways is preferred; 1 is the best.")),
         P(property(
             "approachEntry",

@@ -1,0 +1,58 @@
+//! Another plan takes the place of the one that is shown: what is kept of that, and what is not.
+
+use super::creating::{SIZE, begun};
+use super::filing::{edit, open, until_listed, window, window_on};
+use super::{SQUARE, Window};
+use egui::{Key, vec2};
+
+#[test]
+fn what_was_discarded_is_not_asked_about_again() {
+    let mut window = begun(SIZE);
+    window.click("Create");
+    window.press_ctrl(Key::N);
+    window.click("Discard the changes");
+    window.press_ctrl(Key::Q);
+    assert!(!window.shows("unsaved changes") && window.app().is_leaving());
+}
+
+#[test]
+fn another_plan_begins_without_what_was_tried_with_the_last() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.press(Key::Space);
+    window.right_click_at(window.centre("Map") + vec2(90.0, 60.0));
+    assert!(window.app().view().cursor_s.is_some() && window.shows("Make a fix here"));
+    window.press_ctrl(Key::N);
+    let view = window.app().view();
+    assert!(view.cursor_s.is_none() && !view.playing && view.what_if == Default::default());
+    assert!(!window.shows("Make a fix here"));
+}
+
+#[test]
+fn a_saved_plan_that_was_undone_and_redone_is_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let (first, second) = (folder.path().join("first.xml"), folder.path().join("second.xml"));
+    std::fs::write(&second, SQUARE.replace("side2", "other")).unwrap();
+    let mut window = window_on(&first, SQUARE);
+    edit(&mut window);
+    window.press_ctrl(Key::S);
+    window.until("saved", |app| !app.document().is_dirty());
+    open(&mut window, &second);
+    for key in [Key::Z, Key::Z, Key::Y, Key::Y] {
+        window.press_ctrl(key);
+    }
+    assert_eq!(window.app().document().path(), Some(second.as_path()));
+    window.press_ctrl(Key::Q);
+    assert!(window.app().is_leaving() && !window.shows("unsaved changes"));
+}
+
+#[test]
+fn what_is_typed_at_once_takes_the_place_of_the_name_and_not_of_the_format() {
+    let mut window = window(SQUARE);
+    window.press_ctrl(Key::S);
+    until_listed(&mut window);
+    window.steps(2);
+    window.harness.event(egui::Event::Text("mine".into()));
+    window.steps(2);
+    assert_eq!(window.app().view().browsing.as_ref().unwrap().name, "mine.xml");
+}
