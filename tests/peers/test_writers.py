@@ -142,8 +142,8 @@ def home_and_square(add):
     add(20)
 
 
-# what both lists leave open: the runway, how a return to launch ends, and from where it is landed on
-ASSUMED = ["landing-direction", "return-to-launch", "runway-made-up"]
+# what both lists leave open: how a return to launch ends, and the runway of each direction
+ASSUMED = ["return-to-launch", "runway-made-up", "runway-made-up"]
 ABOVE_HOME = [(lat, lon, altitude - 349.0) for lat, lon, altitude in SQUARE]
 
 
@@ -153,7 +153,7 @@ def test_pymavlink_writes_a_mission(tmp_path):
     file = tmp_path / "mission.txt"
     mission.save(str(file))
     agree(legs(imported(file, tmp_path)), ABOVE_HOME)
-    comes_back(file, tmp_path, "waypoints", ASSUMED, ["runway-not-carried"])
+    comes_back(file, tmp_path, "waypoints", ASSUMED, ["runway-not-carried"] * 2)
 
 
 def test_dronekit_like_writer_saves_a_mission(tmp_path):
@@ -168,7 +168,7 @@ def test_dronekit_like_writer_saves_a_mission(tmp_path):
     file = tmp_path / "saved_mission.txt"
     file.write_text("QGC WPL 110\n" + "".join("\t".join(map(str, row)) + "\n" for row in rows))
     agree(legs(imported(file, tmp_path)), ABOVE_HOME)
-    comes_back(file, tmp_path, "waypoints", ASSUMED, ["runway-not-carried"])
+    comes_back(file, tmp_path, "waypoints", ASSUMED, ["runway-not-carried"] * 2)
 
 
 def test_pymavlink_writes_loops_fences_and_rally_points(tmp_path):

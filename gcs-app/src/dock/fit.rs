@@ -160,7 +160,9 @@ mod tests {
             .0
             .tiles
             .iter()
-            .filter(|(_, tile)| matches!(tile, Tile::Pane(id) if *id == "inspector" || *id == "flight"))
+            .filter(
+                |(_, tile)| matches!(tile, Tile::Pane(id) if ["inspector", "flight", "what-if"].contains(id)),
+            )
             .map(|(id, _)| *id)
             .collect();
         right.iter().for_each(|id| tree.0.set_visible(*id, false));

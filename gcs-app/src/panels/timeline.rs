@@ -46,11 +46,15 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         // what follows is not of the plan that is shown
         ui.label(RichText::new("◌ Out of date").color(p.caution)).on_hover_text(why);
     }
-    ui.add(egui::Label::new(RichText::new(&sum).color(p.weak)).truncate()).on_hover_text(sum);
+    let why_none = scene.analysis.no_forecast.as_ref();
+    // beside the reason why there is none, noughts say nothing
+    if why_none.is_none() || !forecast.points.is_empty() {
+        ui.add(egui::Label::new(RichText::new(&sum).color(p.weak)).truncate()).on_hover_text(sum);
+    }
     if scene.is_behind() {
         ui.add(egui::Spinner::new().size(14.0));
     }
-    if let Some(why) = scene.analysis.no_forecast.as_ref().or(forecast.cut_short.as_ref()) {
+    if let Some(why) = why_none.or(forecast.cut_short.as_ref()) {
         ui.add(egui::Label::new(RichText::new(format!("⚠ {why}")).color(p.caution)).truncate())
             .on_hover_text(why);
     }

@@ -99,6 +99,8 @@ impl Window {
         self.gestures += 1;
         self.harness.event(Event::Paste(text.into()));
         self.steps(3);
+        // what was read in the last of these is drawn
+        self.steps(2);
     }
 
     /// Takes an entry of what a heading of the tree can add.

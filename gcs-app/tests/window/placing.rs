@@ -43,7 +43,7 @@ fn a_procedure_is_placed_by_its_anchor_and_its_bearing() {
     let anchor = window.centre("Map") + vec2(60.0, 60.0);
     window.harness.hover_at(anchor);
     window.steps(2);
-    assert!(window.shows("Procedure procedure1 behind side4: click its anchor"));
+    assert!(window.shows("Procedure procedure1 behind side4, in Main plan > circuit: click its anchor"));
     window.click_at(anchor);
     window.harness.hover_at(anchor + vec2(80.0, 0.0));
     window.steps(2);

@@ -168,7 +168,7 @@ fn a_mission_that_lands_and_takes_off_again_is_several_flights() {
             "take-off on landing-2 at 75 home",
             "mission-3",
             "  item11: TF 36.33 -84.16, 120 home",
-            "land on runway",
+            "land on landing-3",
         ]
     );
     assert_eq!(said(&import, "several-flights").len(), 1);

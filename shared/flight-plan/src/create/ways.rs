@@ -141,7 +141,7 @@ mod tests {
 
     fn plan(legs: &str) -> FlightPlan {
         let text = format!(
-            r#"<flightPlan xmlns="urn:legwork:flight-plan:1"><fixes><fix id="A" lat="36" lon="-84"/></fixes>
+            r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="ways" aircraft="trainer"><fixes><fix id="A" lat="36" lon="-84"/></fixes>
             <mainPlan><stage id="s" type="mission">{legs}</stage></mainPlan></flightPlan>"#
         );
         let reading = read(&text);

@@ -40,22 +40,12 @@ impl<'a> Runways<'a> {
         if let Some(given) = &self.assumptions.runway {
             return given.id.clone();
         }
-        let heading_deg = direction.heading_deg(point.0);
-        let off_deg = |r: &Runway| normalise_180(r.heading_deg - heading_deg).abs();
-        // what only shows from where somebody comes makes no second runway
-        let is_same = |r: &&Runway| {
-            let is_as_high = (r.elevation_amsl_m - point.1).abs() <= SAME_M;
-            let may_turn = is_as_high && !direction.is_said();
-            r.threshold.distance_m(point.0) < SAME_M && (may_turn || off_deg(r) < SAME_DEG)
-        };
+        let told_deg = direction.heading_deg(point.0);
+        let heading_deg = told_deg.unwrap_or(0.0);
+        let off_deg = |r: &Runway| told_deg.map_or(0.0, |deg| normalise_180(r.heading_deg - deg).abs());
+        // another direction makes another runway: the mission would land there in that direction
+        let is_same = |r: &&Runway| r.threshold.distance_m(point.0) < SAME_M && off_deg(r) < SAME_DEG;
         if let Some(same) = self.list.iter().find(is_same) {
-            if off_deg(same) >= SAME_DEG {
-                let message = format!(
-                    "this lands on runway `{}`, which begins at the same place, in its direction {:.0}°, not in that of the arrival, {heading_deg:.0}°; give the landing a runway of its own if that is wrong",
-                    same.id, same.heading_deg
-                );
-                notes.push("landing-direction", place, message);
-            }
             if (same.elevation_amsl_m - point.1).abs() > SAME_M {
                 let message = format!(
                     "the altitude of this landing, {:.0} m AMSL, is left out: runway `{}` is {:.0} m high",
@@ -96,15 +86,16 @@ impl Direction {
         self.heading_deg.is_finite() && self.heading_deg != 0.0
     }
 
-    fn heading_deg(self, at: LatLon) -> f64 {
+    /// `None`: nothing tells it.
+    fn heading_deg(self, at: LatLon) -> Option<f64> {
         if self.is_said() {
-            return normalise_360(self.heading_deg % 360.0);
+            return Some(normalise_360(self.heading_deg % 360.0));
         }
         let far = |p: &LatLon| p.distance_m(at) > SAME_M;
         match (self.towards.filter(far), self.from.filter(far)) {
-            (Some(to), _) => at.bearing_deg(to),
-            (None, Some(from)) => from.inverse(at).bearing_end_deg,
-            (None, None) => 0.0,
+            (Some(to), _) => Some(at.bearing_deg(to)),
+            (None, Some(from)) => Some(from.inverse(at).bearing_end_deg),
+            (None, None) => None,
         }
     }
 }

@@ -31,7 +31,7 @@ pub const DIALECT: Dialect = Dialect {
     mode_name: modes::name,
     steer: modes::steer,
     arm: &[Command::Arm],
-    forgets_speed: false,
+    forgets_speed: true,
     need: None,
     advice: &ADVICE,
     manner: Manner { we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER, wind: WIND_DATA::ID },

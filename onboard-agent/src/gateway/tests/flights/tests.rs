@@ -427,6 +427,20 @@ fn an_engine_that_fails_and_has_no_rpm_reading_is_suspected_before_the_ground() 
     assert!(flight.sim.autopilot.aircraft.state().altitude_amsl_m > 400.0);
 }
 
+/// ArduPlane forgets what it was told with each change of its mode.
+#[test]
+fn after_a_hold_the_airspeed_of_the_plan_is_flown_again() {
+    let mut flight = Flight::new(61, &[]);
+    let slow = zigzag(0, 20, 400.0).into_iter().map(|w| Waypoint { airspeed_mps: 20.0, ..w });
+    flight.launch(std::iter::once(take_off()).chain(slow).collect());
+    flight.run_until(60.0, "slow", |f| f.sim.autopilot.airspeed_mps() == 20.0);
+    flight.ask(GatewayRequest::Hold).unwrap();
+    flight.run_until(10.0, "Hold", |f| f.state() == GatewayState::Hold);
+    flight.ask(GatewayRequest::Resume).unwrap();
+    flight.run_until(10.0, "Nav", |f| f.state() == GatewayState::Nav);
+    flight.run_until(5.0, "slow again", |f| f.sim.autopilot.airspeed_mps() == 20.0);
+}
+
 /// As ArduPlane does with a stopped engine: it pulls up to keep the altitude, and gives away its speed first.
 #[test]
 fn an_aircraft_that_gets_slow_at_full_throttle_is_told_and_its_engine_suspected() {

@@ -167,6 +167,20 @@ fn a_speed_item_persists_and_only_it_is_reported_as_reached() {
 }
 
 #[test]
+fn a_change_of_mode_forgets_the_airspeed() {
+    let mut ground = airborne_in_auto(&circuit(Config::default().home.position), Wind::CALM);
+    let change = MavCmd::MAV_CMD_DO_CHANGE_SPEED;
+    assert_eq!(ground.command(change, [0., 20., 0., 0., 0., 0., 0.]), MavResult::MAV_RESULT_ACCEPTED);
+    assert_eq!(ground.sim.autopilot.airspeed_mps(), 20.0);
+    ground.mode(Mode::Auto);
+    assert_eq!(ground.sim.autopilot.airspeed_mps(), 20.0, "it is in that mode");
+    for mode in [Mode::Loiter, Mode::Auto] {
+        ground.mode(mode);
+        assert_eq!(ground.sim.autopilot.airspeed_mps(), 25.0);
+    }
+}
+
+#[test]
 fn clear_all_is_refused_while_armed_in_auto() {
     let home = Config::default().home.position;
     let mut ground = airborne_in_auto(&circuit(home), Wind::CALM);

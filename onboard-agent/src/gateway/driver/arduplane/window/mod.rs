@@ -85,7 +85,7 @@ impl Feeding for Window {
         }
         let Some(active) = self.chain.active() else { return Target::End };
         let next = self.chain.next();
-        let item = Item::of(&active.waypoint);
+        let item = ring::item_of(&active.waypoint);
         match (self.loaded.is_some_and(|l| matches(&l, &item)), active.serial) {
             (false, _) => Target::Unknown { next },
             (true, Serial(0)) => {
@@ -248,7 +248,7 @@ impl Window {
     /// What is wanted at a position.
     fn wanted(&self, position: u64) -> Item {
         match self.chain.at(position) {
-            Some(waypoint) if position < self.end => Item::of(waypoint),
+            Some(waypoint) if position < self.end => ring::item_of(waypoint),
             _ => self.end_loiter(position),
         }
     }

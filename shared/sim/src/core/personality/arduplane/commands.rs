@@ -9,6 +9,9 @@ use crate::core::params::Setting;
 use crate::core::personality::Post;
 use mavlink::dialects::ardupilotmega::*;
 
+/// The airspeed that stands for its own cruise airspeed, m/s.
+const OWN_SPEED_MPS: f64 = -2.0;
+
 pub fn done(ok: bool) -> MavResult {
     if ok { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_FAILED }
 }
@@ -29,9 +32,14 @@ pub fn command(a: &mut Autopilot, c: &Command, out: &mut Vec<Post>) -> MavResult
     }
 }
 
-/// Enters a mode; false if there is none or it can't be entered now.
+/// Enters a mode, which forgets the airspeed that was told before; false if there is none or it can't be entered now.
 pub fn set_mode(a: &mut Autopilot, mode: Option<Mode>) -> bool {
-    mode.is_some_and(|mode| a.set_mode(mode))
+    let before = a.mode();
+    let is_entered = mode.is_some_and(|mode| a.set_mode(mode));
+    if a.mode() != before {
+        a.change_speed(OWN_SPEED_MPS);
+    }
+    is_entered
 }
 
 /// Makes an item the current one, and says so at once.
