@@ -37,7 +37,7 @@ fn leads_back<'p>(program: &'p Program, path: &LegPath) -> Option<&'p Leg> {
                 &ways.branches.iter().find(|branch| Some(&branch.id) == ways.default)?.next
             }
         };
-        index = next.as_ref().map_or(Some(index + 1), |next| known(next))?;
+        index = next.as_ref().map_or(Some(index + 1), known)?;
         if index == start {
             return fork;
         }
