@@ -21,6 +21,7 @@ mod invocation;
 mod liveliness;
 mod raw;
 mod session;
+mod stand_in;
 mod variable;
 
 pub use ::contract::{self, Description, Key, KeyError, Kind, Primitive, spec, topics};

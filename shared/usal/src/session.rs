@@ -3,6 +3,7 @@
 use crate::audit::{AuditHook, Audited};
 use crate::contract::{Key, KeyError, Kind};
 use crate::health::{Health, HealthCount};
+use crate::stand_in::StandIn;
 use crate::{Instance, SessionError};
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -223,12 +224,9 @@ async fn open_zenoh(role: &Role) -> Result<zenoh::Session, SessionError> {
     }
 }
 
-/// A Zenoh client cannot be opened while its router is absent, but it finds a router that it has
-/// lost. So it is opened at one of our own, which then goes away.
 async fn open_without_hub(endpoint: &str) -> zenoh::Result<zenoh::Session> {
-    let stand_in = zenoh::open(zenoh_config("router", &["tcp/127.0.0.1:0"], &[])?).await?;
-    let own = stand_in.info().locators().await.into_iter().next().map(|l| l.to_string()).unwrap_or_default();
-    let session = zenoh::open(zenoh_config("client", &[], &[endpoint, &own])?).await;
+    let stand_in = StandIn::open().await?;
+    let session = zenoh::open(zenoh_config("client", &[], &[endpoint, stand_in.endpoint()])?).await;
     stand_in.close().await?;
     session
 }
@@ -237,7 +235,7 @@ async fn open_without_hub(endpoint: &str) -> zenoh::Result<zenoh::Session> {
 /// the others; these are clients. (Found by trying 1.10: two peers of the same router do not hear
 /// each other; among routers, one that comes within 0.1 s of another's going is never told what
 /// is there.)
-fn zenoh_config(mode: &str, listen: &[&str], connect: &[&str]) -> zenoh::Result<zenoh::Config> {
+pub(crate) fn zenoh_config(mode: &str, listen: &[&str], connect: &[&str]) -> zenoh::Result<zenoh::Config> {
     let mut config = zenoh::Config::default();
     let values = [
         ("mode", serde_json::json!(mode)),

@@ -54,9 +54,14 @@ impl Scenario {
     /// # Errors
     /// Something comes otherwise than expected.
     pub async fn fly(&self, rig: &mut Rig) -> anyhow::Result<()> {
-        rig.fly_mission().await?;
-        let flown = (self.fly)(rig).await;
-        flown.with_context(|| rig.story()).with_context(|| format!("{}: {}", self.name, self.expected))
+        let flown = async {
+            rig.fly_mission().await?;
+            (self.fly)(rig).await
+        };
+        let flown = flown.await;
+        flown
+            .with_context(|| format!("{}\n{}", rig.story(), rig.log_ends()))
+            .with_context(|| format!("{}: {}", self.name, self.expected))
     }
 }
 

@@ -312,6 +312,11 @@ impl Rig {
         )
     }
 
+    /// What the agent's processes logged last, for a failure's message.
+    pub fn log_ends(&self) -> String {
+        self.places.logs.ends()
+    }
+
     /// It landed on the runway.
     pub fn expect_on_runway(&self) -> anyhow::Result<()> {
         let position = self.position().context("no position")?;

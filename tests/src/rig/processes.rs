@@ -3,10 +3,16 @@
 use super::Pace;
 use crate::binaries::Program;
 use crate::logs::Logs;
+use anyhow::Context;
+use std::ops::Range;
 use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The vehicle's name.
 pub const VEHICLE: &str = "test";
+
+/// Where the agent listens: Linux gives ports from 32768 on, others from 49152.
+const PORTS: Range<u32> = 20_000..30_000;
 
 /// Where the agent's processes find each other, the autopilot and their state.
 pub struct Places {
@@ -57,7 +63,19 @@ impl Places {
     }
 }
 
-/// A TCP port that nobody uses now.
+/// A TCP port that nobody uses now, below those that the system gives to whoever asks for any: by the time that the gateway listens
+/// there, somebody would have got it.
 fn free_port() -> anyhow::Result<u16> {
-    Ok(std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port())
+    static ASKED: AtomicU32 = AtomicU32::new(0);
+    let mut ports = (0..PORTS.len()).map(|_| {
+        let asked = ASKED.fetch_add(1, Ordering::Relaxed);
+        // tests that run at the same time are processes with neighbouring numbers
+        PORTS.start + std::process::id().wrapping_mul(101).wrapping_add(asked) % PORTS.len() as u32
+    });
+    let free = ports.find_map(|port| u16::try_from(port).ok().filter(|port| is_free(*port)));
+    free.with_context(|| format!("a free port in {PORTS:?}"))
+}
+
+fn is_free(port: u16) -> bool {
+    std::net::TcpListener::bind(("127.0.0.1", port)).is_ok()
 }

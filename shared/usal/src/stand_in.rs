@@ -1,0 +1,69 @@
+//! A router of our own, for the moment in which a client is opened while its hub is absent.
+//!
+//! A Zenoh client cannot be opened without a router, but it finds one that it has lost. For good, though: all its life it looks for
+//! every router that it was opened with. So the stand-in has no port, which somebody else would get after it, but a socket that is
+//! nobody's: a client that found another's router behind its own stand-in's port stayed there, and its hub never heard of it.
+
+use crate::session::zenoh_config;
+#[cfg(unix)]
+use tempfile::TempDir;
+
+/// A router that nobody else reaches. It is gone when closed.
+pub struct StandIn {
+    zenoh: zenoh::Session,
+    endpoint: String,
+    #[cfg(unix)]
+    _folder: TempDir,
+}
+
+impl StandIn {
+    /// Opens one.
+    ///
+    /// # Errors
+    /// There is no room for its socket, or the socket's path is too long.
+    #[cfg(unix)]
+    pub async fn open() -> zenoh::Result<Self> {
+        let folder = tempfile::Builder::new().prefix("legwork-").tempdir()?;
+        let endpoint = format!("unixsock-stream/{}", folder.path().join("stand-in.sock").display());
+        let zenoh = zenoh::open(zenoh_config("router", &[&endpoint], &[])?).await?;
+        Ok(Self { zenoh, endpoint, _folder: folder })
+    }
+
+    /// Opens one.
+    ///
+    /// # Errors
+    /// There is no free port.
+    #[cfg(not(unix))]
+    pub async fn open() -> zenoh::Result<Self> {
+        let zenoh = zenoh::open(zenoh_config("router", &["tcp/127.0.0.1:0"], &[])?).await?;
+        let endpoint = zenoh.info().locators().await.into_iter().next().map(|l| l.to_string());
+        Ok(Self { zenoh, endpoint: endpoint.unwrap_or_default() })
+    }
+
+    /// Where it listens.
+    pub fn endpoint(&self) -> &str {
+        &self.endpoint
+    }
+
+    /// Ends it.
+    ///
+    /// # Errors
+    /// It can't be closed.
+    pub async fn close(self) -> zenoh::Result<()> {
+        self.zenoh.close().await
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn a_stand_in_takes_no_port_and_leaves_nothing() {
+        let stand_in = StandIn::open().await.unwrap();
+        let socket = stand_in.endpoint().strip_prefix("unixsock-stream/").unwrap().to_owned();
+        assert!(std::path::Path::new(&socket).exists());
+        stand_in.close().await.unwrap();
+        assert!(!std::path::Path::new(&socket).exists());
+    }
+}
