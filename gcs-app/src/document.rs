@@ -24,6 +24,8 @@ pub struct Document {
     /// Of the parts that have one: many are asked for in each frame.
     names: BTreeMap<Id, String>,
     version: u64,
+    /// Edits so far, without steps back and forth.
+    edits: u64,
     /// The first version.
     id: u64,
     /// Its changes were not wanted any more when another took its place.
@@ -55,6 +57,7 @@ impl Document {
             kinds: BTreeMap::new(),
             names: BTreeMap::new(),
             version: 0,
+            edits: 0,
             id: 0,
             is_discarded: false,
         };
@@ -101,6 +104,10 @@ impl Document {
     /// Differs whenever the plan differs.
     pub fn version(&self) -> u64 {
         self.version
+    }
+    /// Differs whenever somebody worked on it; steps back and forth are no work.
+    pub fn edits(&self) -> u64 {
+        self.edits
     }
     /// What was wrong with the text, until the first edit.
     pub fn reading_problems(&self) -> &[Problem] {
@@ -175,6 +182,7 @@ impl Document {
     /// Replaces the plan by another one, as a step that can be undone.
     pub fn replace(&mut self, plan: FlightPlan) {
         self.history.replace(plan);
+        self.edits += 1;
         self.changed();
     }
 
@@ -196,6 +204,7 @@ impl Document {
 
     fn apply(&mut self, edit: &Edit, gesture: Option<u64>) -> Result<(), String> {
         self.history.apply(edit, gesture).map_err(|error| error.to_string())?;
+        self.edits += 1;
         self.changed();
         Ok(())
     }

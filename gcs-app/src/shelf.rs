@@ -10,11 +10,14 @@ const MOST_BYTES: usize = 512 << 20;
 pub struct Shelf {
     before: Vec<Document>,
     after: Vec<Document>,
+    /// The edits of the one that is shown when it was turned to: one more, and redo leads nowhere.
+    edits: u64,
 }
 
 impl Shelf {
     /// Puts another document in the place of this one. One that nobody worked on is not kept.
     pub fn open(&mut self, shown: &mut Document, next: Document) {
+        self.give_up_redo();
         let old = std::mem::replace(shown, next);
         if !old.is_nobodys() {
             self.before.push(old);
@@ -29,7 +32,10 @@ impl Shelf {
             shown.undo();
             return false;
         }
-        turn(&mut self.before, shown, &mut self.after)
+        self.settle(shown);
+        let turned = turn(&mut self.before, shown, &mut self.after);
+        self.edits = shown.edits();
+        turned
     }
 
     /// The other way.
@@ -38,7 +44,21 @@ impl Shelf {
             shown.redo();
             return false;
         }
-        turn(&mut self.after, shown, &mut self.before)
+        self.settle(shown);
+        let turned = turn(&mut self.after, shown, &mut self.before);
+        self.edits = shown.edits();
+        turned
+    }
+
+    /// Who edits the document that is shown does not redo what came after it. Undo still leads there: nothing is lost.
+    fn settle(&mut self, shown: &Document) {
+        if shown.edits() != self.edits {
+            self.give_up_redo();
+        }
+    }
+
+    fn give_up_redo(&mut self) {
+        self.before.append(&mut self.after);
     }
 
     /// There is something to undo.
@@ -48,7 +68,7 @@ impl Shelf {
 
     /// There is something to redo.
     pub fn can_redo(&self, shown: &Document) -> bool {
-        shown.can_redo() || !self.after.is_empty()
+        shown.can_redo() || (!self.after.is_empty() && shown.edits() == self.edits)
     }
 
     /// Documents with unsaved changes, the one that is shown first; none of which the changes were discarded.
@@ -69,6 +89,7 @@ impl Shelf {
         for _ in 0..=steps {
             turn(from, shown, to);
         }
+        self.edits = shown.edits();
         true
     }
 
@@ -128,6 +149,26 @@ mod tests {
         let each = documents[0].bytes();
         forget_oldest(&mut documents, 8 * each);
         assert_eq!(names(documents.iter()), ["0", "10", "20", "30", "40", "47", "48", "49"]);
+    }
+
+    #[test]
+    fn redo_leads_to_no_document_once_another_was_edited_or_opened_and_undo_still_does() {
+        let (mut shelf, mut shown) = (Shelf::default(), named("a", true));
+        shelf.open(&mut shown, named("b", true));
+        shelf.undo(&mut shown);
+        assert!(shelf.can_redo(&shown) && shown.plan().name == "a");
+        shown.replace(FlightPlan { name: "a, edited".into(), ..FlightPlan::default() });
+        assert!(!shelf.can_redo(&shown) && !shelf.redo(&mut shown));
+        assert_eq!(shown.plan().name, "a, edited");
+
+        shelf.open(&mut shown, named("c", true));
+        assert!(!shelf.can_redo(&shown), "nothing comes after the newest");
+        let back = std::iter::from_fn(|| shelf.can_undo(&shown).then(|| shelf.undo(&mut shown)));
+        assert_eq!(back.count(), 3);
+        let forth = std::iter::from_fn(|| shelf.can_redo(&shown).then(|| shelf.redo(&mut shown)));
+        assert_eq!(forth.count(), 3);
+        assert_eq!(shown.plan().name, "c");
+        assert_eq!(names(shelf.unsaved(&shown)), ["c", "b", "a, edited"]);
     }
 
     #[test]

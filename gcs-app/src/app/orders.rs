@@ -144,10 +144,10 @@ impl App {
         self.map.fit();
     }
 
-    /// Says so where it is not known.
+    /// Says who knows it, unless it is the elevations that are loaded.
     fn ground_amsl_m(&mut self, at: LatLon) -> f64 {
         let ground = Ground::of(self.layers.ground().as_ref(), at);
-        if ground == Ground::Unknown {
+        if !matches!(ground, Ground::Elevations(_)) {
             self.view.notice = Some(format!("The ground is {}", ground.words(self.view.units)));
         }
         ground.amsl_m()

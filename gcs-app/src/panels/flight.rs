@@ -10,6 +10,9 @@ use flight_exec::{Command, IterationPlace, Phase};
 use flight_plan::{Cause, Id};
 use usal::contract::GatewayState;
 
+/// Below the primary flight display there is room for an alarm, points.
+const ROOM_FOR_ALARMS: f32 = 70.0;
+
 /// The panel: the primary flight display, alarms, and every value with its age.
 #[derive(Debug)]
 pub struct Flight;
@@ -29,14 +32,31 @@ impl Panel for Flight {
         scene.vehicle.received_s.is_some()
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
-        pfd::show(ui, scene);
-        ui.add_space(4.0);
+        // where the display takes all the room, alarms come first: nobody scrolls for what he does not expect
+        let is_low = ui.available_height() < pfd::HEIGHT + ROOM_FOR_ALARMS;
+        if is_low {
+            raised(ui, scene);
+        } else {
+            pfd::show(ui, scene);
+            ui.add_space(4.0);
+        }
         ScrollArea::vertical().id_salt("flight values").auto_shrink(false).show(ui, |ui| {
-            alarms::show(ui, scene);
+            if is_low {
+                pfd::show(ui, scene);
+            } else {
+                alarms::show(ui, scene);
+            }
             ui.add_space(4.0);
             values(ui, scene);
         });
     }
+}
+
+/// The alarms, in a part of a low panel.
+fn raised(ui: &mut Ui, scene: &Scene<'_>) {
+    let most = ui.available_height() * 0.5;
+    ScrollArea::vertical().id_salt("raised alarms").max_height(most).show(ui, |ui| alarms::show(ui, scene));
+    ui.add_space(4.0);
 }
 
 /// What the vehicle does now.

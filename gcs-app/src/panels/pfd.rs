@@ -10,9 +10,12 @@ use crate::units::{self, Unit};
 use egui::{Align2, Color32, FontId, Painter, Rect, Role, Sense, Ui, pos2, vec2};
 use tape::Side;
 
+/// Of the display, points.
+pub const HEIGHT: f32 = 204.0;
+
 /// Draws the display over the full width.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
-    let size = vec2(ui.available_width(), 204.0);
+    let size = vec2(ui.available_width(), HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let text = summary(scene);
     response.widget_info(|| {

@@ -1,14 +1,18 @@
 //! Take-off and landing for a file that has none: on a runway of the plan that is open, or on one before its first point.
 
+use crate::airfields::Ground;
 use crate::command::{DocumentCommand, Queue};
 use crate::files::{Choices, Imported};
 use crate::panels::Scene;
-use egui::Ui;
+use crate::theme;
+use egui::{Label, RichText, Ui};
 use flight_plan::{FlightPlan, Runway, StageKind, transform};
 use geometry::LatLon;
 
 /// A runway that is made ends so far before the first point, metres.
 const BEFORE_M: f64 = 1000.0;
+/// What it is called.
+const MADE: &str = "runway";
 /// Its length, metres.
 const LENGTH_M: f64 = 600.0;
 
@@ -36,6 +40,18 @@ pub fn choose(ui: &mut Ui, imported: &Imported, scene: &Scene<'_>, queue: &mut Q
             }
         }
     });
+    if let Some(made) = chosen.as_ref().filter(|runway| runway.id.as_str() == MADE) {
+        tell_ground(ui, made.threshold, scene);
+    }
+}
+
+/// All altitudes over the runway count from its elevation, so who made it up is said.
+fn tell_ground(ui: &mut Ui, threshold: LatLon, scene: &Scene<'_>) {
+    let ground = Ground::of(scene.layers.ground().as_ref(), threshold);
+    let p = theme::of(ui);
+    let colour = if ground == Ground::Unknown { p.caution } else { p.text };
+    let words = format!("Its ground: {}", ground.words(scene.units()));
+    ui.add(Label::new(RichText::new(words).color(colour)).wrap());
 }
 
 /// The first two places that are flown to.
@@ -51,9 +67,9 @@ fn made(first: LatLon, second: Option<LatLon>, scene: &Scene<'_>) -> Option<Runw
     let heading_deg = second.map_or(0.0, |second| first.bearing_deg(second)).round().rem_euclid(360.0);
     let threshold = first.destination(heading_deg + 180.0, BEFORE_M + LENGTH_M);
     threshold.is_valid().then(|| Runway {
-        id: "runway".into(),
+        id: MADE.into(),
         threshold,
-        elevation_amsl_m: scene.ground.0.elevation_m(threshold).unwrap_or(0.0).round(),
+        elevation_amsl_m: Ground::of(scene.layers.ground().as_ref(), threshold).amsl_m().round(),
         heading_deg,
         length_m: LENGTH_M,
         priority: 1,
