@@ -1,6 +1,7 @@
 //! The ways to the vehicles: one link per connection, several at once. A thread with a runtime of its
 //! own owns the sessions; the window talks to it through two channels and never waits for either.
 
+mod senders;
 mod session;
 mod subscriptions;
 
@@ -83,6 +84,13 @@ pub enum LinkEvent {
     Telemetry(Telemetry),
     /// Something was lost, and will not come again.
     Lost(Loss),
+    /// So many messages of others than the service in whose name they came; they are ignored.
+    Strangers {
+        /// In whose name.
+        service: &'static str,
+        /// How many since this was told last.
+        count: u64,
+    },
     /// A question was answered, or was not in time.
     Answer {
         /// Of the question.

@@ -1,6 +1,7 @@
 //! The thread behind the links: it owns the runtime and the sessions, and turns both into channels.
 //! Each link is a task of its own, so that a vehicle that can't be reached holds up no other.
 
+use super::senders::Senders;
 use super::{
     Call, Endpoint, LinkEvent, LinkId, LinkMessage, LinkState, Loss, Numbered, Order, Reply, Telemetry, Wake,
     subscriptions,
@@ -13,8 +14,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
 use usal::contract::{Empty, Foresee, OPERATOR, OTHER_VERSION, Stamped};
-use usal::topics::{self, Events, FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
-use usal::{CallError, Occurrence, Session, Start};
+use usal::topics::{Events, FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
+use usal::{CallError, Gate, Occurrence, Presence, Session, Start};
 use wire::Convert;
 
 /// A command is answered within this time, or the operator learns that it was not.
@@ -25,6 +26,9 @@ const DELIVERY: Duration = Duration::from_secs(10);
 const DESCRIBE_TIMEOUT: Duration = Duration::from_secs(1);
 /// A plan is checked aboard, and what changes the flight is flown ahead; a big one takes its time.
 const PLAN_TIMEOUT: Duration = Duration::from_secs(30);
+
+/// So often is looked whether others speak in the name of a service.
+const LOOK: Duration = Duration::from_secs(1);
 
 /// Serves orders until the window's end of the links is gone.
 pub fn serve(endpoint: Endpoint, wake: Wake) {
@@ -55,10 +59,24 @@ pub(super) struct Outlet {
     left_out: Arc<AtomicU64>,
     /// The agent is of another version: what it says may mean something else, and is left out.
     is_foreign: Arc<AtomicBool>,
+    /// Who speaks as which service.
+    senders: Arc<Senders>,
     wake: Wake,
 }
 
 impl Outlet {
+    /// Lets in what comes from the session that is this service.
+    fn gate(&self, service: &'static str) -> Gate {
+        let senders = self.senders.clone();
+        Arc::new(move |from| senders.counts(service, from, Instant::now()))
+    }
+
+    async fn report_strangers(&self) {
+        for (service, count) in self.senders.take_strange() {
+            self.send(LinkEvent::Strangers { service, count }).await;
+        }
+    }
+
     /// Waits for room: answers and events are never lost here.
     async fn send(&self, event: LinkEvent) {
         // the window may be gone: nobody receives it
@@ -114,6 +132,7 @@ async fn orders(mut endpoint: Endpoint, wake: Wake) {
                     messages,
                     left_out: Arc::default(),
                     is_foreign: Arc::default(),
+                    senders: Arc::default(),
                     wake: wake.clone(),
                 };
                 let (calls, questions) = mpsc::unbounded_channel();
@@ -184,7 +203,8 @@ impl Open {
     where
         T: serde::de::DeserializeOwned + Clone + Send + Sync + 'static,
     {
-        let mut subscriber = self.session.follow(variable)?;
+        let gate = outlet.gate(variable.service);
+        let mut subscriber = self.session.follow_from(variable, gate)?;
         let outlet = outlet.clone();
         self.tasks.spawn(async move {
             while let Some(received) = subscriber.changed().await {
@@ -204,7 +224,8 @@ impl Open {
     where
         T: serde::de::DeserializeOwned + Send + 'static,
     {
-        let mut subscriber = self.session.listen(events, Start::Remembered)?;
+        let gate = outlet.gate(events.service);
+        let mut subscriber = self.session.listen_from(events, Start::Remembered, gate)?;
         let outlet = outlet.clone();
         self.tasks.spawn(async move {
             while let Some(occurrence) = subscriber.recv().await {
@@ -226,16 +247,30 @@ impl Open {
 
     /// Reports whether the vehicle's services are there, and speak our version.
     fn watch(&mut self, endpoint: &str, outlet: &Outlet) -> Result<(), usal::SessionError> {
+        self.watch_departures(outlet)?;
         let mut presence = self.session.presence()?;
         let (session, endpoint, outlet) = (self.session.clone(), endpoint.to_owned(), outlet.clone());
         self.tasks.spawn(async move {
             let mut services = Some(presence.services());
             while let Some(alive) = services {
-                let state = link_state(&session, &alive, &endpoint).await;
+                let state = link_state(&session, &alive, &endpoint, &outlet.senders).await;
                 outlet.is_foreign.store(matches!(state, LinkState::Failed(_)), Ordering::Relaxed);
-                outlet.send(LinkEvent::Services(alive)).await;
+                outlet.send(LinkEvent::Services(alive.clone())).await;
                 outlet.send(LinkEvent::Link(state)).await;
-                services = presence.changed().await;
+                describe_others(&session, &alive, &outlet.senders).await;
+                services = next(&mut presence, &outlet).await;
+            }
+        });
+        Ok(())
+    }
+
+    /// Notes at once who goes, also while the others are being asked: who comes back may be another session.
+    fn watch_departures(&mut self, outlet: &Outlet) -> Result<(), usal::SessionError> {
+        let mut presence = self.session.presence()?;
+        let senders = outlet.senders.clone();
+        self.tasks.spawn(async move {
+            while let Some(alive) = presence.changed().await {
+                senders.alive(&alive);
             }
         });
         Ok(())
@@ -250,16 +285,49 @@ impl Open {
     }
 }
 
+/// Who is there, once that has changed or has to be asked again; until then strangers are told.
+async fn next(presence: &mut Presence, outlet: &Outlet) -> Option<Arc<BTreeSet<String>>> {
+    loop {
+        tokio::select! {
+            changed = presence.changed() => return changed,
+            () = tokio::time::sleep(LOOK) => outlet.report_strangers().await,
+        }
+        if outlet.senders.is_doubtful(Instant::now()) {
+            return Some(presence.services());
+        }
+    }
+}
+
+/// Asks a service what it is; who answers speaks as it from now on.
+async fn describe(session: &Session, service: &'static str, senders: &Senders) -> Result<(), CallError> {
+    let (_, by) = session.describe(service, DESCRIBE_TIMEOUT).await?;
+    senders.described(service, by, Instant::now());
+    Ok(())
+}
+
+/// Asks those services on which the link does not depend.
+async fn describe_others(session: &Session, alive: &BTreeSet<String>, senders: &Senders) {
+    let others = usal::spec::SERVICES.iter().map(|spec| spec.name);
+    for service in others.filter(|name| ![GATEWAY, FP_MANAGER].contains(name) && alive.contains(*name)) {
+        // one that is slow to describe itself may speak well otherwise
+        let _ = describe(session, service, senders).await;
+    }
+}
+
 /// How far the session has come, with these services there.
-async fn link_state(session: &Session, alive: &BTreeSet<String>, endpoint: &str) -> LinkState {
+async fn link_state(
+    session: &Session,
+    alive: &BTreeSet<String>,
+    endpoint: &str,
+    senders: &Senders,
+) -> LinkState {
     let mut state = LinkState::Connecting(endpoint.to_owned());
     for service in [GATEWAY, FP_MANAGER] {
         if !alive.contains(service) {
             continue;
         }
         state = LinkState::Connected(endpoint.to_owned());
-        let described = session.call(topics::describe(service), &Empty {}, DESCRIBE_TIMEOUT).await;
-        match described {
+        match describe(session, service, senders).await {
             Err(CallError::Refused(refusal)) if refusal.code == OTHER_VERSION => {
                 return LinkState::Failed(format!(
                     "The agent's {service} is not of this ground station's version: {}",
@@ -267,7 +335,7 @@ async fn link_state(session: &Session, alive: &BTreeSet<String>, endpoint: &str)
                 ));
             }
             // a service that is slow to describe itself may speak well otherwise
-            Ok(_) | Err(_) => {}
+            Ok(()) | Err(_) => {}
         }
     }
     state
@@ -373,12 +441,17 @@ mod tests {
             }
         });
         let client = Session::open(usal::Config::client("uav1", &endpoint).named(OPERATOR)).await.unwrap();
-        let nobody = link_state(&client, &BTreeSet::new(), "there").await;
+        let senders = Senders::default();
+        let nobody = link_state(&client, &BTreeSet::new(), "there", &senders).await;
         assert_eq!(nobody, LinkState::Connecting("there".into()));
         let alive = BTreeSet::from([GATEWAY.to_owned()]);
-        let refused = link_state(&client, &alive, "there").await;
+        let refused = link_state(&client, &alive, "there", &senders).await;
         assert!(matches!(&refused, LinkState::Failed(why) if why.contains("version 2")), "{refused:?}");
-        assert_eq!(link_state(&client, &alive, "there").await, LinkState::Connected("there".into()));
+        let connected = link_state(&client, &alive, "there", &senders).await;
+        assert_eq!(connected, LinkState::Connected("there".into()));
+        let (hub, other) = (Some(hub.instance()), Some(client.instance()));
+        let counts = |from| senders.counts(GATEWAY, from, Instant::now());
+        assert!(counts(hub) && !counts(other), "who described the gateway is the gateway");
         agent.await.unwrap();
     }
 
@@ -456,6 +529,7 @@ mod tests {
             messages,
             left_out: Arc::default(),
             is_foreign: Arc::default(),
+            senders: Arc::default(),
             wake: Arc::new(|| {}),
         };
         (outlet, window)
@@ -492,13 +566,102 @@ mod tests {
         assert_eq!(plain.rows.value, [("name".to_owned(), "Fire watch".to_owned())]);
     }
 
+    /// A process of the gateway: a session that is described, and publishes.
+    struct Process {
+        session: Session,
+        gps: usal::VariablePublisher<usal::contract::Gps>,
+        _alive: usal::Announcement,
+    }
+
+    impl Process {
+        async fn start(endpoint: &str) -> Self {
+            let session = Session::open(usal::Config::client("uav1", endpoint)).await.unwrap();
+            let mut describe = session.serve_description(GATEWAY).unwrap();
+            tokio::spawn(async move {
+                while let Some(incoming) = describe.recv().await {
+                    incoming.answer(Ok(usal::spec::GATEWAY.describe()));
+                }
+            });
+            let gps = session.publish(gateway::GPS).unwrap();
+            let _alive = session.announce(GATEWAY).unwrap();
+            Self { session, gps, _alive }
+        }
+
+        fn says(&self, time_s: f64) {
+            let Telemetry::Gps(gps) = gps(time_s) else { return };
+            self.gps.set(gps.time_s, gps.validity_s, &gps.value);
+        }
+    }
+
+    /// The first message that is looked for; and when the values were true that came before it.
+    async fn until<T>(
+        window: &mut mpsc::Receiver<LinkMessage>,
+        mut is_it: impl FnMut(&LinkEvent) -> Option<T>,
+    ) -> (T, Vec<f64>) {
+        let mut heard = Vec::new();
+        let found = tokio::time::timeout(Duration::from_secs(20), async {
+            loop {
+                let event = window.recv().await.unwrap().event;
+                if let Some(found) = is_it(&event) {
+                    return found;
+                }
+                if let LinkEvent::Telemetry(Telemetry::Gps(gps)) = event {
+                    heard.push(gps.time_s);
+                }
+            }
+        });
+        (found.await.unwrap(), heard)
+    }
+
+    fn time_of(event: &LinkEvent) -> Option<f64> {
+        match event {
+            LinkEvent::Telemetry(Telemetry::Gps(gps)) => Some(gps.time_s),
+            _ => None,
+        }
+    }
+
+    #[tokio::test(flavor = "multi_thread")]
+    async fn a_stranger_is_told_and_not_believed_and_a_new_process_is() {
+        let (_hub, endpoint) = hub().await;
+        let first = Process::start(&endpoint).await;
+        let (outlet, mut window) = outlet();
+        let _open = connect(&endpoint, &outlet).await.unwrap();
+        let connected =
+            |event: &LinkEvent| matches!(event, LinkEvent::Link(LinkState::Connected(_))).then_some(());
+        until(&mut window, connected).await;
+        first.says(1.0);
+        assert_eq!(until(&mut window, time_of).await.0, 1.0);
+
+        let stranger = Session::open(usal::Config::client("uav1", &endpoint)).await.unwrap();
+        let forged = stranger.publish(gateway::GPS).unwrap();
+        let value = usal::contract::Gps { fix_3d: false, satellites: 0, hdop: 99.0, unix_s: None };
+        forged.set(1e9, 2.0, &value);
+        let told = |event: &LinkEvent| match event {
+            LinkEvent::Strangers { service, count } => Some((*service, *count)),
+            _ => None,
+        };
+        assert_eq!(until(&mut window, told).await, ((GATEWAY, 1), vec![]));
+        first.says(2.0);
+        assert_eq!(until(&mut window, time_of).await.0, 2.0);
+
+        first.session.close().await;
+        let gone = |event: &LinkEvent| match event {
+            LinkEvent::Services(alive) => (!alive.contains(GATEWAY)).then_some(()),
+            _ => None,
+        };
+        until(&mut window, gone).await;
+        let second = Process::start(&endpoint).await;
+        second.says(3.0);
+        assert_eq!(until(&mut window, time_of).await.0, 3.0, "its first value is taken");
+    }
+
     #[test]
     fn values_without_room_are_counted_and_told_when_there_is_room() {
         let (messages, mut window) = mpsc::channel(3);
         let wake: Wake = Arc::new(|| {});
         let (link, vehicle) = (LinkId(4), VehicleName::from("uav1"));
-        let (left_out, is_foreign) = Default::default();
-        let outlet = Outlet { link, vehicle, messages, left_out, is_foreign, wake };
+        let (left_out, is_foreign, senders) = Default::default();
+        let outlet = Outlet { link, vehicle, messages, left_out, is_foreign, senders, wake };
         for i in 0..10 {
             outlet.value(gps(f64::from(i)));
         }

@@ -53,15 +53,18 @@ fn style(vehicle: &Vehicle, now_s: f64, p: &Palette) -> (&'static str, String, C
 fn details(vehicle: &Vehicle, now_s: f64) -> String {
     let losses = vehicle.losses.text().map_or_else(String::new, |text| format!("\n{text}"));
     let autopilot = autopilot::in_full(vehicle, now_s);
-    format!("{}{losses}{autopilot}", vehicle.link.text())
+    let strangers = vehicle.strangers.text().map_or_else(String::new, |text| format!("\n{text}"));
+    format!("{}{losses}{strangers}{autopilot}", vehicle.link.text())
 }
 
-/// How many events are missing; nothing as long as none is.
+/// How many events are missing, and how many messages are ignored; nothing as long as none is.
 fn lost(ui: &mut Ui, scene: &Scene<'_>) {
-    let events = scene.vehicle.losses.events;
-    if events > 0 {
-        let text = RichText::new(format!("⚠ {events} lost")).color(theme::of(ui).caution);
-        ui.label(text).on_hover_text(details(scene.vehicle, scene.now_s));
+    let vehicle = scene.vehicle;
+    for (count, what) in [(vehicle.losses.events, "lost"), (vehicle.strangers.ignored(), "ignored")] {
+        if count > 0 {
+            let text = RichText::new(format!("⚠ {count} {what}")).color(theme::of(ui).caution);
+            ui.label(text).on_hover_text(details(vehicle, scene.now_s));
+        }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::watch::{GROUND_STATION, Sight, Watch};
 use super::{
-    Aged, LOOK_AHEAD, Level, Log, Losses, Outcome, Outlook, RecentEvents, Repeats, Requests, Ticket, Trail,
-    log,
+    Aged, LOOK_AHEAD, Level, Log, Losses, Outcome, Outlook, RecentEvents, Repeats, Requests, Strangers,
+    Ticket, Trail, log,
 };
 use crate::link::{
     LinkEvent, LinkId, LinkState, Loss, Numbered, PlainEvent, PlainValue, Reply, Rows, Telemetry,
@@ -102,6 +102,8 @@ pub struct Vehicle {
     pub raised: Option<Raised>,
     /// What was lost of its messages.
     pub losses: Losses,
+    /// What others said in its name.
+    pub strangers: Strangers,
     /// What this ground station watches by itself.
     pub watch: Watch,
     plan_events: Repeats,
@@ -164,6 +166,7 @@ impl Vehicle {
                 self.take(telemetry, now_s);
             }
             LinkEvent::Lost(loss) => self.lost(loss, now_s),
+            LinkEvent::Strangers { service, count } => self.strange(service, count, now_s),
             LinkEvent::Answer { ticket, result } => self.answered(ticket, result, now_s),
         }
     }
@@ -173,6 +176,7 @@ impl Vehicle {
         self.link_id = Some(link);
         self.plan_events.begin_link();
         self.gateway_events.begin_link();
+        self.strangers = Strangers::default();
         self.plain_events.values_mut().for_each(RecentEvents::begin_link);
         self.give_up_requests(now_s);
     }
@@ -250,6 +254,13 @@ impl Vehicle {
     fn lost(&mut self, loss: Loss, now_s: f64) {
         self.losses.add(loss);
         if let Some(text) = super::losses::sentence(loss) {
+            self.log.add(now_s, Level::Caution, "link", &text);
+        }
+    }
+
+    fn strange(&mut self, service: &'static str, count: u64, now_s: f64) {
+        let is_news = self.strangers.heard(service, count, now_s);
+        if let Some(text) = self.strangers.text().filter(|_| is_news) {
             self.log.add(now_s, Level::Caution, "link", &text);
         }
     }
@@ -393,6 +404,7 @@ impl Vehicle {
     pub fn alarms(&self, now_s: f64) -> Vec<Alarm> {
         let mut alarms = self.gateway.as_ref().map(|g| g.value.alarms.clone()).unwrap_or_default();
         alarms.extend(self.link_alarm(now_s));
+        alarms.extend(self.strangers.alarm(now_s));
         alarms.extend(self.watch.alarms());
         alarms.sort_by(|a, b| b.severity.cmp(&a.severity).then_with(|| a.id.cmp(&b.id)));
         alarms

@@ -263,6 +263,25 @@ fn lost_events_are_counted_and_shown() {
     assert_eq!(window.app().vehicles().get(&"uav2".into()).unwrap().losses.events, 0);
 }
 
+#[test]
+fn messages_of_a_stranger_are_counted_and_told() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.connect();
+    let strangers = |count| LinkEvent::Strangers { service: "gateway", count };
+    window.send(strangers(4));
+    window.send(strangers(3));
+    assert!(window.shows("⚠ 7 ignored"));
+    assert!(window.shows("7 messages of a stranger in the name of gateway are ignored"), "in the alarms");
+    let log = &window.app().vehicle().log;
+    assert!(log.from_newest(0).unwrap().text.starts_with("4 messages of a stranger"), "once");
+    // over another link it is said again
+    window.send_of("uav1", LinkId(9), LinkEvent::Link(LinkState::Connected("there".into())));
+    assert!(!window.shows("ignored"));
+    window.send_of("uav1", LinkId(9), strangers(1));
+    assert!(window.shows("⚠ 1 ignored"));
+}
+
 pub fn tab(window: &mut Window, name: &str) {
     window.harness.get_all_by_label(name).next().unwrap().click();
     window.steps(3);

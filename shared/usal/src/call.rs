@@ -1,11 +1,11 @@
 //! Calling invocations, without blocking.
 
 use crate::codec::{self, Format};
-use crate::contract::{Kind, Refusal, VERSION};
+use crate::contract::{Description, Empty, Kind, Refusal, VERSION};
 use crate::session::{Inner, Session};
-use crate::topics::Invocation;
+use crate::topics::{self, Invocation};
 use crate::variable::PRIORITY;
-use crate::{CallError, SessionError};
+use crate::{CallError, Instance, SessionError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::future::Future;
@@ -102,6 +102,24 @@ impl Session {
         self.sent(name, self.request(service, name, request, timeout))
     }
 
+    /// Asks a service what it is and can; and which session answers, if it says so: that is the service for whoever asks.
+    ///
+    /// # Errors
+    /// [`CallError`]: there is no good answer within `timeout`.
+    pub async fn describe(
+        &self,
+        service: &'static str,
+        timeout: Duration,
+    ) -> Result<(Description, Option<Instance>), CallError> {
+        let invocation = topics::describe(service);
+        let request = self
+            .request(service, invocation.name, &Empty {}, timeout)
+            .map_err(|reason| CallError::Undecodable { name: invocation.name.to_owned(), reason })?;
+        let reply = request.run(request.attempt()).await?;
+        let from = reply.result().ok().and_then(|sample| Instance::behind(sample.source_info()));
+        Ok((request.read(&reply)?, from))
+    }
+
     fn sent<A>(&self, name: &str, request: Result<Request, String>) -> PendingCall<A>
     where
         A: DeserializeOwned + Send + 'static,
@@ -118,7 +136,7 @@ impl Session {
                 let wake = self.inner.wake.clone();
                 self.inner.runtime.spawn(async move {
                     // nobody waits any more: no matter
-                    let _ = sender.send(request.run(first).await);
+                    let _ = sender.send(request.run(first).await.and_then(|reply| request.read(&reply)));
                     wake();
                 });
             }
@@ -221,21 +239,22 @@ impl Request {
         Ok(attempt)
     }
 
-    async fn run<A: DeserializeOwned>(self, first: Result<Attempt, CallError>) -> Result<A, CallError> {
+    /// Sends it until somebody answers.
+    async fn run(&self, first: Result<Attempt, CallError>) -> Result<Reply, CallError> {
         let mut attempt = first?;
         let last_attempt = self.delivery_until() - self.delivery / LAST_ATTEMPT;
         let mut lost = false;
         loop {
             match tokio::time::timeout_at(self.deadline, attempt.reply.recv()).await {
-                Err(_) => return Err(CallError::Timeout { name: self.name, after: self.timeout }),
-                Ok(Some(reply)) => return self.read(&reply),
+                Err(_) => return Err(CallError::Timeout { name: self.name.clone(), after: self.timeout }),
+                Ok(Some(reply)) => return Ok(reply),
                 Ok(None) => {
                     let ended = Instant::now();
                     // a connection that breaks ends its requests a moment before it is known to be gone
                     tokio::time::sleep(RETRY).await;
                     lost |= attempt.may_have_been_taken(ended, &self.inner);
                     if Instant::now() >= last_attempt {
-                        let name = self.name;
+                        let name = self.name.clone();
                         return Err(if lost {
                             CallError::Lost { name }
                         } else {
@@ -248,14 +267,14 @@ impl Request {
         }
     }
 
-    fn read<A: DeserializeOwned>(self, reply: &Reply) -> Result<A, CallError> {
+    fn read<A: DeserializeOwned>(&self, reply: &Reply) -> Result<A, CallError> {
         let read = match reply.result() {
             Ok(sample) => codec::decode(sample.payload(), sample.encoding()).map(Ok),
             Err(error) => codec::decode::<Refusal>(error.payload(), error.encoding()).map(Err),
         };
         match read {
             Ok(answer) => answer.map_err(CallError::Refused),
-            Err(reason) => Err(CallError::Undecodable { name: self.name, reason }),
+            Err(reason) => Err(CallError::Undecodable { name: self.name.clone(), reason }),
         }
     }
 }

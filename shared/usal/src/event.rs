@@ -2,10 +2,11 @@
 //! from the publisher's memory, and what cannot be made up for is told as a gap.
 
 use crate::contract::Kind;
+use crate::instance::anybody;
 use crate::session::{Inner, Session};
 use crate::topics::Events;
 use crate::variable::{PRIORITY, Untyped};
-use crate::{Format, Instance, SessionError, codec};
+use crate::{Format, Gate, Instance, SessionError, codec};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
@@ -18,7 +19,7 @@ use zenoh::qos::CongestionControl;
 use zenoh::sample::{Sample, SampleKind};
 use zenoh_ext::{
     AdvancedPublisher, AdvancedPublisherBuilderExt, AdvancedSubscriber, AdvancedSubscriberBuilderExt,
-    CacheConfig, HistoryConfig, MissDetectionConfig, RecoveryConfig,
+    CacheConfig, HistoryConfig, Miss, MissDetectionConfig, RecoveryConfig,
 };
 
 /// Events that a publisher remembers for those who missed them.
@@ -159,6 +160,22 @@ impl Session {
     where
         T: DeserializeOwned + Send + 'static,
     {
+        self.listen_from(events, start, anybody())
+    }
+
+    /// As [`Session::listen`], to whom the gate lets in.
+    ///
+    /// # Errors
+    /// [`SessionError::Network`] on a closed session.
+    pub fn listen_from<T>(
+        &self,
+        events: Events<T>,
+        start: Start,
+        gate: Gate,
+    ) -> Result<EventSubscriber<T>, SessionError>
+    where
+        T: DeserializeOwned + Send + 'static,
+    {
         let key = self.key(events.service, Kind::Event, events.name)?.to_string();
         let (sender, receiver) = mpsc::channel(QUEUE);
         let inlet = Arc::new(Inlet {
@@ -166,6 +183,7 @@ impl Session {
             sender,
             dropped: AtomicU64::new(0),
             from_us: if start == Start::Now { unix_us() } else { 0 },
+            gate,
         });
         let samples = inlet.clone();
         let subscriber = self
@@ -180,7 +198,7 @@ impl Session {
             .map_err(SessionError::network)?;
         subscriber
             .sample_miss_listener()
-            .callback(move |miss| inlet.push(Occurrence::Gap { missed: miss.nb().into() }))
+            .callback(move |miss| inlet.missed(&miss))
             .background()
             .wait()
             .map_err(SessionError::network)?;
@@ -196,6 +214,7 @@ struct Inlet<T> {
     dropped: AtomicU64,
     /// Earlier events are of no interest, microseconds since 1970.
     from_us: u64,
+    gate: Gate,
 }
 
 /// Microseconds since 1970.
@@ -212,15 +231,15 @@ pub(crate) fn emitted_us(sample: &Sample) -> u64 {
 
 impl<T: DeserializeOwned> Inlet<T> {
     fn sample(&self, sample: &Sample) {
-        if sample.kind() == SampleKind::Delete || emitted_us(sample) < self.from_us {
+        let from = Instance::behind(sample.source_info());
+        let is_old = emitted_us(sample) < self.from_us;
+        if sample.kind() == SampleKind::Delete || is_old || !(self.gate)(from) {
             return;
         }
         // a stranger's plain put has no number
         let sequence = sample.source_info().map_or(0, |info| info.source_sn());
         match codec::decode(sample.payload(), sample.encoding()) {
-            Ok(event) => {
-                self.push(Occurrence::Event { sequence, from: Instance::behind(sample.source_info()), event })
-            }
+            Ok(event) => self.push(Occurrence::Event { sequence, from, event }),
             Err(reason) => {
                 if let Some(inner) = self.inner.upgrade() {
                     inner.health.undecodable(sample.key_expr().as_str(), &reason);
@@ -228,6 +247,12 @@ impl<T: DeserializeOwned> Inlet<T> {
                 // something happened, and nobody here knows what
                 self.push(Occurrence::Gap { missed: 1 });
             }
+        }
+    }
+
+    fn missed(&self, miss: &Miss) {
+        if (self.gate)(Some(Instance::of_entity(miss.source()))) {
+            self.push(Occurrence::Gap { missed: miss.nb().into() });
         }
     }
 

@@ -11,6 +11,7 @@
 use crate::codec::{self, Format};
 use crate::contract::Kind;
 use crate::contract::{FileManifest, Refusal};
+use crate::instance::anybody;
 use crate::invocation::refusal;
 use crate::session::Session;
 use crate::{SessionError, VariablePublisher, VariableSubscriber};
@@ -200,7 +201,7 @@ impl Session {
         service: &str,
         name: &str,
     ) -> Result<VariableSubscriber<FileManifest>, SessionError> {
-        self.follow_named(service, &announcement(name))
+        self.follow_named(service, &announcement(name), anybody())
     }
 
     /// Fetches a file whole within `timeout` (wall-clock).

@@ -29,6 +29,7 @@ use tokio::sync::mpsc;
 use zenoh::Wait;
 use zenoh::bytes::{Encoding, ZBytes};
 use zenoh::query::{Query, Queryable};
+use zenoh::sample::SourceInfo;
 
 /// Requests that may wait for the service.
 const QUEUE: usize = 64;
@@ -151,6 +152,7 @@ impl Session {
             health: self.inner.health.clone(),
             audit: self.inner.audit.clone(),
             instance: self.instance(),
+            source: SourceInfo::new(self.inner.zenoh.id(), 0),
         };
         let wake = self.inner.wake.clone();
         let queryable = self
@@ -228,7 +230,7 @@ fn admit(serving: &Serving, query: Query) -> Option<Replier> {
                 return None;
             }
             Some(Request::Done(reply)) => {
-                send(&query, reply, &serving.health);
+                send(&query, reply, serving);
                 return None;
             }
             None => memory.begin(name.clone()),
@@ -276,6 +278,8 @@ struct Serving {
     health: Arc<Health>,
     audit: Arc<OnceLock<AuditHook>>,
     instance: Instance,
+    /// The same, as an answer says it.
+    source: SourceInfo,
 }
 
 /// The duty to answer one request, and those that repeat it.
@@ -297,13 +301,13 @@ impl Replier {
     fn answer<A: Serialize>(&mut self, answer: &Result<A, Refusal>) {
         self.answered = true;
         let reply = Reply::new(answer, self.format);
-        send(&self.query, &reply, &self.serving.health);
+        send(&self.query, &reply, &self.serving);
         self.tell(&reply);
         if let Some(name) = &self.name {
             let passing = matches!(answer, Err(refusal) if [BUSY, EXPIRED].contains(&&*refusal.code));
             let mut memory = self.serving.memory.lock().unwrap_or_else(PoisonError::into_inner);
             for waiting in if passing { memory.forget(name) } else { memory.finish(name, &reply) } {
-                send(&waiting, &reply, &self.serving.health);
+                send(&waiting, &reply, &self.serving);
             }
         }
     }
@@ -356,15 +360,16 @@ impl Reply {
     }
 }
 
-fn send(query: &Query, reply: &Reply, health: &Health) {
+fn send(query: &Query, reply: &Reply, serving: &Serving) {
     let encoding = reply.format.encoding();
     let sent = if reply.good {
-        query.reply(query.key_expr().clone(), reply.bytes.clone()).encoding(encoding).wait()
+        let answer = query.reply(query.key_expr().clone(), reply.bytes.clone());
+        answer.source_info(serving.source.clone()).encoding(encoding).wait()
     } else {
         query.reply_err(reply.bytes.clone()).encoding(encoding).wait()
     };
     if let Err(e) = sent {
-        health.unsent(query.key_expr().as_str(), &e.to_string());
+        serving.health.unsent(query.key_expr().as_str(), &e.to_string());
     }
 }
 

@@ -34,7 +34,7 @@ pub use error::{CallError, SessionError};
 pub use event::{EventPublisher, EventSubscriber, Occurrence, Start};
 pub use file::{Download, FILE_BYTES_MAX, FileError, FileOffer};
 pub use health::{Health, HealthCount};
-pub use instance::{Instance, NoInstance};
+pub use instance::{Gate, Instance, NoInstance};
 pub use invocation::{Incoming, Server};
 pub use liveliness::{Announcement, Presence};
 pub use raw::{Everything, Raw};

@@ -6,9 +6,10 @@
 
 use crate::contract::Kind;
 use crate::contract::Stamped;
+use crate::instance::anybody;
 use crate::session::{Inner, Session};
 use crate::topics::Variable;
-use crate::{Format, Instance, SessionError, codec};
+use crate::{Format, Gate, Instance, SessionError, codec};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::marker::PhantomData;
@@ -200,13 +201,29 @@ impl Session {
     where
         T: DeserializeOwned + Send + Sync + 'static,
     {
-        self.follow_named(variable.service, variable.name)
+        self.follow_from(variable, anybody())
+    }
+
+    /// As [`Session::follow`], of whom the gate lets in.
+    ///
+    /// # Errors
+    /// [`SessionError::Network`] on a closed session.
+    pub fn follow_from<T>(
+        &self,
+        variable: Variable<T>,
+        gate: Gate,
+    ) -> Result<VariableSubscriber<T>, SessionError>
+    where
+        T: DeserializeOwned + Send + Sync + 'static,
+    {
+        self.follow_named(variable.service, variable.name, gate)
     }
 
     pub(crate) fn follow_named<T>(
         &self,
         service: &str,
         name: &str,
+        gate: Gate,
     ) -> Result<VariableSubscriber<T>, SessionError>
     where
         T: DeserializeOwned + Send + Sync + 'static,
@@ -214,14 +231,14 @@ impl Session {
         let key = self.key(service, Kind::Variable, name)?.to_string();
         let token = self.key(service, Kind::Liveliness, &token_name(name))?.to_string();
         let (sender, receiver) = watch::channel(None);
-        let sender = Arc::new(sender);
+        let cell = Arc::new(Held { sender, gate });
         let inner = Arc::downgrade(&self.inner);
-        let (live_inner, live_sender) = (inner.clone(), sender.clone());
+        let (live_inner, live) = (inner.clone(), cell.clone());
         let subscriber = self
             .inner
             .zenoh
             .declare_subscriber(key.clone())
-            .callback(move |sample| accept(&live_inner, &live_sender, &sample, None))
+            .callback(move |sample| accept(&live_inner, &live, &sample, None))
             .wait()
             .map_err(SessionError::network)?;
         let publishers = self
@@ -232,7 +249,7 @@ impl Session {
             .history(true)
             .callback(move |sample| {
                 if sample.kind() == SampleKind::Put {
-                    ask_last(&inner, &key, &sender, QUERY_ATTEMPTS);
+                    ask_last(&inner, &key, &cell, QUERY_ATTEMPTS);
                 }
             })
             .wait()
@@ -264,7 +281,13 @@ fn answer_last(query: &Query, last: &Last) {
     }
 }
 
-type Cell<T> = Arc<watch::Sender<Option<Arc<Received<T>>>>>;
+/// The latest value of those who count.
+struct Held<T> {
+    sender: watch::Sender<Option<Arc<Received<T>>>>,
+    gate: Gate,
+}
+
+type Cell<T> = Arc<Held<T>>;
 
 /// Asks the publisher for its last value; an answer is good only while nothing newer came in.
 /// Repeated while nobody is reached: a token is seen up to 0.1 s before the way to its owner is known.
@@ -320,18 +343,15 @@ where
     T: DeserializeOwned + Send + Sync + 'static,
 {
     let Some(inner) = inner.upgrade() else { return };
-    if sample.kind() == SampleKind::Delete {
+    let from = Instance::behind(sample.source_info());
+    if sample.kind() == SampleKind::Delete || !(cell.gate)(from) {
         return;
     }
     match codec::decode::<Stamped<T>>(sample.payload(), sample.encoding()) {
         Err(reason) => inner.health.undecodable(sample.key_expr().as_str(), &reason),
         Ok(stamped) => {
-            let received = Arc::new(Received {
-                stamped,
-                at: Instant::now(),
-                from: Instance::behind(sample.source_info()),
-            });
-            let changed = cell.send_if_modified(|held| {
+            let received = Arc::new(Received { stamped, at: Instant::now(), from });
+            let changed = cell.sender.send_if_modified(|held| {
                 let newer = |held: &Arc<Received<T>>| asked.is_some_and(|asked| held.at >= asked);
                 if held.as_ref().is_some_and(newer) {
                     return false;

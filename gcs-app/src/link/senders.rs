@@ -1,0 +1,173 @@
+//! Which session speaks as which service of the vehicle: the one that answers when the service is asked to describe itself. What
+//! others say in its name doesn't count, and is counted. It keeps mistakes apart and proves nothing: whoever means harm can take
+//! another's name.
+//!
+//! A service that is gone may come back as another session, so nobody waits for its description: until then whoever names
+//! himself counts. A plain put names nobody.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+use usal::Instance;
+
+/// Whoever speaks for a service that was silent for so long may have followed it.
+const SILENT: Duration = Duration::from_secs(2);
+
+/// The services of a vehicle, by name.
+#[derive(Debug, Default)]
+pub(super) struct Senders(Mutex<BTreeMap<&'static str, Sender>>);
+
+/// Who speaks as a service.
+#[derive(Debug, Default)]
+struct Sender {
+    known: Known,
+    /// When it was heard last.
+    heard: Option<Instant>,
+    /// Messages of others since they were asked for.
+    strange: u64,
+    /// There were some since the service was described.
+    is_contested: bool,
+}
+
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// It was not described yet, or is gone.
+    #[default]
+    Nobody,
+    Session(Instance),
+    /// An older service doesn't say which session it is.
+    Anybody,
+}
+
+impl Sender {
+    fn counts(&mut self, from: Option<Instance>, now: Instant) -> bool {
+        let counts = match self.known {
+            Known::Nobody => from.is_some(),
+            Known::Session(known) => from == Some(known),
+            Known::Anybody => true,
+        };
+        if counts {
+            self.heard = Some(now);
+        } else {
+            self.strange = self.strange.saturating_add(1);
+            self.is_contested = true;
+        }
+        counts
+    }
+
+    fn is_silent(&self, now: Instant) -> bool {
+        self.heard.is_none_or(|heard| now.saturating_duration_since(heard) >= SILENT)
+    }
+
+    /// A session answered for it. While another one speaks that did so before, it is a stranger's answer.
+    fn described(&mut self, by: Option<Instance>, now: Instant) {
+        if matches!(self.known, Known::Session(_)) && !self.is_silent(now) {
+            return;
+        }
+        self.known = by.map_or(Known::Anybody, Known::Session);
+        self.is_contested = false;
+    }
+
+    fn gone(&mut self) {
+        (self.known, self.heard) = (Known::Nobody, None);
+    }
+}
+
+impl Senders {
+    /// Whether a message in the name of a service counts.
+    pub(super) fn counts(&self, service: &'static str, from: Option<Instance>, now: Instant) -> bool {
+        self.lock().entry(service).or_default().counts(from, now)
+    }
+
+    /// A service was described, by a session that says which it is or doesn't.
+    pub(super) fn described(&self, service: &'static str, by: Option<Instance>, now: Instant) {
+        self.lock().entry(service).or_default().described(by, now);
+    }
+
+    /// These are there; who comes back may be another session.
+    pub(super) fn alive(&self, services: &BTreeSet<String>) {
+        let mut senders = self.lock();
+        let gone = senders.iter_mut().filter(|(service, _)| !services.contains(**service));
+        gone.for_each(|(_, sender)| sender.gone());
+    }
+
+    /// Somebody speaks for a service that is silent itself: it should be asked again who it is.
+    pub(super) fn is_doubtful(&self, now: Instant) -> bool {
+        self.lock().values().any(|sender| sender.is_contested && sender.is_silent(now))
+    }
+
+    /// How many messages of others came since this was asked last, by service.
+    pub(super) fn take_strange(&self) -> Vec<(&'static str, u64)> {
+        let mut senders = self.lock();
+        let counted =
+            senders.iter_mut().map(|(service, sender)| (*service, std::mem::take(&mut sender.strange)));
+        counted.filter(|(_, count)| *count > 0).collect()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, BTreeMap<&'static str, Sender>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SERVICE: &str = "gateway";
+
+    fn instance(text: &str) -> Option<Instance> {
+        Some(text.parse().unwrap())
+    }
+
+    fn there(services: &[&str]) -> BTreeSet<String> {
+        services.iter().map(|&service| service.to_owned()).collect()
+    }
+
+    #[test]
+    fn only_the_session_that_described_itself_counts() {
+        let (senders, now) = (Senders::default(), Instant::now());
+        assert!(senders.counts(SERVICE, instance("a1"), now), "nobody waits for its description");
+        assert!(!senders.counts(SERVICE, None, now), "a plain put names nobody");
+        senders.described(SERVICE, instance("a1"), now);
+        assert!(senders.counts(SERVICE, instance("a1"), now));
+        assert!(!senders.counts(SERVICE, instance("b2"), now) && !senders.counts(SERVICE, None, now));
+        assert!(senders.counts("storage", instance("b2"), now), "each service for itself");
+        assert_eq!(senders.take_strange(), [(SERVICE, 3)]);
+        assert_eq!(senders.take_strange(), []);
+    }
+
+    #[test]
+    fn one_that_comes_back_counts_at_once() {
+        let (senders, now) = (Senders::default(), Instant::now());
+        senders.described(SERVICE, instance("a1"), now);
+        assert!(senders.counts(SERVICE, instance("a1"), now));
+        senders.alive(&there(&["storage"]));
+        assert!(senders.counts(SERVICE, instance("b2"), now), "not described yet");
+        senders.alive(&there(&["storage", SERVICE]));
+        senders.described(SERVICE, instance("b2"), now);
+        assert!(
+            senders.counts(SERVICE, instance("b2"), now) && !senders.counts(SERVICE, instance("a1"), now)
+        );
+    }
+
+    #[test]
+    fn a_strangers_description_does_not_count_beside_one_that_speaks() {
+        let (senders, now) = (Senders::default(), Instant::now());
+        senders.described(SERVICE, instance("a1"), now);
+        assert!(senders.counts(SERVICE, instance("a1"), now));
+        assert!(!senders.counts(SERVICE, instance("b2"), now) && !senders.is_doubtful(now));
+        senders.described(SERVICE, instance("b2"), now);
+        assert!(!senders.counts(SERVICE, instance("b2"), now));
+        let later = now + SILENT;
+        assert!(senders.is_doubtful(later), "it was silent, and somebody speaks in its name");
+        senders.described(SERVICE, instance("b2"), later);
+        assert!(senders.counts(SERVICE, instance("b2"), later) && !senders.is_doubtful(later + SILENT));
+    }
+
+    #[test]
+    fn an_older_service_does_not_say_who_it_is() {
+        let (senders, now) = (Senders::default(), Instant::now());
+        senders.described(SERVICE, None, now);
+        assert!(senders.counts(SERVICE, None, now) && senders.counts(SERVICE, instance("a1"), now));
+    }
+}
