@@ -31,26 +31,25 @@ pub enum Report {
 /// Who asks for what an alarm of the gateway leads to.
 const GATEWAY: &str = "gateway";
 
+/// A stranger's report is told as the first since the join, the tenth, the hundredth, …: as it goes on, and never as a flood.
+fn tell_of_stranger(count: u64, from: Option<Instance>, report: &Report, out: &mut Vec<Effect>) {
+    if count.checked_ilog10().is_none_or(|digits| 10_u64.pow(digits) != count) {
+        return;
+    }
+    tracing::warn!(?from, ?report, count, "another program than the gateway that we joined reports as it");
+    let reason = format!(
+        "another program than the gateway that was joined reports as it; it does not count: find it and stop it \
+         (reports ignored since the join: {count})"
+    );
+    out.push(Effect::Event(Event::NotGranted { request: "report".into(), reason }));
+}
+
 impl Manager {
     /// Something comes from a gateway; only the one that we joined counts.
     pub fn report(&mut self, now: Time, from: Option<Instance>, report: Report, out: &mut Vec<Effect>) {
         match self.gateway_session.hears(now, from) {
             Hearing::Ours => {}
-            Hearing::Stranger { first } => {
-                if first {
-                    tracing::warn!(
-                        ?from,
-                        ?report,
-                        "another program than the gateway that we joined reports as it"
-                    );
-                    let reason = "another program than the gateway that was joined reports as it; it does not count: find it and stop it";
-                    out.push(Effect::Event(Event::NotGranted {
-                        request: "report".into(),
-                        reason: reason.into(),
-                    }));
-                }
-                return;
-            }
+            Hearing::Stranger { count } => return tell_of_stranger(count, from, &report, out),
         }
         match report {
             Report::Position(position) => self.aircraft().position(position),

@@ -44,8 +44,8 @@ pub enum Hearing {
     Ours,
     /// Of somebody else.
     Stranger {
-        /// It is the first since we joined.
-        first: bool,
+        /// So many have come since we joined, this one too.
+        count: u64,
     },
 }
 
@@ -155,7 +155,7 @@ impl GatewaySession {
             return Hearing::Ours;
         }
         self.strange += 1;
-        Hearing::Stranger { first: self.strange == 1 }
+        Hearing::Stranger { count: self.strange }
     }
 
     /// Time has passed: a gateway that is not heard any more may have been followed by another one, which has to be joined.
@@ -183,7 +183,7 @@ impl GatewaySession {
         self.not_before = Some(now + RETRY);
         let answer = answer.ok_or(None)?;
         self.gateway = answer.instance.as_deref().and_then(|instance| instance.parse().ok());
-        (self.heard, self.strange) = (Some(now), 0);
+        self.heard = Some(now);
         if !answer.accepted {
             let new = self.last_reason != answer.reason;
             self.last_reason.clone_from(&answer.reason);
@@ -193,6 +193,7 @@ impl GatewaySession {
         self.last_reason.clear();
         self.joined = true;
         self.joined_at = Some(now);
+        self.strange = 0;
         Ok(answer)
     }
 
@@ -363,15 +364,15 @@ mod tests {
         assert_eq!(session.hears(now(0), Some(other)), Hearing::Ours, "nobody was joined yet");
         session.joined(now(0), answer(Some("a1"))).unwrap();
         assert_eq!(session.hears(now(1), Some(ours)), Hearing::Ours);
-        assert_eq!(session.hears(now(1), Some(other)), Hearing::Stranger { first: true });
-        assert_eq!(session.hears(now(1), None), Hearing::Stranger { first: false });
+        assert_eq!(session.hears(now(1), Some(other)), Hearing::Stranger { count: 1 });
+        assert_eq!(session.hears(now(1), None), Hearing::Stranger { count: 2 });
         session.tick(now(3));
         assert!(session.is_joined());
         session.tick(now(5));
         assert!(!session.is_joined(), "whatever others say, ours is silent: join anew");
         assert_eq!(
             session.hears(now(5), Some(other)),
-            Hearing::Stranger { first: false },
+            Hearing::Stranger { count: 3 },
             "nor do they count until then"
         );
         session.joined(now(5), answer(None)).unwrap();
@@ -380,5 +381,7 @@ mod tests {
             Hearing::Ours,
             "an older gateway doesn't say who it is"
         );
+        session.joined(now(7), answer(Some("a1"))).unwrap();
+        assert_eq!(session.hears(now(8), None), Hearing::Stranger { count: 1 }, "each join counts anew");
     }
 }

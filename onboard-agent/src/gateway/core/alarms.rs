@@ -49,8 +49,8 @@ pub struct AlarmInputs {
     pub exposed: bool,
     /// A log is played.
     pub replay: bool,
-    /// Heartbeats come from another program than the one that joined.
-    pub other_fp_manager: bool,
+    /// So many messages of another program than the FP Manager that joined were ignored, and they go on.
+    pub other_fp_manager: u64,
     /// A plan is to be flown, and Safe mode would have no runway.
     pub no_runway_stored: bool,
     /// What must survive a restart can't be written.
@@ -66,6 +66,8 @@ pub struct Alarms {
     suspected: Vec<(Watch, Time)>,
     /// Where it stood when it was found to stand still.
     stands_at: Option<LatLon>,
+    /// Messages of another FP Manager that were ignored.
+    ignored: u64,
 }
 
 impl Alarms {
@@ -79,11 +81,14 @@ impl Alarms {
         self.raised.iter().any(|watch| matches!(watch, Watch::EngineOut | Watch::EngineSuspected))
     }
 
-    /// What is down has to be found: that alarm says where.
+    /// What is down has to be found: that alarm says where. What is ignored is counted.
     fn alarm(&self, watch: Watch) -> Alarm {
         let mut alarm = watch.alarm();
         if let (Watch::StandsStill, Some(place)) = (watch, self.stands_at) {
             alarm.advice += &format!(" It is at {:.5}, {:.5}.", place.lat_deg, place.lon_deg);
+        }
+        if watch == Watch::OtherFpManager {
+            alarm.advice += &format!(" Ignored since the join: {}.", self.ignored);
         }
         alarm
     }
@@ -93,6 +98,7 @@ impl Alarms {
         if !self.raised.contains(&Watch::StandsStill) {
             self.stands_at = t.fix.map(|(_, fix)| fix.position);
         }
+        self.ignored = inputs.other_fp_manager;
         for watch in WATCHES {
             let raised = self.raised.contains(&watch);
             let wrong = is_wrong(watch, now, t, inputs, raised);
@@ -148,7 +154,7 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::Disobeys => age(inputs.disobeys_since).is_some_and(|a| a > DISOBEYS),
         Watch::NoSafeRunway => inputs.no_safe_runway,
         Watch::NoRunwayStored => inputs.no_runway_stored,
-        Watch::OtherFpManager => inputs.other_fp_manager,
+        Watch::OtherFpManager => inputs.other_fp_manager > 0,
         Watch::Exposed => inputs.exposed,
         Watch::Replay => inputs.replay,
         Watch::NotStored => inputs.not_stored,

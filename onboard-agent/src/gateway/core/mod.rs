@@ -234,7 +234,7 @@ impl Gateway {
             no_safe_runway: self.control.intent == Intent::Return,
             exposed: self.settings.exposed,
             replay: self.settings.replay,
-            other_fp_manager: self.fp_manager.has_heard_another(now),
+            other_fp_manager: self.fp_manager.others_heard(now),
             no_runway_stored: self.runways.is_empty() && self.fp_manager.plan.is_some(),
             not_stored: self.not_stored,
             flooded: self.flooded,

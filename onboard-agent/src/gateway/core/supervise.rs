@@ -34,6 +34,8 @@ pub struct FpManager {
     instance: Option<Instance>,
     /// When another one was heard last.
     other_heard: Option<Time>,
+    /// How many of its messages were ignored since the join.
+    others: u64,
     /// When one was refused that wanted to join.
     refused: Option<Time>,
     /// Since when its waypoints are waited for: it was given the aircraft back with an empty buffer.
@@ -63,6 +65,7 @@ impl FpManager {
     /// Another one speaks in its name.
     pub fn heard_another(&mut self, now: Time) {
         self.other_heard = Some(now);
+        self.others = self.others.saturating_add(1);
     }
 
     /// The one that joined was heard just now.
@@ -73,7 +76,7 @@ impl FpManager {
     /// It presented itself and was accepted.
     pub fn joined(&mut self, now: Time, plan: Option<String>, from: Instance) {
         self.instance = Some(from);
-        (self.other_heard, self.refused) = (None, None);
+        (self.other_heard, self.others, self.refused) = (None, 0, None);
         self.last_received = Some(now);
         self.joined = true;
         // its heartbeats may be older than this, and are numbered from one if it is new
@@ -98,9 +101,9 @@ impl FpManager {
         self.expected_since = Some(now);
     }
 
-    /// Heartbeats of another one than the one that joined come in.
-    pub fn has_heard_another(&self, now: Time) -> bool {
-        self.other_heard.is_some_and(|at| now < at + OTHER_HEARD)
+    /// How many messages of another one than the one that joined were ignored since the join; 0 if none came lately.
+    pub fn others_heard(&self, now: Time) -> u64 {
+        self.other_heard.filter(|at| now < *at + OTHER_HEARD).map_or(0, |_| self.others)
     }
 
     /// Age of the last sign of life, seconds.

@@ -18,8 +18,20 @@ fn flying() -> Flight {
     flight
 }
 
+/// What is told of another FP Manager, if it is.
+fn told(flight: &Flight) -> Option<String> {
+    let alarms = flight.station.gateway().status(flight.now).alarms;
+    alarms.into_iter().find(|alarm| alarm.id == "other-fp-manager").map(|alarm| alarm.advice)
+}
+
 fn raised(flight: &Flight) -> bool {
-    flight.station.gateway().status(flight.now).alarms.iter().any(|alarm| alarm.id == "other-fp-manager")
+    told(flight).is_some()
+}
+
+/// How many of its messages are told to have been ignored.
+fn ignored(flight: &Flight) -> u64 {
+    let told = told(flight).unwrap_or_default();
+    told.rsplit(' ').next().and_then(|count| count.trim_end_matches('.').parse().ok()).unwrap_or(0)
 }
 
 #[test]
@@ -31,9 +43,17 @@ fn heartbeats_of_a_stranger_do_not_hide_that_the_fp_manager_is_dead() {
         flight.instance = stranger;
         flight.run_until(3.0, "Safe.Hold", |f| f.state() == GatewayState::SafeHold);
         flight.run_until(5.0, "told", raised);
+        let before = ignored(&flight);
+        flight.run(1.0);
+        assert!(0 < before && before < ignored(&flight), "they are counted: {:?}", told(&flight));
         flight.instance = instance("a1");
         flight.run(4.0);
         assert!(!raised(&flight));
+        // after a join it is told again, and counted anew
+        assert!(flight.join("plan").accepted);
+        flight.instance = stranger;
+        flight.run_until(10.0, "told again", raised);
+        assert!(ignored(&flight) <= before + 5, "{:?}", told(&flight));
     }
 }
 
