@@ -5,7 +5,7 @@ mod outline;
 
 use flight_plan::{Zone, ZoneKind, ZoneShape};
 use geometry::LatLon;
-use interchange::{Assumptions, Export, Format, Import, read, write};
+use interchange::{Areas, Assumptions, Export, Format, Import, read, write};
 use outline::outline;
 
 fn import(format: Format, text: &str) -> Import {
@@ -86,6 +86,41 @@ fn every_hole_of_a_boundary_is_one() {
     let import = import(Format::Kml, &text);
     assert!(outline(&import.plan).last().unwrap().contains("2 holes"), "{:?}", outline(&import.plan));
     assert_eq!(said(&import, "element-not-carried"), ["a second outer boundary of an area is left out"]);
+}
+
+/// A field with a house in its middle: where the house is, nobody may fly.
+#[test]
+fn holes_of_a_zone_to_stay_inside_of_are_zones_to_keep_out_of() {
+    const FIELD: &str = r#"{"type": "Feature", "properties": {"name": "Field"}, "geometry": {"type": "Polygon", "coordinates": [
+        [[-84.20, 36.30], [-84.10, 36.30], [-84.10, 36.38], [-84.20, 36.38], [-84.20, 36.30]],
+        [[-84.16, 36.33], [-84.16, 36.34], [-84.15, 36.34], [-84.15, 36.33], [-84.16, 36.33]],
+        [[-84.13, 36.33], [-84.13, 36.34], [-84.12, 36.34], [-84.13, 36.33]]]}}"#;
+    let zones = |areas| {
+        let assumptions = Assumptions { areas, ..Assumptions::default() };
+        let import = read(Format::GeoJson, FIELD.as_bytes(), &assumptions).unwrap();
+        let corners = |zone: &Zone| match &zone.shape {
+            ZoneShape::Polygon(corners) => corners.len(),
+            ZoneShape::Circle { .. } => 0,
+        };
+        let zones: Vec<_> =
+            import.plan.zones.iter().map(|zone| (zone.id.to_string(), zone.kind, corners(zone))).collect();
+        (zones, said(&import, "zone-holes").concat())
+    };
+    let (inside, told) = zones(Areas::KeepIn);
+    assert_eq!(
+        inside,
+        [
+            ("Field".to_owned(), ZoneKind::KeepIn, 4),
+            ("Field-hole".to_owned(), ZoneKind::KeepOut, 4),
+            ("Field-hole-2".to_owned(), ZoneKind::KeepOut, 3),
+        ]
+    );
+    assert_eq!(told, "the holes of this zone become zones to keep out of");
+    let (outside, told) = zones(Areas::KeepOut);
+    assert_eq!(outside, [("Field".to_owned(), ZoneKind::KeepOut, 4)]);
+    assert!(told.contains("nobody flies inside of them either"), "{told}");
+    let (scanned, told) = zones(Areas::Scan);
+    assert_eq!((scanned, told.as_str()), (vec![], ""), "a scan has holes itself");
 }
 
 #[test]

@@ -230,13 +230,6 @@ impl Importer<'_> {
     }
 
     fn zone(&mut self, feature: &Feature, kind: ZoneKind, outer: &[LatLon], holes: &[Vec<LatLon>]) {
-        if !holes.is_empty() {
-            self.notes.push(
-                "zone-holes",
-                &feature.place,
-                "the holes of this zone are left out: it counts without them",
-            );
-        }
         let centre = feature.position("centre_lat", "centre_lon");
         let shape = match (centre, feature.number("radius_m").filter(|r| *r > 0.0)) {
             (Some(centre), Some(radius_m)) => ZoneShape::Circle { centre, radius_m },
@@ -246,8 +239,30 @@ impl Importer<'_> {
         // those of ours have the identifier as name, and the name as description
         let ours = feature.mark("legwork").is_some();
         let name = if ours { &feature.description } else { &feature.name }.clone();
-        let (floor, ceiling) = (None, None);
-        self.plan.zones.push(Zone { id, name, kind, shape, floor, ceiling, active: Vec::new() });
+        self.plan.zones.push(at_every_height(id, name, kind, shape));
+        self.holes(feature, kind, holes);
+    }
+
+    /// The holes of a zone, which has none itself: those of a zone to stay inside of are zones to keep out of, inside it.
+    fn holes(&mut self, feature: &Feature, kind: ZoneKind, holes: &[Vec<LatLon>]) {
+        if holes.is_empty() {
+            return;
+        }
+        let message = match kind {
+            ZoneKind::KeepIn => "the holes of this zone become zones to keep out of",
+            ZoneKind::KeepOut => "the holes of this zone are left out: nobody flies inside of them either",
+        };
+        self.notes.push("zone-holes", &feature.place, message);
+        if kind == ZoneKind::KeepOut {
+            return;
+        }
+        for hole in holes {
+            let id = self.names.take(&format!("{}-hole", feature.name), "hole");
+            let name =
+                if feature.name.is_empty() { String::new() } else { format!("{}, hole", feature.name) };
+            let shape = ZoneShape::Polygon(hole.clone());
+            self.plan.zones.push(at_every_height(id, name, ZoneKind::KeepOut, shape));
+        }
     }
 
     fn area_as_zone(&mut self, feature: &Feature, kind: ZoneKind, outer: &[LatLon], holes: &[Vec<LatLon>]) {
@@ -300,6 +315,10 @@ impl Importer<'_> {
         stage.legs.push(way.into());
         self.plan.stages.push(stage);
     }
+}
+
+fn at_every_height(id: Id, name: String, kind: ZoneKind, shape: ZoneShape) -> Zone {
+    Zone { id, name, kind, shape, floor: None, ceiling: None, active: Vec::new() }
 }
 
 /// A whole number from 1 on.
