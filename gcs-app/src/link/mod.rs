@@ -1,6 +1,7 @@
 //! The ways to the vehicles: one link per connection, several at once. A thread with a runtime of its
 //! own owns the sessions; the window talks to it through two channels and never waits for either.
 
+mod outlet;
 mod senders;
 mod session;
 mod subscriptions;

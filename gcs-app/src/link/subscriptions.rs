@@ -1,7 +1,8 @@
 //! What the window follows of a vehicle: whatever the services declare. What has a place of its own in the window is
 //! decoded by its type, everything else comes as plain text.
 
-use super::session::{Open, Outlet};
+use super::outlet::Outlet;
+use super::session::Open;
 use super::{Numbered, PlainEvent, PlainValue, Rows, Telemetry};
 use serde_json::Value;
 use usal::SessionError;
