@@ -6,6 +6,7 @@ use crate::assets;
 use crate::assets::places::{End, Place};
 use crate::units::Units;
 use geometry::LatLon;
+use interchange::KnownRunway;
 use terrain::Terrain;
 
 /// So near to an airport it is meant, metres.
@@ -35,6 +36,17 @@ pub fn at(place: LatLon) -> Option<Landing> {
 pub fn near(place: LatLon) -> Option<(&'static str, Vec<Landing>)> {
     let airport = nearest(place, NEAR_M)?;
     Some((airport.name, landings(airport)))
+}
+
+/// The runways near a place, for the import of a mission that takes off or lands there.
+pub fn known(place: LatLon) -> Vec<KnownRunway> {
+    let (airport, landings) = near(place).unwrap_or_default();
+    let named = |Landing { name, threshold, end }| KnownRunway {
+        name: format!("{name} of {airport}"),
+        threshold,
+        end,
+    };
+    landings.into_iter().map(named).collect()
 }
 
 /// About how high the ground is where an airport is near, metres AMSL, and that airport's name: by the nearest end of its
@@ -122,6 +134,51 @@ mod tests {
         assert_eq!(at(GIRONA).unwrap(), landings[0]);
         assert_eq!(ground_amsl_m(landings[0].threshold).unwrap().0, 123.0);
         assert_eq!(ground_amsl_m(landings[1].threshold).unwrap().0, 143.0);
+    }
+
+    #[test]
+    fn a_mission_that_begins_on_a_known_runway_takes_off_in_its_direction() {
+        let landings = near(GIRONA).unwrap().1;
+        let (from, to) = (landings[0].threshold, landings[0].end);
+        let start = from.destination(from.bearing_deg(to), 500.0);
+        let north = start.destination(0.0, 3000.0);
+        let mission = |heading_deg: f64, towards: LatLon| {
+            let item = |n: u8, command: u8, at: LatLon, altitude_m: f64| {
+                let frame = if n == 0 { 0 } else { 3 };
+                let (lat, lon) = (at.lat_deg, at.lon_deg);
+                format!(
+                    "{n}\t0\t{frame}\t{command}\t0\t0\t0\t{heading_deg}\t{lat:.8}\t{lon:.8}\t{altitude_m}\t1\n"
+                )
+            };
+            let text = [
+                "QGC WPL 110\n".to_owned(),
+                item(0, 16, start, 125.0),
+                item(1, 22, start, 50.0),
+                item(2, 16, towards, 100.0),
+            ];
+            let path = std::path::Path::new("girona.waypoints");
+            let assumptions = crate::formats::assumptions(path);
+            let import =
+                interchange::read(interchange::Format::Waypoints, text.concat().as_bytes(), &assumptions)
+                    .unwrap();
+            let runway = import.plan.runways[0].clone();
+            let told: Vec<_> = import
+                .notes
+                .iter()
+                .filter(|n| n.code.starts_with("runway"))
+                .map(ToString::to_string)
+                .collect();
+            (runway.heading_deg, runway.length_m, told.concat())
+        };
+        let heading_deg = from.bearing_deg(to);
+        let (flown_deg, length_m, told) = mission(0.0, north);
+        assert!((flown_deg - heading_deg).abs() < 0.01 && flown_deg > 5.0, "{flown_deg}");
+        assert!((length_m + 500.0 - from.distance_m(to)).abs() < 1.0, "{length_m}");
+        assert!(told.contains("01 of LEGE ") && told.contains("runway-known"), "{told}");
+        // what the mission says counts, and nobody takes off across a runway
+        assert_eq!(mission(20.0, north).0, 20.0);
+        let (across_deg, _, told) = mission(0.0, start.destination(100.0, 3000.0));
+        assert!((across_deg - 100.0).abs() < 1.0 && told.contains("runway-made-up"), "{told}");
     }
 
     #[test]

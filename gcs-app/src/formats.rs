@@ -95,7 +95,8 @@ fn root(bytes: &[u8]) -> Option<String> {
 pub fn assumptions(path: &Path) -> Assumptions {
     let usual = Assumptions::default();
     let stem = path.file_stem().and_then(|stem| stem.to_str());
-    Assumptions { name: stem.map_or(usual.name, str::to_owned), ..usual }
+    let name = stem.map_or(usual.name, str::to_owned);
+    Assumptions { name, known_runways: crate::airfields::known, ..usual }
 }
 
 /// The plan that another program's file means.

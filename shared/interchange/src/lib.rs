@@ -28,7 +28,7 @@ mod xml;
 
 pub use drawing::{Feature, Shape, Vertex};
 pub use note::Note;
-pub use synthetic::{Areas, Assumptions};
+pub use synthetic::{Areas, Assumptions, KnownRunway};
 pub use track::{RecordedFlight, TrackEvent, TrackPoint, write_flights};
 
 use flight_exec::Waypoint;

@@ -24,8 +24,19 @@ impl Areas {
         [("scan", Areas::Scan), ("keep-in", Areas::KeepIn), ("keep-out", Areas::KeepOut)];
 }
 
-/// What is taken where a file says nothing; each use of one is a note.
+/// A runway that is there, in one of its directions.
 #[derive(Debug, Clone, PartialEq)]
+pub struct KnownRunway {
+    /// What it is called, with its airport.
+    pub name: String,
+    /// Where a landing begins.
+    pub threshold: LatLon,
+    /// Where it ends.
+    pub end: LatLon,
+}
+
+/// What is taken where a file says nothing; each use of one is a note.
+#[derive(Debug, Clone)]
 pub struct Assumptions {
     /// The aircraft of the plan: name of a profile. `None`: the one that suits what the file says of its vehicle.
     pub aircraft: Option<String>,
@@ -44,6 +55,9 @@ pub struct Assumptions {
     /// The runway to take off from and to land on, instead of one that is made up; a drawing gets take-off and landing only
     /// with it.
     pub runway: Option<Runway>,
+    /// Which runways there are near a place: where a mission takes off or lands on one and doesn't say in which direction, that
+    /// one is meant.
+    pub known_runways: fn(LatLon) -> Vec<KnownRunway>,
 }
 
 impl Default for Assumptions {
@@ -57,6 +71,7 @@ impl Default for Assumptions {
             spacing_m: 100.0,
             areas: Areas::default(),
             runway: None,
+            known_runways: |_| Vec::new(),
         }
     }
 }

@@ -1,8 +1,8 @@
-//! Runways for missions, which only know points.
+//! Runways for missions, which only know points: one that is known to be there, or one that is made up.
 
 use crate::names::Names;
 use crate::note::Notes;
-use crate::synthetic::{Assumptions, runway};
+use crate::synthetic::{Assumptions, KnownRunway, runway};
 use flight_plan::{Id, Runway};
 use geometry::LatLon;
 use geometry::geodesy::{normalise_180, normalise_360};
@@ -11,6 +11,12 @@ use geometry::geodesy::{normalise_180, normalise_360};
 pub const SAME_M: f64 = 1.0;
 /// Directions nearer than this are the same, degrees.
 const SAME_DEG: f64 = 1.0;
+/// A point so near to the middle of a runway is on it, metres: half the width of a wide one, and the error of the data.
+const ON_RUNWAY_M: f64 = 60.0;
+/// A runway is used in the direction that is within so much of the one flown, degrees.
+const ALIGNED_DEG: f64 = 45.0;
+/// So much of a runway has to be left, metres.
+const LEFT_M: f64 = 100.0;
 
 /// Makes runways up, or takes the one that was given.
 pub struct Runways<'a> {
@@ -41,6 +47,11 @@ impl<'a> Runways<'a> {
             return given.id.clone();
         }
         let told_deg = direction.heading_deg(point.0);
+        let known = match direction.is_said() {
+            true => None,
+            false => on_known((self.assumptions.known_runways)(point.0), point.0, told_deg),
+        };
+        let told_deg = known.as_ref().map(|on| on.heading_deg).or(told_deg);
         let heading_deg = told_deg.unwrap_or(0.0);
         let off_deg = |r: &Runway| told_deg.map_or(0.0, |deg| normalise_180(r.heading_deg - deg).abs());
         // another direction makes another runway: the mission would land there in that direction
@@ -55,11 +66,14 @@ impl<'a> Runways<'a> {
             }
             return same.id.clone();
         }
-        let length_m = self.assumptions.runway_length_m;
-        let made =
-            runway(names.take(preferred, "runway"), point.0, point.1, heading_deg, length_m, place, notes);
-        let id = made.id.clone();
-        self.list.push(made);
+        let id = names.take(preferred, "runway");
+        self.list.push(match known {
+            Some(on) => on.runway(id.clone(), point, place, notes),
+            None => {
+                let length_m = self.assumptions.runway_length_m;
+                runway(id.clone(), point.0, point.1, heading_deg, length_m, place, notes)
+            }
+        });
         id
     }
 
@@ -67,6 +81,52 @@ impl<'a> Runways<'a> {
     pub fn into_vec(self) -> Vec<Runway> {
         self.list
     }
+}
+
+/// A point on a runway that is there.
+struct OnKnown {
+    name: String,
+    heading_deg: f64,
+    /// From the point to the runway's end, metres.
+    left_m: f64,
+}
+
+impl OnKnown {
+    fn of(known: KnownRunway, at: LatLon) -> Option<Self> {
+        let heading_deg = known.threshold.bearing_deg(known.end);
+        let (length_m, out_m) = (known.threshold.distance_m(known.end), known.threshold.distance_m(at));
+        let off_rad = (known.threshold.bearing_deg(at) - heading_deg).to_radians();
+        let (along_m, across_m) = (out_m * off_rad.cos(), out_m * off_rad.sin());
+        let left_m = length_m - along_m;
+        let is_on = across_m.abs() < ON_RUNWAY_M && along_m > -ON_RUNWAY_M && left_m > LEFT_M;
+        is_on.then_some(Self { name: known.name, heading_deg, left_m })
+    }
+
+    /// What of it lies ahead of the point.
+    fn runway(
+        self,
+        id: Id,
+        (threshold, elevation_amsl_m): (LatLon, f64),
+        place: &str,
+        notes: &mut Notes,
+    ) -> Runway {
+        let Self { name, heading_deg, left_m } = self;
+        let message = format!(
+            "runway `{id}` is taken to be {name}: {left_m:.0} m long, heading {heading_deg:.0}°, elevation \
+             {elevation_amsl_m:.0} m; correct it if another one is meant"
+        );
+        notes.push("runway-known", place, message);
+        let (length_m, priority, approach_entry) = (left_m, 1, None);
+        Runway { id, threshold, elevation_amsl_m, heading_deg, length_m, priority, approach_entry }
+    }
+}
+
+/// The known runway at a point: in the direction that is flown, or else in the one in which most of it is left.
+fn on_known(known: Vec<KnownRunway>, at: LatLon, told_deg: Option<f64>) -> Option<OnKnown> {
+    let aligned =
+        |on: &OnKnown| told_deg.is_none_or(|deg| normalise_180(on.heading_deg - deg).abs() < ALIGNED_DEG);
+    let on = known.into_iter().filter_map(|known| OnKnown::of(known, at)).filter(aligned);
+    on.max_by(|a, b| a.left_m.total_cmp(&b.left_m))
 }
 
 /// How the direction of a runway is found.
