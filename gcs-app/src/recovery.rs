@@ -67,10 +67,17 @@ impl Unsaved {
     }
 }
 
+/// All that is to be kept.
+struct Job {
+    unsaved: Vec<Unsaved>,
+    /// What the last window left behind, as long as nothing is decided about it.
+    left: Vec<LeftDocument>,
+}
+
 /// Keeps the copy of one window's documents, on a thread of its own.
 #[derive(Debug)]
 pub struct Keeper {
-    jobs: Option<Sender<Vec<Unsaved>>>,
+    jobs: Option<Sender<Job>>,
     failures: Receiver<String>,
     worker: Option<JoinHandle<()>>,
     /// The versions of which there are copies; `None`: what is there is not of this window.
@@ -104,13 +111,13 @@ impl Keeper {
 
     fn at(place: File, copy: PathBuf) -> std::io::Result<Self> {
         let left_behind = read(&copy);
-        let (jobs, inbox) = channel::<Vec<Unsaved>>();
+        let (jobs, inbox) = channel::<Job>();
         let (outbox, failures) = channel();
         let work = move || {
             while let Ok(job) = inbox.recv() {
                 // only the last one counts
                 let job = inbox.try_iter().last().unwrap_or(job);
-                if let Err(error) = carry_out(&job, &copy) {
+                if let Err(error) = carry_out(job, &copy) {
                     // the window may be gone
                     let _ = outbox.send(error.to_string());
                 }
@@ -128,7 +135,7 @@ impl Keeper {
         })
     }
 
-    /// What is to be decided before anything else is kept here.
+    /// What is to be decided. Until then it is kept beside the changes that are made meanwhile.
     pub fn left_behind(&self) -> Option<&LeftBehind> {
         self.left_behind.as_ref()
     }
@@ -144,9 +151,6 @@ impl Keeper {
     /// Keeps a copy of these documents with unsaved changes if they have changed, or takes it away where there are none. Returns
     /// after how long to look again.
     pub fn tend<'d>(&mut self, unsaved: impl Iterator<Item = &'d Document>, now_s: f64) -> Option<Duration> {
-        if self.left_behind.is_some() {
-            return None;
-        }
         let unsaved: Vec<&Document> = unsaved.collect();
         let versions = unsaved.iter().map(|document| document.version());
         if self.kept.as_ref().is_some_and(|kept| versions.clone().eq(kept.iter().copied())) {
@@ -164,7 +168,8 @@ impl Keeper {
 
     /// The window is closed, and what it had is saved or not wanted.
     pub fn close(&mut self) {
-        if self.left_behind.is_none() {
+        // what was left behind may be there alone, as it was
+        if self.left_behind.is_none() || self.kept.as_ref().is_none_or(|kept| !kept.is_empty()) {
             self.order(Vec::new());
         }
     }
@@ -175,10 +180,11 @@ impl Keeper {
         Some(format!("No copy of unsaved changes can be kept: {why}. Save the plan often."))
     }
 
-    fn order(&self, job: Vec<Unsaved>) {
+    fn order(&self, unsaved: Vec<Unsaved>) {
+        let left = self.left_behind.as_ref().map_or_else(Vec::new, |left| left.documents.clone());
         if let Some(jobs) = &self.jobs {
             // the worker ends after this does
-            let _ = jobs.send(job);
+            let _ = jobs.send(Job { unsaved, left });
         }
     }
 }
@@ -198,10 +204,11 @@ fn copy_in(folder: &Path, place: usize) -> PathBuf {
     folder.join(format!("{place}.json"))
 }
 
-/// Without documents the copy is taken away.
-fn carry_out(unsaved: &[Unsaved], copy: &Path) -> std::io::Result<()> {
-    if !unsaved.is_empty() {
-        let kept = Kept { documents: unsaved.iter().map(Unsaved::written).collect() };
+/// The copy has the changes of this window first; without documents it is taken away.
+fn carry_out(job: Job, copy: &Path) -> std::io::Result<()> {
+    let documents: Vec<_> = job.unsaved.iter().map(Unsaved::written).chain(job.left).collect();
+    if !documents.is_empty() {
+        let kept = Kept { documents };
         return write_whole(copy, &serde_json::to_vec(&kept)?).map(drop);
     }
     match std::fs::remove_file(copy) {
@@ -279,6 +286,29 @@ mod tests {
             tend(&mut window, &Document::default(), 0.0);
             window.close();
         }
+    }
+
+    /// The question may wait while somebody flies or plans: a second crash takes nothing.
+    #[test]
+    fn changes_are_kept_while_the_question_after_a_crash_waits() {
+        let folder = tempfile::tempdir().unwrap();
+        let (lost, mut new) = (edited(), edited());
+        new.edit(&Edit::MoveFix { fix: "A".into(), to: LatLon::new(2.0, 2.0) }).unwrap();
+        tend(&mut Keeper::open(folder.path()).unwrap(), &lost, 0.0);
+        let mut window = Keeper::open(folder.path()).unwrap();
+        tend(&mut window, &new, 0.0);
+        assert!(window.left_behind().is_some_and(|left| left.documents.len() == 1), "asked as before");
+        drop(window);
+        let mut next = Keeper::open(folder.path()).unwrap();
+        let plans = |left: &LeftBehind| -> Vec<FlightPlan> {
+            left.documents.iter().map(|left| flight_plan::read(left.text.as_bytes()).plan).collect()
+        };
+        assert_eq!(plans(next.left_behind().unwrap()), [(**new.plan()).clone(), (**lost.plan()).clone()]);
+        // what is saved or given up by then is no longer there
+        tend(&mut next, &new, 0.0);
+        next.close();
+        drop(next);
+        assert_eq!(plans(Keeper::open(folder.path()).unwrap().left_behind().unwrap()).len(), 2);
     }
 
     #[test]
