@@ -58,6 +58,8 @@ pub enum DocumentCommand {
     Replace(Replacement),
     /// The same without asking: the changes are lost.
     Discard(Replacement),
+    /// Open a file that was chosen in the window. It was asked before what becomes of unsaved changes, or nothing was to be lost.
+    Open(PathBuf),
     /// A file or folder that was dropped onto the window.
     Dropped(PathBuf),
     /// Put the plan of another program that was read in the document's place.

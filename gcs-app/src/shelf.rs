@@ -112,8 +112,9 @@ fn forget_oldest(documents: &mut Vec<Document>, most_bytes: usize) {
 
 fn turn(from: &mut Vec<Document>, shown: &mut Document, to: &mut Vec<Document>) -> bool {
     let Some(mut next) = from.pop() else { return false };
-    // who brings it back wants it again
+    // who brings it back wants it again; and what is still shown nobody has given up
     next.set_discarded(false);
+    shown.set_discarded(false);
     to.push(std::mem::replace(shown, next));
     true
 }
@@ -149,6 +150,16 @@ mod tests {
         let each = documents[0].bytes();
         forget_oldest(&mut documents, 8 * each);
         assert_eq!(names(documents.iter()), ["0", "10", "20", "30", "40", "47", "48", "49"]);
+    }
+
+    /// Its changes were given up for another plan, and that was not opened.
+    #[test]
+    fn what_is_still_shown_is_not_given_up_by_an_undo() {
+        let (mut shelf, mut shown) = (Shelf::default(), named("a", false));
+        shelf.open(&mut shown, named("b", true));
+        shown.set_discarded(true);
+        assert!(shelf.undo(&mut shown) && shown.plan().name == "a");
+        assert_eq!(names(shelf.unsaved(&shown)), ["b"]);
     }
 
     #[test]

@@ -302,6 +302,7 @@ impl App {
 
     pub(super) fn recover(&mut self) {
         let Some(found) = self.take_left_behind() else { return };
+        self.document.set_discarded(false);
         // the one that was shown is shown again
         for left in found.documents.into_iter().rev() {
             let mut recovered = Document::recovered(left.text.as_bytes(), left.path);

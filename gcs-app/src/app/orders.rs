@@ -73,6 +73,7 @@ impl App {
                 self.document.set_discarded(true);
                 self.replace(with);
             }
+            DocumentCommand::Open(path) => self.replace(Replacement::Open(path)),
             DocumentCommand::Create(outline) => self.create(*outline),
             DocumentCommand::Recover => self.recover(),
             DocumentCommand::ForgetLeftBehind => drop(self.take_left_behind()),
@@ -113,6 +114,8 @@ impl App {
         if would_be_lost {
             self.view.unsaved = Some(with);
         } else {
+            // whatever was given up for another plan that did not come after all is wanted
+            self.document.set_discarded(false);
             self.replace(with);
         }
     }

@@ -1,7 +1,7 @@
 //! A file dialog in the window, for desktops that offer none.
 
 use super::{Scene, primary_button};
-use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
+use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::files::{Entry, Purpose};
 use crate::formats;
 use crate::theme;
@@ -231,9 +231,8 @@ fn save(path: PathBuf, over: bool, purpose: Purpose, queue: &mut Queue) {
     });
 }
 
-/// It was asked already what becomes of unsaved changes.
 fn open(path: PathBuf, queue: &mut Queue) {
-    queue.document(DocumentCommand::Discard(Replacement::Open(path)));
+    queue.document(DocumentCommand::Open(path));
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ pub fn drop_file(window: &mut Window, path: &Path) {
     window.steps(2);
 }
 
-fn until_imported(window: &mut Window) {
+pub fn until_imported(window: &mut Window) {
     window.until("the import", |app| app.view().imported.is_some());
     // a dialog that is centred finds its place
     window.steps(5);

@@ -1,7 +1,8 @@
 //! Another plan takes the place of the one that is shown: what is kept of that, and what is not.
 
 use super::creating::{SIZE, begun};
-use super::filing::{edit, open, until_listed, window, window_on};
+use super::filing::{edit, name, open, until_listed, window, window_on};
+use super::interchange::{fixture, until_imported};
 use super::{SQUARE, Window};
 use egui::{Key, vec2};
 
@@ -13,6 +14,22 @@ fn what_was_discarded_is_not_asked_about_again() {
     window.click("Discard the changes");
     window.press_ctrl(Key::Q);
     assert!(!window.shows("unsaved changes") && window.app().is_leaving());
+}
+
+/// Nobody said that they need not be kept: undo brings them back.
+#[test]
+fn an_import_gives_up_no_changes_of_the_plan_that_it_takes_the_place_of() {
+    let mut window = window(SQUARE);
+    edit(&mut window);
+    window.click("Legwork");
+    window.click("Import…");
+    until_listed(&mut window);
+    name(&mut window, &fixture("survey.plan"));
+    window.click("Open");
+    until_imported(&mut window);
+    window.click("Import the plan");
+    window.press_ctrl(Key::Q);
+    assert!(window.shows("2 plans have unsaved changes") && !window.app().is_leaving());
 }
 
 #[test]
