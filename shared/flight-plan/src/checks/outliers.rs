@@ -47,7 +47,7 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     }
 }
 
-/// Of what follows from a place that is far away only the cause is said.
+/// Of what follows from a place that is far away only the cause is said, if there is an error among it.
 pub(super) fn alone(view: &Inspection, problems: &mut Vec<Problem>) {
     if !problems.iter().any(|problem| problem.code == CODE) {
         return;
@@ -58,11 +58,12 @@ pub(super) fn alone(view: &Inspection, problems: &mut Vec<Problem>) {
         let follows = |p: &Problem| {
             FOLLOWS.contains(&p.code) && p.subject.as_ref().is_some_and(|leg| around.contains(leg))
         };
-        let (errors, rest): (Vec<Problem>, Vec<Problem>) =
-            std::mem::take(problems).into_iter().partition(|p| p.is_error() && follows(p));
-        problems.extend(rest.into_iter().filter(|p| !follows(p)));
-        let cause = problems.iter_mut().find(|p| p.code == CODE && p.subject.as_ref() == first);
-        if let (Some(cause), Some(error)) = (cause, errors.first()) {
+        let Some(error) = problems.iter().find(|p| p.is_error() && follows(p)).cloned() else {
+            // a plan may go there: what is said of the way is not hidden
+            continue;
+        };
+        problems.retain(|p| !follows(p));
+        if let Some(cause) = problems.iter_mut().find(|p| p.code == CODE && p.subject.as_ref() == first) {
             cause.severity = Severity::Error;
             let whose = error.subject.as_ref().map_or_else(String::new, |leg| format!(" `{leg}`"));
             cause.message.push_str(&format!(". If it is right, see to{whose}: {}", error.message));
@@ -231,6 +232,18 @@ mod tests {
         assert_eq!((found[0].code, found[0].is_error()), (CODE, true), "{found:?}");
         assert!(!found.iter().any(|p| p.code.starts_with("rf-")), "{found:?}");
         assert!(found[0].message.contains("If it is right, see to `r`: move the centre"), "{found:?}");
+    }
+
+    /// At 345 m over flat ground at 300 m.
+    #[test]
+    fn what_is_said_of_the_way_to_a_place_that_may_be_right_stays() {
+        let low = square(r#"lat="37.2" lon="-84.17" altitude="345" altitudeReference="amsl""#);
+        let found = problems(&low);
+        assert!(found.iter().all(|problem| !problem.is_error()), "{found:?}");
+        let of_b = |code: &str| {
+            found.iter().any(|p| p.code == code && p.subject.as_ref().is_some_and(|leg| leg.as_str() == "b"))
+        };
+        assert!(of_b(CODE) && of_b("low-clearance"), "{found:?}");
     }
 
     #[test]
