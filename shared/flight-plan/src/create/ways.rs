@@ -9,7 +9,7 @@ use std::sync::Arc;
 const MOST_STEPS: usize = 2_000_000;
 
 /// Of each leg of a list the fork and its branch, by their indices, that every way to it leads over: the innermost one. A fork whose
-/// branches don't all lead on has no legs of its own.
+/// branches don't all lead on has no legs of its own, and what no way leads to is no branch's.
 pub fn ways(list: &[Arc<Leg>]) -> Vec<Option<(usize, usize)>> {
     if !list.iter().any(|leg| leg.as_fork().is_some_and(|fork| fork.branches.len() > 1)) {
         return vec![None; list.len()];
@@ -24,8 +24,9 @@ pub fn ways(list: &[Arc<Leg>]) -> Vec<Option<(usize, usize)>> {
     if branches.len().saturating_mul(list.len()) > MOST_STEPS {
         return vec![None; list.len()];
     }
+    let flown = reached(&onwards, Some(0), None);
     for (fork, branch) in branches {
-        let own = own(&onwards, fork, branch);
+        let own = own(&onwards, &flown, fork, branch);
         for leg in &own {
             // the smaller one is inside the other
             if let Some(owner) = owners.get_mut(*leg).filter(|(_, size)| own.len() < *size) {
@@ -51,17 +52,11 @@ fn parts(fork: usize, ways: &[Option<usize>]) -> bool {
     ways.len() > 1 && ways.iter().all(|way| way.is_none_or(|to| to > fork))
 }
 
-/// The legs that are flown only after that branch, in the order of the list.
-fn own(onwards: &[Vec<Option<usize>>], fork: usize, branch: usize) -> Vec<usize> {
+/// Of the legs that are `flown`, those that are so only after that branch, in the order of the list.
+fn own(onwards: &[Vec<Option<usize>>], flown: &[bool], fork: usize, branch: usize) -> Vec<usize> {
     let without = reached(onwards, Some(0), Some((fork, branch)));
-    let first = onwards.get(fork).and_then(|ways| ways.get(branch).copied().flatten());
-    let with = reached(onwards, first, None);
-    with.into_iter()
-        .zip(without)
-        .enumerate()
-        .filter(|(_, (with, without))| *with && !without)
-        .map(|(i, _)| i)
-        .collect()
+    let both = flown.iter().zip(without).enumerate();
+    both.filter(|(_, (flown, without))| **flown && !without).map(|(index, _)| index).collect()
 }
 
 /// What is flown from a leg on, without one branch.
@@ -177,6 +172,15 @@ mod tests {
         assert_eq!(owned(&plan(&nested)), "g<f.y p<g.y q<f.y");
         let single = leg("a") + &fork("f", r#"<branch id="x"/>"#) + &leg("b");
         assert_eq!(owned(&plan(&single)), "");
+    }
+
+    /// It would be inside of itself, and in no tree.
+    #[test]
+    fn a_fork_that_nobody_comes_to_is_no_branch_of_its_own() {
+        let unreached = r#"<TF id="a" fix="A" next="z"/>
+            <intersection id="f" default="on"><branch id="on" next="n"/><branch id="look" next="m"/></intersection>
+            <TF id="n" fix="A" next="f"/><TF id="m" fix="A" next="f"/><TF id="z" fix="A"/>"#;
+        assert_eq!(owned(&plan(unreached)), "");
     }
 
     #[test]
