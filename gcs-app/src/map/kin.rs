@@ -20,13 +20,9 @@ pub struct Kin {
 impl Kin {
     /// What goes with the present selection.
     pub fn of(scene: &Scene<'_>) -> Self {
-        let plan = scene.document.plan();
-        let mut ids = HashSet::new();
-        for what in scene.view.selection.iter().chain(&scene.view.also) {
-            ids.insert(what.id().clone());
-            add(plan, what, &mut ids);
-        }
-        Self { ids: scene.view.selection.is_some().then_some(ids) }
+        let selected = scene.view.selection.iter().chain(&scene.view.also);
+        let ids = scene.view.selection.is_some().then(|| around(scene.document.plan(), selected));
+        Self { ids }
     }
 
     /// It is selected, goes with what is, or nothing is selected.
@@ -44,20 +40,27 @@ impl Kin {
     }
 }
 
-fn add(plan: &FlightPlan, what: &Selection, ids: &mut HashSet<Id>) {
-    match what {
-        Selection::Leg(id) => {
-            let Some(context) = plan.leg(id) else { return };
-            add_alternates(in_force(plan, &context), ids);
-            add_legs(context.leg, ids);
+/// These with what goes with them. The plan is gone through once, however many there are.
+fn around<'a>(plan: &FlightPlan, selected: impl Iterator<Item = &'a Selection>) -> HashSet<Id> {
+    let (mut ids, mut legs) = (HashSet::new(), HashSet::new());
+    for what in selected {
+        ids.insert(what.id().clone());
+        match what {
+            Selection::Leg(id) => drop(legs.insert(id)),
+            Selection::Stage(id) => plan.stage(id).into_iter().for_each(|stage| add_stage(stage, &mut ids)),
+            Selection::Emergency(id) => {
+                let stages = plan.emergency_plan(id).map_or(&[][..], |emergency| &emergency.stages);
+                stages.iter().for_each(|stage| add_stage(stage, &mut ids));
+            }
+            _ => {}
         }
-        Selection::Stage(id) => plan.stage(id).into_iter().for_each(|stage| add_stage(stage, ids)),
-        Selection::Emergency(id) => {
-            let stages = plan.emergency_plan(id).map_or(&[][..], |emergency| &emergency.stages);
-            stages.iter().for_each(|stage| add_stage(stage, ids));
-        }
-        _ => {}
     }
+    let contexts = if legs.is_empty() { Vec::new() } else { plan.all_legs() };
+    for context in contexts.iter().filter(|context| legs.contains(&context.leg.id)) {
+        add_alternates(in_force(plan, context), &mut ids);
+        add_legs(context.leg, &mut ids);
+    }
+    ids
 }
 
 fn add_stage(stage: &Stage, ids: &mut HashSet<Id>) {
@@ -78,12 +81,10 @@ fn add_alternates(choice: &EmergencyChoice, ids: &mut HashSet<Id>) {
 mod tests {
     use super::*;
     use crate::assets;
+    use std::time::Instant;
 
     fn kin(what: &Selection) -> HashSet<Id> {
-        let plan = flight_plan::read(assets::FIRE_WATCH.as_bytes()).plan;
-        let mut ids = HashSet::from([what.id().clone()]);
-        add(&plan, what, &mut ids);
-        ids
+        around(&flight_plan::read(assets::FIRE_WATCH.as_bytes()).plan, std::iter::once(what))
     }
 
     #[test]
@@ -94,5 +95,29 @@ mod tests {
         let stage = plan.leg(&"look".into()).unwrap().stage.id.clone();
         let of_stage = kin(&Selection::Stage(stage));
         assert!(["look", "regroup"].iter().all(|leg| of_stage.contains(*leg)));
+    }
+    /// Ctrl+A, and every frame after it.
+    #[test]
+    fn all_legs_of_a_large_plan_take_no_longer_than_some_walks_over_it() {
+        const LEGS: usize = 4000;
+        let legs: String =
+            (0..LEGS).map(|n| format!(r#"<TF id="leg{n}" lat="36.3" lon="-84.1"/>"#)).collect();
+        let stage = format!(r#"<mainPlan><stage id="s" type="mission">{legs}</stage></mainPlan>"#);
+        let text = format!(
+            r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer">{stage}</flightPlan>"#
+        );
+        let plan = flight_plan::read(text).plan;
+        let began = Instant::now();
+        let all: Vec<Selection> =
+            plan.all_legs().iter().map(|context| Selection::Leg(context.leg.id.clone())).collect();
+        let walk = began.elapsed();
+        let tries = (0..5).map(|_| {
+            let began = Instant::now();
+            assert_eq!(around(&plan, all.iter()).len(), LEGS);
+            began.elapsed()
+        });
+        // the machine may have been busy otherwise in some of them
+        let takes = tries.min().unwrap();
+        assert!(takes < 20 * walk, "{takes:?}, and {walk:?} for a walk");
     }
 }
