@@ -1,5 +1,6 @@
 //! What happened, in sentences.
 
+use super::Names;
 use flight_exec::{Event, Phase};
 use flight_plan::{Id, VariableValue};
 use std::collections::VecDeque;
@@ -104,11 +105,12 @@ pub fn is_announced(event: &Event) -> bool {
         || matches!(event, Event::PhaseChanged { phase: Phase::AwaitingDecision | Phase::Grounded })
 }
 
-/// A plan event as a sentence; `name` says what people call a part of the plan.
-pub fn plan_event(event: &Event, name: impl Fn(&Id) -> String) -> (Level, String) {
+/// A plan event as a sentence.
+pub fn plan_event(event: &Event, names: Names<'_>) -> (Level, String) {
     let info = |text: String| (Level::Info, text);
+    let name = |id: &Id| names.of(id);
     match event {
-        Event::LegEntered { place } => info(entered(&place.leg, &place.stage, name)),
+        Event::LegEntered { place } => info(entered(&place.leg, &place.stage, names)),
         Event::IterationFinished { leg, finished, of } => info(format!(
             "Loop {}: pass {finished}{} done",
             name(leg),
@@ -117,13 +119,7 @@ pub fn plan_event(event: &Event, name: impl Fn(&Id) -> String) -> (Level, String
         Event::DecisionRequested(d) => {
             (Level::Caution, format!("Decision asked for at {}: {} choices", name(&d.leg), d.options.len()))
         }
-        Event::DecisionTaken { leg, branch, by } if by == BY_DEFAULT => (
-            Level::Caution,
-            format!("Nobody decided at {} in time: {} was taken by default", name(leg), name(branch)),
-        ),
-        Event::DecisionTaken { leg, branch, by } => {
-            info(format!("{}: branch {}, decided by {by}", name(leg), name(branch)))
-        }
+        Event::DecisionTaken { leg, branch, by } => decided(leg, branch, by, names),
         Event::VariableChanged { name, value, by } => {
             info(format!("{name} is now {}, written by {by}", variable(value)))
         }
@@ -170,12 +166,17 @@ pub fn plan_event(event: &Event, name: impl Fn(&Id) -> String) -> (Level, String
 }
 
 /// A stage that is flown without legs is its own leg.
-fn entered(leg: &Id, stage: &Id, name: impl Fn(&Id) -> String) -> String {
-    if leg == stage {
-        format!("Stage {}", name(stage))
-    } else {
-        format!("Leg {} of stage {}", name(leg), name(stage))
+fn entered(leg: &Id, stage: &Id, names: Names<'_>) -> String {
+    let of = names.of(stage);
+    if leg == stage { format!("Stage {of}") } else { format!("Leg {} of stage {of}", names.of(leg)) }
+}
+
+fn decided(leg: &Id, branch: &Id, by: &str, names: Names<'_>) -> (Level, String) {
+    let (fork, way) = (names.of(leg), names.of_branch(leg, branch));
+    if by == BY_DEFAULT {
+        return (Level::Caution, format!("Nobody decided at {fork} in time: {way} was taken by default"));
     }
+    (Level::Info, format!("{fork}: branch {way}, decided by {by}"))
 }
 
 /// A gateway event as a sentence; `None` for what would only fill the log.
@@ -217,11 +218,26 @@ mod tests {
 
     #[test]
     fn events_are_told_by_names() {
-        let name = |id: &Id| if id.as_str() == "n1" { "To the ridge".to_owned() } else { id.to_string() };
+        let legs = r#"<TF id="n1" name="To the ridge" lat="36.3" lon="-84.1"/><intersection id="ask" default="n1">
+            <branch id="n1" label="Over the ridge"/><branch id="n2"/></intersection>"#;
+        let text = format!(
+            r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><mainPlan><stage id="home" type="mission">{legs}</stage></mainPlan></flightPlan>"#
+        );
+        let plan = flight_plan::read(text).plan;
+        let names = Names(Some(&plan));
         let event = Event::IterationFinished { leg: "n1".into(), finished: 1, of: Some(2) };
-        assert_eq!(plan_event(&event, name).1, "Loop To the ridge: pass 1 of 2 done");
-        assert_eq!(entered(&"n1".into(), &"home".into(), name), "Leg To the ridge of stage home");
-        assert_eq!(entered(&"n1".into(), &"n1".into(), name), "Stage To the ridge");
+        assert_eq!(plan_event(&event, names).1, "Loop To the ridge: pass 1 of 2 done");
+        assert_eq!(plan_event(&event, Names(None)).1, "Loop n1: pass 1 of 2 done");
+        assert_eq!(entered(&"n1".into(), &"home".into(), names), "Leg To the ridge of stage home");
+        assert_eq!(entered(&"n1".into(), &"n1".into(), names), "Stage To the ridge");
+        // a branch may be called as a leg is
+        for (by, told) in [
+            (BY_DEFAULT, "Nobody decided at ask in time: Over the ridge was taken by default"),
+            ("gcs", "ask: branch Over the ridge, decided by gcs"),
+        ] {
+            let taken = Event::DecisionTaken { leg: "ask".into(), branch: "n1".into(), by: by.into() };
+            assert_eq!(plan_event(&taken, names).1, told);
+        }
     }
 
     #[test]

@@ -5,6 +5,7 @@
 mod aged;
 pub mod log;
 mod losses;
+mod names;
 mod outlook;
 mod recent;
 mod repeats;
@@ -19,6 +20,7 @@ mod watch;
 pub use aged::Aged;
 pub use log::{Level, Line, Log};
 pub use losses::Losses;
+pub use names::Names;
 pub use outlook::{Considered, Outlook};
 pub use recent::RecentEvents;
 pub use requests::{LOOK_AHEAD, Outcome, READ_ABOARD, Request, Requests, Ticket};

@@ -2,7 +2,7 @@
 
 use super::watch::{GROUND_STATION, Sight, Watch};
 use super::{
-    Aged, LOOK_AHEAD, Level, Log, Losses, Outcome, Outlook, RecentEvents, Repeats, Requests, Strangers,
+    Aged, LOOK_AHEAD, Level, Log, Losses, Names, Outcome, Outlook, RecentEvents, Repeats, Requests, Strangers,
     Ticket, Trail, log,
 };
 use crate::link::{
@@ -267,11 +267,11 @@ impl Vehicle {
 
     fn plan_event(&mut self, event: &Numbered<Event>, now_s: f64) {
         // names may become known between an event and its repetition
-        let (_, said) = log::plan_event(&event.event.value, Id::to_string);
+        let (_, said) = log::plan_event(&event.event.value, Names(None));
         if !self.plan_events.is_new(event.sequence, event.event.time_s, &said) {
             return;
         }
-        let (level, text) = log::plan_event(&event.event.value, |id| self.name_of(id));
+        let (level, text) = log::plan_event(&event.event.value, self.names());
         self.log.add(now_s, level, "plan", &text);
         let event = &event.event.value;
         if log::is_announced(event) {
@@ -360,14 +360,16 @@ impl Vehicle {
 
     /// What people call a part of the plan aboard; its identifier, where nobody named it.
     pub fn name_of(&self, id: &Id) -> String {
-        let name = self.aboard.as_ref().map(|aboard| aboard.plan.label(id));
-        name.unwrap_or(id.as_str()).to_owned()
+        self.names().of(id)
     }
 
     /// What people call a branch of the plan aboard.
     pub fn name_of_branch(&self, fork: &Id, branch: &Id) -> String {
-        let plan = self.aboard.as_ref().map(|aboard| aboard.plan.as_ref());
-        plan.map_or(branch.as_str(), |plan| plan.branch_label(fork, branch)).to_owned()
+        self.names().of_branch(fork, branch)
+    }
+
+    fn names(&self) -> Names<'_> {
+        Names(self.aboard.as_ref().map(|aboard| aboard.plan.as_ref()))
     }
 
     /// The leg being flown.
