@@ -36,7 +36,8 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     let raised = scene.vehicle.raised.as_ref().filter(|raised| raised.plan == *flown);
     let cause = raised.map_or_else(String::new, |raised| format!(", because {}", because(raised.cause)));
     let runway = plan.map_or_else(String::new, |plan| format!(", to runway {}", plan.runway));
-    let lands = scene.vehicle.clock_s().and_then(|now_s| scene.vehicle.outlook.lands_in_s(now_s));
+    let clock_s = scene.vehicle.clock_s(scene.now_s);
+    let lands = clock_s.and_then(|aircraft_s| scene.vehicle.outlook.lands_in_s(aircraft_s));
     let lands = lands.map_or_else(String::new, |s| format!(", lands in {}", units::duration(s)));
     format!("⛔ EMERGENCY: flying {name}{cause}{runway}{lands}")
 }

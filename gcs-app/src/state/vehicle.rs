@@ -304,7 +304,7 @@ impl Vehicle {
                 Reply::Foresight(foresight) => Ok(foresight),
                 _ => Err("it answered something else".into()),
             });
-            let aircraft_s = self.clock_s();
+            let aircraft_s = self.clock_s(now_s);
             return self.outlook.answered(ticket, foresight, aircraft_s);
         }
         if let Outcome::Refused(reason) = &outcome {
@@ -348,9 +348,10 @@ impl Vehicle {
         self.status.as_ref()?.value.plan.clone()
     }
 
-    /// The aircraft's clock as it was last heard, seconds.
-    pub fn clock_s(&self) -> Option<f64> {
-        self.position.as_ref().map(|position| position.time_s)
+    /// The aircraft's clock, seconds; `None` once it is no longer heard: nobody knows how far it is by now.
+    pub fn clock_s(&self, now_s: f64) -> Option<f64> {
+        let live = self.position.as_ref().filter(|position| !position.is_expired(now_s));
+        live.map(|position| position.time_s)
     }
 
     /// What the executor is doing; idle when nothing is known.

@@ -56,6 +56,8 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     // by the aircraft's clock, that of a simulation may run faster
     window.receive(position(101.0, 500.0, false));
     assert!(window.shows("lands in 4:40"));
+    window.steps(60 * 3);
+    assert!(window.shows("EMERGENCY: flying") && !window.shows("lands in"), "it is no longer heard");
     window.click("Return to the main plan at side3");
     let back = Command::ReturnToMain { leg: "side3".into() };
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(back))));
