@@ -1,7 +1,8 @@
 //! Which runway: of those within reach the one with the least cost, in seconds of flight.
 //!
 //! With its engine an aircraft reaches a runway if the energy lasts for the way in this wind, and if the ground on the way lies
-//! below its ceiling. Gliding, if it comes to the threshold with height to spare, and above all ground on the way. The cost is the
+//! below its ceiling. Gliding, if it comes to the threshold with height to spare, and above all ground on the way, also where it goes down
+//! sooner than it has to: the autopilot leads it straight to the altitude of the approach. The cost is the
 //! time for the way, with the climb over the ground; a lower priority, a tailwind on landing, a short runway and the other end of
 //! one make it worse.
 
@@ -89,7 +90,7 @@ fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Optio
 fn time_s(runway: &SafeRunway, approach: Approach, safe: &SafeParameters, s: &Situation) -> Option<f64> {
     let [initial, last] = gates(runway, approach, safe);
     let way = [initial.0, last.0, runway.threshold];
-    if s.glides { gliding_s(runway, &way, s) } else { powered_s(runway, &way, s) }
+    if s.glides { gliding_s(runway, &way, initial.1, s) } else { powered_s(runway, &way, s) }
 }
 
 fn powered_s(runway: &SafeRunway, way: &[LatLon; 3], s: &Situation) -> Option<f64> {
@@ -110,21 +111,26 @@ fn powered_s(runway: &SafeRunway, way: &[LatLon; 3], s: &Situation) -> Option<f6
     (time_s < endurance_s).then_some(time_s)
 }
 
-fn gliding_s(runway: &SafeRunway, way: &[LatLon; 3], s: &Situation) -> Option<f64> {
+/// `told_m`: the altitude that it is told for the approach, metres AMSL.
+fn gliding_s(runway: &SafeRunway, way: &[LatLon; 3], told_m: f64, s: &Situation) -> Option<f64> {
     let Situation { position, altitude_amsl_m, track_deg: course_deg, .. } = *s;
     let start = GlideStart { position, altitude_amsl_m, course_deg };
     let points = glide(s.profile, s.wind().into(), start, way, runway.heading_deg)?;
     let last = points.last()?;
     let arrives = last.altitude_amsl_m >= runway.elevation_amsl_m + GLIDE_SPARE_M;
-    let over_ground = points.windows(2).take(points.len().saturating_sub(2)).all(|pair| {
-        let [from, to] = pair else { return true };
-        let height_m =
-            |share: f64| from.altitude_amsl_m + share * (to.altitude_amsl_m - from.altitude_amsl_m);
-        along(from.position, to.position).all(|(share, place)| {
-            let ground_m = s.terrain.and_then(|terrain| terrain.elevation_m(place));
-            ground_m.is_none_or(|ground_m| height_m(share) > ground_m + GLIDE_SPARE_M)
-        })
-    });
+    let over_ground =
+        points.windows(2).take(points.len().saturating_sub(2)).enumerate().all(|(piece, pair)| {
+            let [from, to] = pair else { return true };
+            let led_from_m = if piece == 0 { altitude_amsl_m } else { told_m };
+            let height_m = |share: f64| {
+                let glides_m = from.altitude_amsl_m + share * (to.altitude_amsl_m - from.altitude_amsl_m);
+                glides_m.min(led_from_m + share * (told_m - led_from_m))
+            };
+            along(from.position, to.position).all(|(share, place)| {
+                let ground_m = s.terrain.and_then(|terrain| terrain.elevation_m(place));
+                ground_m.is_none_or(|ground_m| height_m(share) > ground_m + GLIDE_SPARE_M)
+            })
+        });
     (arrives && over_ground).then_some(last.time_s)
 }
 
@@ -200,19 +206,19 @@ mod tests {
         assert_eq!(chosen(&[abeam], &behind).as_deref(), Some("runway abeam by a short final"));
     }
 
-    /// A wall north of a latitude.
-    struct Wall(f64);
+    /// A wall north of a latitude, so high.
+    struct Wall(f64, f64);
 
     impl Terrain for Wall {
         fn elevation_m(&self, at: LatLon) -> Option<f64> {
             let is_there = (self.0..self.0 + 0.003).contains(&at.lat_deg);
-            Some(if is_there { 1500.0 } else { 300.0 })
+            Some(if is_there { self.1 } else { 300.0 })
         }
     }
 
     #[test]
     fn no_glide_leads_through_a_hill_and_no_climb_above_the_ceiling() {
-        let wall = Wall(HOME.lat_deg + 0.02);
+        let wall = Wall(HOME.lat_deg + 0.02, 1500.0);
         let (behind, here) = (runway("behind", 0.0, 8.0, 0.0, 1), runway("here", 180.0, 7.0, 180.0, 2));
         let runways = [behind, here];
         let profile = Profile::default();
@@ -225,11 +231,27 @@ mod tests {
         assert!(chosen(&runways, &over_it).is_some());
     }
 
+    /// It could glide over this hill, but is led down to the approach before it.
+    #[test]
+    fn no_glide_is_led_into_a_hill_that_it_could_clear() {
+        let hill = Wall(HOME.lat_deg + 0.043, 650.0);
+        let runways = [runway("behind", 0.0, 8.0, 0.0, 1), runway("here", 180.0, 7.0, 180.0, 2)];
+        let profile = Profile::default();
+        let s =
+            Situation { glides: true, altitude_amsl_m: 1200.0, terrain: Some(&hill), ..situation(&profile) };
+        assert_eq!(chosen(&runways, &s).as_deref(), Some("runway here"));
+        let lower = Wall(hill.0, 500.0);
+        assert_eq!(
+            chosen(&runways, &Situation { terrain: Some(&lower), ..s }).as_deref(),
+            Some("runway behind")
+        );
+    }
+
     #[test]
     fn it_lands_against_the_wind_where_the_other_end_is_known_to_be_free() {
         let profile = Profile::default();
         let runways = [runway("main", 0.0, 4.0, 0.0, 1)];
-        let (flat, hilly) = (Flat(320.0), Wall(HOME.lat_deg + 0.05));
+        let (flat, hilly) = (Flat(320.0), Wall(HOME.lat_deg + 0.05, 1500.0));
         let landing = |terrain, north_mps| {
             let air = wind(0.0, north_mps);
             chosen(&runways, &Situation { terrain, air, ..situation(&profile) }).unwrap()
