@@ -47,6 +47,8 @@ impl Pastes {
     }
 }
 
+const NO_BRANCH: &str = "A branch can't be cut: cut its legs, or delete it with Del.";
+
 /// Takes the keys and what the menu asked for, unless something is being typed.
 pub fn run(ui: &Ui, menu: &mut Menu, pastes: &mut Pastes, canvas: &Canvas<'_>, queue: &mut Queue) {
     pastes.take(canvas, queue);
@@ -105,9 +107,15 @@ fn copy(ctx: &Context, canvas: &Canvas<'_>) -> Option<()> {
     Some(())
 }
 
-/// All of it, so that it can be pasted again: of a fix or runway more than its place.
+/// All of it, so that it can be pasted again: of a fix or runway more than its place. The clipboard holds no stages: they stay, without
+/// their legs.
 fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
-    let (plan, set) = (canvas.scene.document.plan(), canvas.scene.selected_set());
+    let plan = canvas.scene.document.plan();
+    if canvas.scene.selected_branch().is_some() {
+        return queue.view(ViewCommand::Notice(NO_BRANCH.into()));
+    }
+    let mut set = canvas.scene.selected_set();
+    set.retain(|id| plan.stage(id).is_none());
     if let Some(text) = clipboard::copy(plan, &set) {
         ctx.copy_text(text);
         queue.edit(create::delete_set(plan, &set));

@@ -1,6 +1,7 @@
 //! Ways on from a fork, drawn on the map.
 
 use super::drawing::choose;
+use super::pasting::taken;
 use super::{SQUARE, Window};
 use egui::{Key, vec2};
 use egui_kittest::kittest::Queryable;
@@ -119,6 +120,17 @@ fn every_leg_of_a_way_that_is_not_flown_is_on_the_map() {
         assert!(window.lines_within("Map", line) > 0);
     }
     assert!(window.paints("Another way"));
+}
+
+/// The clipboard holds no branches: the fork, which has them all, is not meant.
+#[test]
+fn a_branch_is_not_cut_and_its_fork_stays() {
+    let mut window = beside();
+    let before = window.plan();
+    window.select_row(("▸ Another way", 0));
+    window.steps(2);
+    assert_eq!(taken(&mut window, egui::Event::Cut), "");
+    assert!(window.plan() == before && window.shows("A branch can't be cut"));
 }
 
 #[test]

@@ -20,7 +20,7 @@ pub fn legs(window: &Window) -> Vec<String> {
 }
 
 /// What a key puts on the clipboard.
-fn taken(window: &mut Window, event: Event) -> String {
+pub fn taken(window: &mut Window, event: Event) -> String {
     window.harness.event(event);
     window.harness.step();
     let commands = window.harness.output().platform_output.commands.clone();
@@ -238,6 +238,10 @@ fn stages_are_moved_and_copied_as_one_set() {
     assert_eq!(window.plan(), before, "one step");
     let text = taken(&mut window, Event::Copy);
     assert!(text.contains("side1") && text.contains("m2"), "{text}");
+    assert_eq!(taken(&mut window, Event::Cut), text);
+    let cut = window.plan();
+    assert_eq!(cut.stages.len(), before.stages.len(), "what is not on the clipboard stays");
+    assert!(["circuit", "more"].iter().all(|id| cut.stage(&Id::new(*id)).unwrap().legs.is_empty()));
 }
 
 #[test]
