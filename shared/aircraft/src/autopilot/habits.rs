@@ -2,7 +2,6 @@
 //! airspeed they hold.
 
 use crate::{Profile, air};
-use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
@@ -51,11 +50,12 @@ pub struct Habits {
     pub period_s: f64,
     /// Its damping (NAVL1_DAMPING).
     pub damping: f64,
-    /// It goes on to the next leg this far before a corner of 90° or more, in thin air farther, but no farther than it looks ahead,
-    /// and before others in proportion, metres (WP_RADIUS, `AP_L1_Control::turn_distance`). `None`: by the turn anticipation.
+    /// Where it is told nothing, it goes on to the next leg this far before a corner of 90° or more, in thin air farther, but no
+    /// farther than it looks ahead, and before others in proportion, metres (WP_RADIUS, `AP_L1_Control::turn_distance`). `None`: by the turn anticipation.
     pub corner_m: Option<f64>,
-    /// The corners of an arc's polygon it leaves by [`arc_acceptance_m`], as it is told to.
-    pub is_told_arcs: bool,
+    /// It leaves corners from as near as it is told, by [`arc_acceptance_m`](super::arc_acceptance_m) and
+    /// [`turn_acceptance_m`](super::turn_acceptance_m).
+    pub is_told_corners: bool,
     /// So much of the sideways acceleration that it asks for does it get, 0..1: an airframe that slips turns less than by
     /// its bank.
     pub turn_share: f64,
@@ -69,7 +69,7 @@ impl Habits {
         period_s: 9.0,
         damping: 0.8,
         corner_m: None,
-        is_told_arcs: false,
+        is_told_corners: false,
         turn_share: 1.0,
         is_indicated: false,
     };
@@ -84,7 +84,7 @@ impl Habits {
             period_s: 15.0,
             damping: 0.75,
             corner_m: Some(profile.turn_radius_m(profile.cruise_airspeed_mps).round()),
-            is_told_arcs: true,
+            is_told_corners: true,
             turn_share: 0.73,
             is_indicated: true,
         }
@@ -105,37 +105,6 @@ impl Habits {
     pub fn told_mps(&self, true_mps: f64, altitude_amsl_m: f64) -> f64 {
         if self.is_indicated { true_mps / air::true_per_indicated(altitude_amsl_m) } else { true_mps }
     }
-}
-
-/// ArduPlane takes an acceptance radius of this or less for crossing the point; metres.
-pub const FLY_OVER_M: f64 = 5.0;
-/// The greatest that it keeps: a byte.
-const GREATEST_ACCEPTANCE_M: f64 = 255.0;
-/// So long before a corner of an arc's polygon ArduPlane is to go on to the next one, seconds: as far as it looks ahead.
-///
-/// It steers to a point of the present leg's line that is L1 = ζ·T·V/π ahead (`AP_L1_Control`: NAVL1_DAMPING ζ, NAVL1_PERIOD T),
-/// by the acceleration 4ζ²·V²/L1·sin ν. If it goes on to the next line a distance s before each corner around an arc of radius R,
-/// these lines are in the mean tangents to the arc s ahead of it, and it flies outside of the arc by
-///
-/// d = (L1²/(4ζ²) − s·L1 + s²/2) / R.
-///
-/// By itself it goes on where the corner is, as the path hardly turns there: d = L1²/(2.25·R), 17 m for 210 m, in a tail wind more. At s = L1
-/// it is −L1²/(18·R), next to nothing, and depends least on s: a wind, or another T than its default, which is meant here,
-/// matter little. What was flown is in `assets/docs/flight-tests.md`.
-const ARC_LEAD_S: f64 = 0.75 * 17.0 / PI;
-/// Nor farther before it than this times the square of the airspeed, s²/m: 0.8 radii of a turn at 25° of bank. From farther away than a
-/// circle is wide, all its corners would be reached at once.
-const MOST_LEAD_S2_PER_M: f64 = 0.175;
-
-/// The acceptance radius that ArduPlane is told for the corners of an arc's polygon, by the airspeed, m/s; whole metres.
-pub fn arc_acceptance_m(airspeed_mps: f64) -> f64 {
-    let lead_m = (airspeed_mps * ARC_LEAD_S).min(airspeed_mps * airspeed_mps * MOST_LEAD_S2_PER_M);
-    lead_m.round().clamp(FLY_OVER_M + 1.0, GREATEST_ACCEPTANCE_M)
-}
-
-/// The airspeed, m/s, by which an acceptance radius was told for the corners of an arc.
-pub fn arc_airspeed_mps(acceptance_m: f64) -> f64 {
-    (acceptance_m / ARC_LEAD_S).max((acceptance_m / MOST_LEAD_S2_PER_M).sqrt())
 }
 
 #[cfg(test)]

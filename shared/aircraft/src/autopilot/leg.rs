@@ -108,12 +108,17 @@ impl Leg {
     pub(super) fn corner(&self, next: &Target) -> Corner {
         let (next_end, _) = self.plane.project(next.position);
         let onward = next_end - self.end;
-        let angle_rad = self.along.cross(onward).atan2(self.along.dot(onward)).abs();
-        Corner { angle_rad, next_length_m: onward.length() }
+        Corner::between(self.along, onward)
     }
 }
 
 impl Corner {
+    /// The turn from a direction to the way to the next target.
+    pub(super) fn between(along: Vec2, onward: Vec2) -> Corner {
+        let angle_rad = along.cross(onward).atan2(along.dot(onward)).abs();
+        Corner { angle_rad, next_length_m: onward.length() }
+    }
+
     /// The turn as a share of a right angle, at most 1.
     pub(super) fn share(&self) -> f64 {
         (self.angle_rad / FRAC_PI_2).min(1.0)

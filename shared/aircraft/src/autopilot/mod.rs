@@ -18,11 +18,13 @@ mod lateral;
 mod leg;
 mod plane;
 mod runway;
+mod told;
 
 use crate::{Demand, Profile, State};
 use geometry::LatLon;
-pub use habits::{Autopilot, FLY_OVER_M, Habits, arc_acceptance_m, arc_airspeed_mps};
+pub use habits::{Autopilot, Habits};
 use leg::{Corner, Leg, Place};
+pub use told::{FLY_OVER_M, arc_acceptance_m, turn_acceptance_m};
 
 /// What to do at, or on the way to, a target.
 #[derive(Debug, Clone, Copy, PartialEq)]

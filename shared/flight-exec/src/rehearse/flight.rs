@@ -231,7 +231,8 @@ impl<'a> Flight<'a> {
         }
         let next = self.at.buffer.front().cloned();
         if let Some(waypoint) = &next {
-            self.at.guidance.proceed(self.at.aircraft.state(), self.at.target(waypoint));
+            let target = self.at.target_between(waypoint, self.at.buffer.get(1));
+            self.at.guidance.proceed(self.at.aircraft.state(), target);
         }
         self.input(Input::Progress { current: next.as_ref().map(|w| w.token) });
         self.note_current();

@@ -4,7 +4,7 @@ use super::scenario::Moment;
 use super::{FlownWaypoint, LegPassage, Options, PreviewError, Start};
 use crate::api::{Time, Waypoint};
 use crate::executor::Executor;
-use aircraft::autopilot::arc_acceptance_m;
+use aircraft::autopilot::{arc_acceptance_m, turn_acceptance_m};
 use aircraft::{Aircraft, Autopilot, Guidance, Habits, Profile, Target};
 use flight_plan::{Id, Program, Runway};
 use std::collections::VecDeque;
@@ -152,11 +152,24 @@ impl Situation {
         }
     }
 
-    /// A waypoint as the autopilot is told it.
+    /// A waypoint as the autopilot is told it, where nothing is known of the turn there.
     pub fn target(&self, waypoint: &Waypoint) -> Target {
-        let tells = waypoint.on_arc && !waypoint.fly_over && self.guidance.habits().is_told_arcs;
+        let tells = waypoint.on_arc && !waypoint.fly_over && self.guidance.habits().is_told_corners;
         let acceptance_m = tells.then(|| arc_acceptance_m(waypoint.airspeed_mps));
         Target { acceptance_m, ..Target::from(waypoint) }
+    }
+
+    /// A waypoint as the autopilot is told it that it goes on to from the one steered to, with the one after it.
+    pub fn target_between(&self, waypoint: &Waypoint, onward: Option<&Waypoint>) -> Target {
+        let target = self.target(waypoint);
+        let is_left_early = self.guidance.habits().is_told_corners
+            && target.action == aircraft::Action::Fly
+            && !(waypoint.fly_over || waypoint.on_arc);
+        let from = self.guidance.target().filter(|t| is_left_early && t.action == aircraft::Action::Fly);
+        let acceptance_m = from.zip(onward).and_then(|(from, onward)| {
+            turn_acceptance_m(from.position, waypoint.position, onward.position, waypoint.airspeed_mps)
+        });
+        Target { acceptance_m: acceptance_m.or(target.acceptance_m), ..target }
     }
 
     /// Since the start, seconds.

@@ -1,5 +1,6 @@
 //! Mission items: what the autopilot accepts, and what it makes of them.
 
+use aircraft::autopilot::FLY_OVER_M;
 use geometry::LatLon;
 use mavlink::dialects::ardupilotmega::{
     MISSION_ITEM_DATA, MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionResult, MavMissionType,
@@ -205,12 +206,11 @@ fn check_numbers(wire: &MISSION_ITEM_INT_DATA) -> Result<(), MavMissionResult> {
     Ok(())
 }
 
-/// A small acceptance radius (param2) or an overflight distance (param3) asks for crossing the point; a greater one for going on
-/// that early. It keeps each in a byte.
+/// An acceptance radius (param2) of next to nothing or an overflight distance (param3) asks for crossing the point; a greater one for
+/// going on that early. It keeps each in a byte.
 fn waypoint(wire: &MISSION_ITEM_INT_DATA) -> Kind {
-    const SMALL_ACCEPTANCE_M: f32 = 20.0;
     let accepted_m = wire.param2.clamp(0.0, 255.0);
-    let over = wire.param3 > 0.0 || (accepted_m > 0.0 && accepted_m <= SMALL_ACCEPTANCE_M);
+    let over = wire.param3 > 0.0 || (accepted_m > 0.0 && accepted_m <= FLY_OVER_M as f32);
     let acceptance_m = (accepted_m > 0.0 && !over).then(|| f64::from(accepted_m));
     Kind::Waypoint { over, acceptance_m }
 }

@@ -59,14 +59,14 @@ fn acceptance_m(pass: Pass) -> f32 {
     match pass {
         Pass::By => 0.0,
         Pass::Over => FLY_OVER_M,
-        Pass::OnArc { airspeed_mps } => autopilot::arc_acceptance_m(airspeed_mps) as f32,
+        Pass::Within { metres } => metres as f32,
     }
 }
 
 /// The way to pass that an acceptance radius was written for.
 fn passed_within(acceptance_m: f32) -> Pass {
     match acceptance_m {
-        m if m > FLY_OVER_M => Pass::OnArc { airspeed_mps: autopilot::arc_airspeed_mps(f64::from(m)) },
+        m if m > FLY_OVER_M => Pass::Within { metres: f64::from(m) },
         m if m > 0.0 => Pass::Over,
         _ => Pass::By,
     }
@@ -78,24 +78,13 @@ mod tests {
     use geometry::LatLon;
 
     #[test]
-    fn corners_of_arcs_are_left_as_early_as_it_looks_ahead() {
-        for (airspeed_mps, acceptance) in
-            [(25.0, 101.0), (15.0, 39.0), (12.0, 25.0), (1.0, 6.0), (90.0, 255.0)]
-        {
-            let kind = ItemKind::Fly(Pass::OnArc { airspeed_mps });
-            let item = Item { position: LatLon::new(36.0, -84.0), altitude_amsl_m: 500.0, kind };
-            assert_eq!(encode(7, &item, Peer { system: 1, component: 1 }).param2, acceptance);
-        }
-    }
-
-    #[test]
     fn every_kind_comes_back_as_it_went() {
         let kinds = [
             ItemKind::TakeOff,
             ItemKind::Fly(Pass::By),
             ItemKind::Fly(Pass::Over),
-            ItemKind::Fly(Pass::OnArc { airspeed_mps: 13.7 }),
-            ItemKind::Fly(Pass::OnArc { airspeed_mps: 34.9 }),
+            ItemKind::Fly(Pass::Within { metres: 6.0 }),
+            ItemKind::Fly(Pass::Within { metres: 255.0 }),
             ItemKind::Loiter { radius_m: 0.0 },
             ItemKind::Loiter { radius_m: -80.0 },
             ItemKind::Land,

@@ -62,6 +62,12 @@ impl Chain {
         }
     }
 
+    /// The waypoint from which the line to a position is flown; `None`: from wherever the aircraft is.
+    pub fn line_from(&self, position: u64) -> Option<&Waypoint> {
+        let before = position.checked_sub(1).filter(|p| !self.is_left_behind(*p))?;
+        self.at(before)
+    }
+
     /// The position holds the cancelled waypoint that the aircraft still steers to.
     pub fn is_left_behind(&self, position: u64) -> bool {
         self.left_behind && position == self.first

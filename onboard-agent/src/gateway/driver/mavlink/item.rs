@@ -46,13 +46,13 @@ pub enum ItemKind {
 pub enum Pass {
     /// Turning before it, as the autopilot likes.
     By,
+    /// Turning when it is so near.
+    Within {
+        /// Metres.
+        metres: f64,
+    },
     /// Crossing it before turning.
     Over,
-    /// On the arc whose polygon it is a corner of, at this airspeed, m/s.
-    OnArc {
-        /// The airspeed.
-        airspeed_mps: f64,
-    },
 }
 
 impl Item {
@@ -60,7 +60,7 @@ impl Item {
     pub fn of(waypoint: &Waypoint) -> Self {
         let kind = match waypoint.action {
             Action::TakeOff { .. } => ItemKind::TakeOff,
-            Action::Fly => ItemKind::Fly(Pass::of(waypoint)),
+            Action::Fly => ItemKind::Fly(if waypoint.fly_over { Pass::Over } else { Pass::By }),
             Action::Loiter { radius_m } => ItemKind::Loiter { radius_m },
             Action::Land { .. } => ItemKind::Land,
         };
@@ -73,21 +73,11 @@ impl Item {
     }
 }
 
-impl Pass {
-    fn of(waypoint: &Waypoint) -> Self {
-        match (waypoint.fly_over, waypoint.on_arc) {
-            (true, _) => Pass::Over,
-            (false, true) => Pass::OnArc { airspeed_mps: waypoint.airspeed_mps },
-            (false, false) => Pass::By,
-        }
-    }
-}
-
 const DEGREES: f64 = 1e7;
 /// Read-back may differ by this much: the list holds degrees × 10⁷, centimetres and whole metres.
 const POSITION_TOLERANCE_DEG: f64 = 3e-7;
 const ALTITUDE_TOLERANCE_M: f64 = 0.5;
-const AIRSPEED_TOLERANCE_MPS: f64 = 0.5;
+const RADIUS_TOLERANCE_M: f64 = 1.0;
 
 /// The same within what an autopilot keeps of it.
 pub fn matches(a: &Item, b: &Item) -> bool {
@@ -96,16 +86,27 @@ pub fn matches(a: &Item, b: &Item) -> bool {
         && (a.altitude_amsl_m - b.altitude_amsl_m).abs() <= ALTITUDE_TOLERANCE_M;
     match (a.kind, b.kind) {
         (ItemKind::Jump { to: x }, ItemKind::Jump { to: y }) => x == y,
-        (ItemKind::Loiter { radius_m: x }, ItemKind::Loiter { radius_m: y }) => here && (x - y).abs() <= 1.0,
+        (ItemKind::Loiter { radius_m: x }, ItemKind::Loiter { radius_m: y }) => {
+            here && (x - y).abs() <= RADIUS_TOLERANCE_M
+        }
         // where a take-off goes follows from the runway: autopilots keep its altitude only
         (ItemKind::TakeOff, ItemKind::TakeOff) => {
             (a.altitude_amsl_m - b.altitude_amsl_m).abs() <= ALTITUDE_TOLERANCE_M
         }
-        (ItemKind::Fly(Pass::OnArc { airspeed_mps: x }), ItemKind::Fly(Pass::OnArc { airspeed_mps: y })) => {
-            here && (x - y).abs() <= AIRSPEED_TOLERANCE_MPS
+        (ItemKind::Fly(Pass::Within { metres: x }), ItemKind::Fly(Pass::Within { metres: y })) => {
+            here && (x - y).abs() <= RADIUS_TOLERANCE_M
         }
         (x, y) => here && x == y,
     }
+}
+
+/// The same, but for how early it is turned before them.
+pub fn leads_the_same_way(a: &Item, b: &Item) -> bool {
+    let as_it_likes = |item: &Item| match item.kind {
+        ItemKind::Fly(Pass::Within { .. }) => Item { kind: ItemKind::Fly(Pass::By), ..*item },
+        _ => *item,
+    };
+    matches(&as_it_likes(a), &as_it_likes(b))
 }
 
 /// A waypoint at the item's place, from which every other entry is made.

@@ -319,6 +319,7 @@ pub fn landing() -> Vec<Waypoint> {
     ]
 }
 
+mod corners;
 mod met_in_flight;
 mod px4;
 mod runways;

@@ -14,6 +14,9 @@
 //! 2. it is an end loiter: bring what lies *behind* it in order, up to the new end loiter;
 //! 3. that is in order: replace the end loiter by the waypoint (one entry, so atomic).
 //!
+//! How early it is turned before a waypoint depends on the one after it. When that becomes known, or another, and nothing else is to be
+//! done, the entry is written again.
+//!
 //! So the aircraft never steers to a cancelled waypoint that it was not already steering to, and a
 //! link that dies at any instant leaves a chain that ends in a loiter. A write of unknown outcome
 //! just makes its slots unknown, and the same three rules heal them.
@@ -23,7 +26,7 @@ mod ring;
 mod tests;
 
 use crate::gateway::driver::mavlink::chain::Chain;
-use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
+use crate::gateway::driver::mavlink::item::{Item, ItemKind, leads_the_same_way};
 use crate::gateway::driver::mavlink::list::{Change, Feeding};
 use crate::gateway::order::{Fed, Serial, Target};
 use ring::{LAST_SLOT, RING, Slots, initial_list, slot};
@@ -86,7 +89,7 @@ impl Feeding for Window {
         let Some(active) = self.chain.active() else { return Target::End };
         let next = self.chain.next();
         let item = ring::item_of(&active.waypoint);
-        match (self.loaded.is_some_and(|l| matches(&l, &item)), active.serial) {
+        match (self.loaded.is_some_and(|l| leads_the_same_way(&l, &item)), active.serial) {
             (false, _) => Target::Unknown { next },
             (true, Serial(0)) => {
                 let Item { position, altitude_amsl_m, .. } = item;
@@ -100,7 +103,7 @@ impl Feeding for Window {
         let first = self.chain.first();
         let position = self.position_of(seq).filter(|p| self.entered && *p > first);
         let Some(position) = position else { return };
-        if self.is_being_written(position) {
+        if self.is_being_written(position) && self.board.get(position).is_none() {
             self.reached_in_doubt = Some(position);
             return;
         }
@@ -139,7 +142,7 @@ impl Feeding for Window {
         self.stretch();
         match self.deviation() {
             Some(position) => Some(self.write_towards(position)),
-            None => self.set_current(),
+            None => self.set_current().or_else(|| self.correct_turn()),
         }
     }
 
@@ -220,8 +223,8 @@ impl Window {
     /// changes nothing until it is made current again.
     fn must_reload(&self) -> bool {
         let first = self.chain.first();
-        let wanted = self.wanted(first);
-        !self.chain.is_left_behind(first) && !self.loaded.is_some_and(|l| matches(&l, &wanted))
+        let wanted = self.lead(first);
+        !self.chain.is_left_behind(first) && !self.loaded.is_some_and(|l| leads_the_same_way(&l, &wanted))
     }
 
     fn is_being_written(&self, position: u64) -> bool {
@@ -245,10 +248,21 @@ impl Window {
         (first..first + RING - 1).find(|p| self.board.is_end_loiter(*p)).unwrap_or(first + AHEAD)
     }
 
+    /// Where a position is to lead.
+    fn lead(&self, position: u64) -> Item {
+        match self.chain.at(position) {
+            Some(waypoint) if position < self.end => ring::item_of(waypoint),
+            _ => self.end_loiter(position),
+        }
+    }
+
     /// What is wanted at a position.
     fn wanted(&self, position: u64) -> Item {
         match self.chain.at(position) {
-            Some(waypoint) if position < self.end => ring::item_of(waypoint),
+            Some(waypoint) if position < self.end => {
+                let from = self.chain.line_from(position);
+                ring::item_between(from, waypoint, self.chain.at(position + 1))
+            }
             _ => self.end_loiter(position),
         }
     }
@@ -271,13 +285,19 @@ impl Window {
         self.end = self.end.min(full);
     }
 
-    /// First position that is not on board as wanted.
+    /// First position that does not lead to where it should.
     fn deviation(&self) -> Option<u64> {
         let first = self.chain.first();
-        (first..=self.end).find(|p| {
-            // what is being left behind is not written again
-            !(self.chain.is_left_behind(*p)) && !self.board.holds(*p, &self.wanted(*p))
-        })
+        let leads_there =
+            |p: u64| self.board.get(p).is_some_and(|have| leads_the_same_way(&have, &self.lead(p)));
+        // what is being left behind is not written again
+        (first..=self.end).find(|p| !self.chain.is_left_behind(*p) && !leads_there(*p))
+    }
+
+    /// First position whose turn is not on board as wanted: what follows it is known since, or has changed. The one steered to
+    /// stays as it was loaded.
+    fn stale_turn(&self) -> Option<u64> {
+        (self.chain.first() + 1..self.end).find(|p| !self.board.holds(*p, &self.wanted(*p)))
     }
 
     fn is_short_chain_complete(&self) -> bool {
@@ -324,6 +344,15 @@ impl Window {
         let behind = (position + 1..=stop).map(|p| self.wanted(p));
         let items = std::iter::once(end_loiter).chain(behind).collect();
         self.write(position, items)
+    }
+
+    /// A turn is corrected by one entry, which leads to the same place whether it is written or not: nothing has to be cut off, and
+    /// nothing becomes unknown.
+    fn correct_turn(&mut self) -> Option<Change> {
+        let position = self.stale_turn()?;
+        let items = vec![self.wanted(position)];
+        self.pending = Some(Pending::Write { position, items: items.clone() });
+        Some(Change::Overwrite { start: slot(position), items })
     }
 
     fn write(&mut self, position: u64, items: Vec<Item>) -> Change {

@@ -1,8 +1,9 @@
 //! The ring of slots on board: how positions, slots and list entries go together.
 
 use crate::gateway::driver::mavlink::chain;
-use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
+use crate::gateway::driver::mavlink::item::{Item, ItemKind, Pass, leads_the_same_way, matches};
 use crate::gateway::order::Fed;
+use aircraft::autopilot::{arc_acceptance_m, turn_acceptance_m};
 use geometry::LatLon;
 use usal::contract::{Action, Waypoint};
 
@@ -46,7 +47,8 @@ pub fn is_ours(list: &[Item]) -> bool {
 /// Of the waypoints known before, those that are really on board from `first` on.
 pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> (usize, Vec<Fed>) {
     let at = |p: u64| list.get(usize::from(slot(p)));
-    let is_at = |p: u64, waypoint: &Waypoint| at(p).is_some_and(|item| matches(item, &item_of(waypoint)));
+    let is_at =
+        |p: u64, waypoint: &Waypoint| at(p).is_some_and(|item| leads_the_same_way(item, &item_of(waypoint)));
     chain::known_on_board(first, RING, is_at, waypoints)
 }
 
@@ -54,7 +56,25 @@ pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> (usize,
 /// (`assets/docs/flight-tests.md`). It is told a place so far behind, metres.
 const LANDS_SHORT_M: f64 = 60.0;
 
-/// The entry of a waypoint.
+/// The entry of a waypoint to which it flies from another, and goes on to a third.
+pub fn item_between(from: Option<&Waypoint>, waypoint: &Waypoint, onward: Option<&Waypoint>) -> Item {
+    let item = item_of(waypoint);
+    let early_m = match (item.kind, from.zip(onward)) {
+        (ItemKind::Fly(Pass::By), _) if waypoint.on_arc => Some(arc_acceptance_m(waypoint.airspeed_mps)),
+        // where a take-off or a circle is left is not known
+        (ItemKind::Fly(Pass::By), Some((from, onward))) if from.action == Action::Fly => {
+            let airspeed_mps = waypoint.airspeed_mps;
+            turn_acceptance_m(from.position, waypoint.position, onward.position, airspeed_mps)
+        }
+        _ => None,
+    };
+    match early_m {
+        Some(metres) => Item { kind: ItemKind::Fly(Pass::Within { metres }), ..item },
+        None => item,
+    }
+}
+
+/// The entry of a waypoint, by itself.
 pub fn item_of(waypoint: &Waypoint) -> Item {
     let item = Item::of(waypoint);
     match waypoint.action {

@@ -3,6 +3,7 @@
 use super::ring::JUMP_SLOT;
 use super::*;
 use crate::gateway::core::CAPACITY;
+use crate::gateway::driver::mavlink::item::Pass;
 use geometry::LatLon;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
@@ -90,8 +91,12 @@ struct Rig {
 
 impl Rig {
     fn new(count: u64) -> Self {
+        Self::of(waypoints(1, count))
+    }
+
+    fn of(waypoints: Vec<Fed>) -> Self {
         let mut rig = Self { window: Window::default(), autopilot: Autopilot::default(), flying: false };
-        rig.window.feed(ALL, waypoints(1, count));
+        rig.window.feed(ALL, waypoints);
         rig.settle();
         rig.flying = true;
         assert!(rig.window.ready());
@@ -118,7 +123,10 @@ impl Rig {
     /// What is claimed to be steered to is what is steered to.
     fn check_claim(&self) {
         if let (Target::Waypoint(claimed), Some(target)) = (self.window.target(), self.autopilot.target) {
-            assert!(matches(&Item::of(&waypoint(claimed.0)), &target), "claims {claimed:?}, is {target:?}");
+            let active = self.window.chain.active().map(|fed| (fed.serial, ring::item_of(&fed.waypoint)));
+            let is_true =
+                active.is_some_and(|(serial, item)| serial == claimed && leads_the_same_way(&item, &target));
+            assert!(is_true, "claims {claimed:?}, is {target:?}");
         }
     }
 
@@ -225,6 +233,51 @@ fn a_list_met_in_flight_is_adopted_and_its_unknown_rest_cut_off() {
     (0..30).for_each(|_| rig.reach());
     assert_eq!(rig.tokens_steered(), (1..=11).collect::<Vec<_>>());
     assert_eq!(Window::default().adopt(&rig.autopilot.list[..20], 3, vec![]), None, "not one of ours");
+}
+
+/// A corner of a square with sides of 2 km.
+fn corner(n: u64) -> Fed {
+    let corner = HOME.position.destination(45.0 + 90.0 * (n % 4) as f64, 1000.0 * 2.0_f64.sqrt());
+    Fed { serial: Serial(n), waypoint: Waypoint { position: corner, ..waypoint(n) } }
+}
+
+/// How early it turns before each of so many waypoints, as its list has it.
+fn turns(rig: &Rig, count: usize) -> Vec<Option<f64>> {
+    let early_m = |item: &Item| match item.kind {
+        ItemKind::Fly(Pass::Within { metres }) => Some(metres),
+        _ => None,
+    };
+    rig.autopilot.list[2..2 + count].iter().map(early_m).collect()
+}
+
+#[test]
+fn turns_are_put_right_when_what_follows_them_is_known_and_nothing_is_left_for_it() {
+    let mut rig = Rig::of((1..=4).map(corner).collect());
+    assert_eq!(turns(&rig, 4), [None, Some(137.0), Some(137.0), None], "of two ends nobody knows");
+    let steered = rig.autopilot.steered.len();
+    rig.window.feed(ALL, vec![corner(5)]);
+    rig.settle();
+    assert_eq!(turns(&rig, 5), [None, Some(137.0), Some(137.0), Some(137.0), None]);
+    // back to where it came from: no turn fits
+    rig.window.feed(Serial(3), vec![Fed { serial: Serial(9), ..corner(2) }]);
+    rig.settle();
+    assert_eq!(turns(&rig, 3), [None, Some(137.0), None]);
+    assert_eq!(rig.autopilot.steered.len(), steered, "it never steers to anything else meanwhile");
+    assert_eq!(rig.window.target(), Target::Waypoint(Serial(1)));
+}
+
+#[test]
+fn waypoints_are_known_again_whatever_was_told_of_their_turns() {
+    let mut rig = Rig::of((1..=8).map(corner).collect());
+    (0..2).for_each(|_| rig.reach());
+    let mut window = Window::default();
+    let known = (3..=6).map(corner).collect();
+    assert_eq!(window.adopt(&rig.autopilot.list, rig.autopilot.seq, known), Some(4));
+    rig.window = window;
+    let steered = rig.autopilot.steered.len();
+    rig.settle();
+    assert_eq!(rig.window.target(), Target::Waypoint(Serial(3)));
+    assert_eq!(rig.autopilot.steered.len(), steered);
 }
 
 proptest! {
