@@ -3,6 +3,7 @@
 use super::*;
 use crate::{Aircraft, Wind};
 use geometry::geodesy::normalise_180;
+use geometry::{LocalFrame, Vec2};
 use proptest::prelude::*;
 
 const HOME: LatLon = LatLon::new(36.4905, -84.2710);
@@ -27,8 +28,18 @@ struct Sample {
 }
 
 /// Flies a list to its end (or `limit_s`) and returns every step.
-fn fly_list(mut aircraft: Aircraft, targets: &[Target], wind: Wind, limit_s: f64) -> Vec<Sample> {
-    let mut guidance = Guidance::new(aircraft.profile().clone());
+fn fly_list(aircraft: Aircraft, targets: &[Target], wind: Wind, limit_s: f64) -> Vec<Sample> {
+    fly_list_as(Habits::CLOSE, aircraft, targets, wind, limit_s)
+}
+
+fn fly_list_as(
+    habits: Habits,
+    mut aircraft: Aircraft,
+    targets: &[Target],
+    wind: Wind,
+    limit_s: f64,
+) -> Vec<Sample> {
+    let mut guidance = Guidance::with(aircraft.profile().clone(), habits);
     guidance.direct(aircraft.state(), targets[0]);
     let (mut samples, mut i) = (Vec::new(), 0);
     for _ in 0..(limit_s / DT_S) as usize {
@@ -117,6 +128,27 @@ fn fly_by_cuts_the_corner_and_fly_over_does_not() {
             .map(|s| -s.cross_track_m)
             .fold(0.0, f64::max);
         assert!(fly_over || overshoot < 12.0, "{angle}: {overshoot}");
+    }
+}
+
+/// What a review sees of a corner is what ArduPlane flies that is told of it, wherever its turn begins.
+#[test]
+fn arduplane_flies_the_corners_that_a_review_sees() {
+    for angle in [60.0, 90.0, 110.0, 130.0, 150.0, 165.0] {
+        let (from, corner) = (HOME, HOME.destination(0.0, 3000.0));
+        let onward = corner.destination(angle, 3000.0);
+        let seen = fly_list(cruising(0.0), &[fly_to(corner), fly_to(onward)], Wind::CALM, 400.0);
+        let acceptance_m = turn_acceptance_m(from, corner, onward, 25.0);
+        let told = [Target { acceptance_m, ..fly_to(corner) }, fly_to(onward)];
+        let habits = Habits::arduplane(&Profile::default());
+        let flown = fly_list_as(habits, cruising(0.0), &told, Wind::CALM, 400.0);
+        let frame = LocalFrame::new(corner);
+        let path =
+            |samples: &[Sample]| samples.iter().map(|s| frame.to_local(s.state.position)).collect::<Vec<_>>();
+        let (seen, flown) = (path(&seen), path(&flown));
+        let aside_m = |at: &Vec2| seen.iter().map(|s| (*s - *at).length()).fold(f64::MAX, f64::min);
+        let worst_m = flown.iter().step_by(10).map(aside_m).fold(0.0, f64::max);
+        assert!(worst_m < 30.0, "{angle}: {worst_m:.0} m");
     }
 }
 

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 /// ArduPlane takes an acceptance radius of this or less for crossing the point; metres.
 pub const FLY_OVER_M: f64 = 5.0;
 /// The greatest that it keeps: a byte.
-const GREATEST_ACCEPTANCE_M: f64 = 255.0;
+pub(super) const GREATEST_ACCEPTANCE_M: f64 = 255.0;
 /// So long before a corner of an arc's polygon ArduPlane is to go on to the next one, seconds: as far as it looks ahead.
 ///
 /// It steers to a point of the present leg's line that is L1 = ζ·T·V/π ahead (`AP_L1_Control`: NAVL1_DAMPING ζ, NAVL1_PERIOD T),
@@ -47,7 +47,7 @@ pub fn turn_acceptance_m(from: LatLon, at: LatLon, onward: LatLon, airspeed_mps:
     let corner = Corner::between(before, behind);
     let radius_m = airspeed_mps * airspeed_mps / (GRAVITY_MPS2 * TURN_BANK_DEG.to_radians().tan());
     let early_m = corner.anticipation_m(radius_m, 0.5 * before.length()).round();
-    (early_m > FLY_OVER_M).then(|| early_m.min(GREATEST_ACCEPTANCE_M))
+    (early_m > FLY_OVER_M).then_some(early_m)
 }
 
 #[cfg(test)]
