@@ -25,7 +25,7 @@ fn overshoot_m(angle_deg: f64) -> f64 {
     beyond_m
 }
 
-/// By its own WP_RADIUS it goes 35 m and 108 m beyond.
+/// By its own WP_RADIUS it goes some 85 m beyond the sharper one.
 #[test]
 fn sharp_corners_are_hardly_overshot() {
     for (angle_deg, most_m) in [(90.0, 20.0), (150.0, 40.0)] {
