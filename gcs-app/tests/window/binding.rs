@@ -82,15 +82,7 @@ fn where_a_leg_goes_is_bound_beside_its_field() {
 #[test]
 fn the_area_of_a_scan_is_bound_beside_its_choice() {
     let mut window = window();
-    window.select_row(("TF side2", 0));
-    window.press(Key::A);
-    let at = window.centre("Map");
-    for by in [egui::vec2(0.0, 0.0), egui::vec2(90.0, 0.0), egui::vec2(90.0, 60.0)] {
-        window.tap_at(at + by);
-    }
-    window.press(Key::Enter);
-    window.press(Key::V);
-    let scan = window.selected();
+    let scan = drawn_scan(&mut window);
     window.click_role(Role::Button, "Area: bind to a variable");
     window.steps(2);
     window.click_role(Role::Button, "A new variable with its value");

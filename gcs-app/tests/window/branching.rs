@@ -63,9 +63,9 @@ fn with_a_fork_selected_legs_are_drawn_into_the_branch_that_is_chosen() {
     assert!(window.shows("Draw legs: ") || window.shows("Next leg"), "the next click goes on from there");
 }
 
-#[test]
-fn a_leg_is_dragged_out_of_a_branch_into_the_stage_and_back() {
-    let mut window = Window::open_with(SQUARE, vec2(1280.0, 1400.0), None);
+/// The square with a second way from side2, over two legs that were drawn, in a window of this height.
+fn with_drawn_way(height: f32) -> Window {
+    let mut window = Window::open_with(SQUARE, vec2(1280.0, height), None);
     window.until_analysed();
     window.row_menu(("TF side2", 0), "Draw a new way from it");
     window.steps(3);
@@ -73,6 +73,12 @@ fn a_leg_is_dragged_out_of_a_branch_into_the_stage_and_back() {
     window.click_at(at + vec2(40.0, 90.0));
     window.click_at(at + vec2(-30.0, 120.0));
     window.press(Key::V);
+    window
+}
+
+#[test]
+fn a_leg_is_dragged_out_of_a_branch_into_the_stage_and_back() {
+    let mut window = with_drawn_way(1400.0);
     let both = ["side1", "side2", "fork1 on>side3 way2>leg1", "leg1", "leg2", "side3", "side4"];
     assert_eq!(ways(&window), both);
     window.drop_row("TF leg1", "TF side2", 0.2);
@@ -160,14 +166,7 @@ fn places_and_names_stay_on_the_map_while_a_tool_is_on() {
 
 #[test]
 fn a_branch_has_its_legs_below_it_and_is_renamed_moved_and_deleted_by_its_row() {
-    let mut window = Window::open_with(SQUARE, vec2(1280.0, 1000.0), None);
-    window.until_analysed();
-    window.row_menu(("TF side2", 0), "Draw a new way from it");
-    window.steps(3);
-    let at = window.centre("Map");
-    window.click_at(at + vec2(40.0, 90.0));
-    window.click_at(at + vec2(-30.0, 120.0));
-    window.press(Key::V);
+    let mut window = with_drawn_way(1000.0);
     let drawn = ways(&window);
     window.click("TF leg2");
     window.press(Key::ArrowLeft);

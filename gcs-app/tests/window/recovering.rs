@@ -61,17 +61,23 @@ fn copies_that_cannot_be_kept_are_said() {
     assert_eq!(window.selected(), "side2");
 }
 
-#[test]
-fn the_question_hides_no_command_and_return_recovers() {
-    let folder = tempfile::tempdir().unwrap();
-    let lost = edit_and_kill(folder.path());
-    let mut window = window_in(folder.path(), "");
+/// The next window, over a vehicle that flies.
+fn watching_a_flight(folder: &Path) -> Window {
+    let mut window = window_in(folder, "");
     window.connect();
     let mut value = status(Phase::Flying);
     value.plan = Some("the plan that is aboard".into());
     window.receive_position(false);
     window.receive_status(value);
     while window.asked().is_some() {}
+    window
+}
+
+#[test]
+fn the_question_hides_no_command_and_return_recovers() {
+    let folder = tempfile::tempdir().unwrap();
+    let lost = edit_and_kill(folder.path());
+    let mut window = watching_a_flight(folder.path());
     let question = window.harness.get_by_label("Recover the changes").rect();
     let emergency = window.harness.get_by_label("Emergency: fly the alternate in force (hold)").rect();
     assert!(!question.intersects(emergency));
@@ -79,13 +85,7 @@ fn the_question_hides_no_command_and_return_recovers() {
     assert!(window.plan() == lost && !window.shows("ended without saving"));
     drop(window);
 
-    let mut window = window_in(folder.path(), "");
-    window.connect();
-    let mut value = status(Phase::Flying);
-    value.plan = Some("the plan that is aboard".into());
-    window.receive_position(false);
-    window.receive_status(value);
-    while window.asked().is_some() {}
+    let mut window = watching_a_flight(folder.path());
     window.click("⏸ Hold");
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Hold)));
     assert!(window.shows("ended without saving"));

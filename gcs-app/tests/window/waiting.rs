@@ -34,15 +34,16 @@ impl Terrain for Held {
     }
 }
 
+/// The square over that ground, and its gate.
+fn over_held_ground() -> (Window, Arc<(Mutex<bool>, Condvar)>) {
+    let (gate, ground) = (Arc::<(Mutex<bool>, Condvar)>::default(), gcs_app::assets::demo_terrain());
+    let held = Held { window: std::thread::current().id(), gate: gate.clone(), ground };
+    (Window::open_over(SQUARE, vec2(1280.0, 800.0), None, Arc::new(held)), gate)
+}
+
 #[test]
 fn frames_and_edits_go_on_while_the_preview_waits_for_the_ground() {
-    let gate = Arc::<(Mutex<bool>, Condvar)>::default();
-    let held = Held {
-        window: std::thread::current().id(),
-        gate: gate.clone(),
-        ground: gcs_app::assets::demo_terrain(),
-    };
-    let mut window = Window::open_over(SQUARE, vec2(1280.0, 800.0), None, Arc::new(held));
+    let (mut window, gate) = over_held_ground();
     window.steps(10);
     window.click("TF side2");
     window.press(egui::Key::Delete);
@@ -59,13 +60,7 @@ fn frames_and_edits_go_on_while_the_preview_waits_for_the_ground() {
 /// Whatever the ground does: a leg that is drawn is tried out over it in the background.
 #[test]
 fn drawing_goes_on_while_the_trial_of_a_leg_waits_for_the_ground() {
-    let gate = Arc::<(Mutex<bool>, Condvar)>::default();
-    let held = Held {
-        window: std::thread::current().id(),
-        gate: gate.clone(),
-        ground: gcs_app::assets::demo_terrain(),
-    };
-    let mut window = Window::open_over(SQUARE, vec2(1280.0, 800.0), None, Arc::new(held));
+    let (mut window, gate) = over_held_ground();
     window.harness.run_steps(10);
     window.harness.key_press(egui::Key::T);
     window.harness.run_steps(2);
