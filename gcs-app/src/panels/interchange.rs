@@ -97,7 +97,13 @@ fn as_addition(imported: &Imported, scene: &Scene<'_>) -> String {
     let whereto = drawings::whereto(scene.document.plan(), scene.view.selection.as_ref());
     let whereto =
         whereto.filter(|_| is_flown).map_or_else(String::new, |place| format!(", what is flown {place}"));
-    format!("Into this plan, as one step, come {}{whereto}.", listed(&counts))
+    format!("Into this plan, as one step, {}{whereto}.", coming(&counts))
+}
+
+/// `come 2 fixes and 1 zone`, `comes 1 corridor`.
+fn coming(parts: &[(usize, &str)]) -> String {
+    let is_one = parts.iter().map(|(count, _)| count).sum::<usize>() <= 1;
+    format!("{} {}", if is_one { "comes" } else { "come" }, listed(parts))
 }
 
 /// It is a drawing, and there is a plan to draw it into.
@@ -239,6 +245,13 @@ fn number(count: usize, what: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_thing_comes_and_several_come() {
+        assert_eq!(coming(&[(0, "fix"), (1, "corridor")]), "comes 1 corridor");
+        assert_eq!(coming(&[(1, "fix"), (1, "zone")]), "come 1 fix and 1 zone");
+        assert_eq!(coming(&[(0, "fix")]), "comes nothing that can be flown");
+    }
 
     #[test]
     fn what_is_in_a_plan_is_said_in_words() {
