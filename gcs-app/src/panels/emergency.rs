@@ -1,6 +1,6 @@
 //! An emergency plan that is being flown: what, why, where to, and the way back to the main plan.
 
-use super::Scene;
+use super::{Scene, flight};
 use crate::command::Queue;
 use crate::theme;
 use crate::units;
@@ -18,7 +18,9 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             ui.horizontal_wrapped(|ui| {
                 let text = RichText::new(sentence(scene, flown)).strong().color(on(fill));
                 ui.label(text);
-                way_back(ui, scene, queue);
+                if !has_come_down(scene) {
+                    way_back(ui, scene, queue);
+                }
             });
         },
     );
@@ -29,17 +31,30 @@ fn on(fill: Color32) -> Color32 {
     if fill.intensity() > 0.5 { Color32::BLACK } else { Color32::WHITE }
 }
 
-/// `EMERGENCY: flying Return home, because the engine failed, to runway 27, lands in 6:20`.
+/// `EMERGENCY: flying Return home, because the engine failed, to runway 27, lands in 6:20`; once it is down, where it lies.
 fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     let plan = scene.vehicle.aboard.as_ref().and_then(|a| plan_named(&a.plan, flown));
     let name = plan.map(|plan| plan.name.as_str()).filter(|name| !name.is_empty()).unwrap_or(flown.as_str());
     let raised = scene.vehicle.raised.as_ref().filter(|raised| raised.plan == *flown);
     let cause = raised.map_or_else(String::new, |raised| format!(", because {}", because(raised.cause)));
+    if has_come_down(scene) {
+        return format!("⛔ EMERGENCY: {name}{cause}, ended on the ground{}", beside(scene, plan));
+    }
     let runway = plan.map_or_else(String::new, |plan| format!(", to runway {}", plan.runway));
     let clock_s = scene.vehicle.clock_s(scene.now_s);
     let lands = clock_s.and_then(|aircraft_s| scene.vehicle.outlook.lands_in_s(aircraft_s));
     let lands = lands.map_or_else(String::new, |s| format!(", lands in {}", units::duration(s)));
     format!("⛔ EMERGENCY: flying {name}{cause}{runway}{lands}")
+}
+
+/// `, 2.5 km from runway 27`.
+fn beside(scene: &Scene<'_>, plan: Option<&EmergencyPlan>) -> String {
+    let aboard = scene.vehicle.aboard.as_ref();
+    let runway = plan.and_then(|plan| aboard?.plan.runway(&plan.runway));
+    let lies = scene.vehicle.position.as_ref().map(|position| position.value.position);
+    let (Some(runway), Some(lies)) = (runway, lies) else { return String::new() };
+    let off = scene.units().distance().show(lies.distance_m(runway.threshold));
+    format!(", {off} from runway {}", runway.id)
 }
 
 fn plan_named<'a>(plan: &'a FlightPlan, id: &Id) -> Option<&'a EmergencyPlan> {
@@ -61,6 +76,11 @@ fn because(cause: Cause) -> &'static str {
 /// One is being flown.
 pub fn is_flown(scene: &Scene<'_>) -> bool {
     scene.vehicle.status.as_ref().is_some_and(|status| status.value.emergency.is_some())
+}
+
+/// An emergency plan was being flown, and the aircraft stands, disarmed: wherever that is, nothing is flown any more.
+pub fn has_come_down(scene: &Scene<'_>) -> bool {
+    is_flown(scene) && flight::can_rewind(scene)
 }
 
 /// The leg at which the main plan would be gone on with: where the emergency was raised, else its first.

@@ -1,6 +1,6 @@
 //! The flight: what the vehicle does now, every value with its age, and the strip of commands.
 
-use super::{Panel, PanelId, Place, Scene, age_of, alarms, field, pfd, value_with_age};
+use super::{Panel, PanelId, Place, Scene, age_of, alarms, emergency, field, pfd, value_with_age};
 use crate::command::{FlyCommand, Queue};
 use crate::state::{Outcome, Request, Vehicle};
 use crate::theme;
@@ -171,13 +171,14 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.disable();
     }
     let phase = scene.vehicle.phase();
-    let flying = matches!(phase, Phase::Flying | Phase::AwaitingDecision);
+    let is_down = emergency::has_come_down(scene);
+    let flying = matches!(phase, Phase::Flying | Phase::AwaitingDecision) && !is_down;
     // first: it keeps its place, whatever else there is to command
-    if flying || phase == Phase::Holding {
-        emergency(ui, scene, queue);
+    if flying || (phase == Phase::Holding && !is_down) {
+        choose_emergency(ui, scene, queue);
     }
     let start = if phase == Phase::Grounded { "Start the next flight" } else { "Start and take off" };
-    if can_launch(scene) && field::hold_button(ui, start, p.accent, 150.0) {
+    if can_launch(scene) && !is_down && field::hold_button(ui, start, p.accent, 150.0) {
         queue.fly(FlyCommand::Launch);
     }
     if flying && ui.button("⏸ Hold").clicked() {
@@ -253,7 +254,7 @@ pub fn can_rewind(scene: &Scene<'_>) -> bool {
 const EMERGENCY: f32 = 240.0;
 
 /// Which emergency plan, then hold: named by its effect.
-fn emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     let id = ui.make_persistent_id("emergency plan");
     let mut chosen: Option<Id> = ui.data(|d| d.get_temp(id)).unwrap_or_default();

@@ -2,8 +2,8 @@
 
 use super::watch::{GROUND_STATION, Sight, Watch};
 use super::{
-    Aged, LOOK_AHEAD, Level, Log, Losses, Names, Outcome, Outlook, RecentEvents, Repeats, Requests, Strangers,
-    Ticket, Trail, log,
+    Aged, LOOK_AHEAD, Level, Log, Losses, Names, Outcome, Outlook, RecentEvents, Repeats, Requests,
+    Strangers, Ticket, Trail, log,
 };
 use crate::link::{
     LinkEvent, LinkId, LinkState, Loss, Numbered, PlainEvent, PlainValue, Reply, Rows, Telemetry,

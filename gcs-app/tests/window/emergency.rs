@@ -9,7 +9,7 @@ use flight_plan::Cause;
 use gcs_app::link::{Call, LinkEvent, Numbered, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Ticket};
 use std::sync::Arc;
-use usal::contract::Stamped;
+use usal::contract::{GatewayState, Stamped};
 
 /// Flying the emergency plan of the square.
 pub fn in_emergency() -> Window {
@@ -61,6 +61,20 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     window.click("Return to the main plan at side3");
     let back = Command::ReturnToMain { leg: "side3".into() };
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(back))));
+}
+
+#[test]
+fn what_came_down_beside_the_runway_is_said_to_be_on_the_ground_and_offers_nothing_but_to_rewind() {
+    let (mut window, _) = raised();
+    window.receive(position(101.0, 0.0, true));
+    window.receive_gateway_state(GatewayState::Stop);
+    assert!(window.shows("ended on the ground, ") && window.shows("from runway R05"));
+    for gone in
+        ["lands in", "Return to the main plan", "Hold", "Skip leg", "Start and take off", "Emergency: f"]
+    {
+        assert!(!window.shows(gone), "{gone}");
+    }
+    assert!(window.shows("Rewind to the start"));
 }
 
 #[test]

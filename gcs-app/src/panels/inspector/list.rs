@@ -53,7 +53,10 @@ fn many(ui: &mut Ui, page: &mut Page<'_, '_>, children: &'static Children, indic
     let title = page.name(&format!("{} ({})", children.label, indices.len()));
     let header = CollapsingHeader::new(title).id_salt(children.label).default_open(indices.len() <= LONG);
     let header = header.show(ui, |ui| {
+        let width = ui.available_width();
         for (number, index) in indices.iter().take(SHOWN).enumerate() {
+            // a row that is a little too wide makes none below it wider
+            ui.set_max_width(width);
             each(ui, page, children, *index, number + 1);
         }
         if indices.len() > SHOWN {
@@ -95,7 +98,7 @@ fn each(ui: &mut Ui, page: &mut Page<'_, '_>, children: &'static Children, index
 }
 
 /// Of three small buttons, screen points.
-const BUTTONS_WIDTH: f32 = 78.0;
+const BUTTONS_WIDTH: f32 = 104.0;
 
 /// An element that is nothing but a place.
 fn position_alone(what: &'static Description) -> Option<&'static flight_plan::describe::Property> {
