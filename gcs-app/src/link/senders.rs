@@ -25,7 +25,7 @@ struct Sender {
     heard: Option<Instant>,
     /// Messages of others since they were asked for.
     strange: u64,
-    /// There were some since the service was described.
+    /// There were some since it was described or in doubt.
     is_contested: bool,
 }
 
@@ -91,9 +91,14 @@ impl Senders {
         gone.for_each(|(_, sender)| sender.gone());
     }
 
-    /// Somebody speaks for a service that is silent itself: it should be asked again who it is.
-    pub(super) fn is_doubtful(&self, now: Instant) -> bool {
-        self.lock().values().any(|sender| sender.is_contested && sender.is_silent(now))
+    /// Whether somebody speaks for a service that is silent itself: it should be asked again who it is. Said once, until somebody
+    /// does so again.
+    pub(super) fn take_doubt(&self, now: Instant) -> bool {
+        let mut is_doubtful = false;
+        for sender in self.lock().values_mut().filter(|sender| sender.is_contested && sender.is_silent(now)) {
+            (sender.is_contested, is_doubtful) = (false, true);
+        }
+        is_doubtful
     }
 
     /// How many messages of others came since this was asked last, by service.
@@ -155,13 +160,13 @@ mod tests {
         let (senders, now) = (Senders::default(), Instant::now());
         senders.described(SERVICE, instance("a1"), now);
         assert!(senders.counts(SERVICE, instance("a1"), now));
-        assert!(!senders.counts(SERVICE, instance("b2"), now) && !senders.is_doubtful(now));
+        assert!(!senders.counts(SERVICE, instance("b2"), now) && !senders.take_doubt(now));
         senders.described(SERVICE, instance("b2"), now);
         assert!(!senders.counts(SERVICE, instance("b2"), now));
         let later = now + SILENT;
-        assert!(senders.is_doubtful(later), "it was silent, and somebody speaks in its name");
+        assert!(senders.take_doubt(later), "it was silent, and somebody speaks in its name");
         senders.described(SERVICE, instance("b2"), later);
-        assert!(senders.counts(SERVICE, instance("b2"), later) && !senders.is_doubtful(later + SILENT));
+        assert!(senders.counts(SERVICE, instance("b2"), later) && !senders.take_doubt(later + SILENT));
     }
 
     #[test]

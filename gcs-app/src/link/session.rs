@@ -215,7 +215,7 @@ async fn next(presence: &mut Presence, outlet: &Outlet) -> Option<Arc<BTreeSet<S
             changed = presence.changed() => return changed,
             () = tokio::time::sleep(LOOK) => outlet.report_strangers().await,
         }
-        if outlet.senders.is_doubtful(Instant::now()) {
+        if outlet.senders.take_doubt(Instant::now()) {
             return Some(presence.services());
         }
     }
