@@ -83,7 +83,8 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("eframe", &["gcs-app"]),
     ("walkers", &["gcs-app"]),
     ("reqwest", &["gcs-app"]),
-    ("quick-xml", &["flight-plan", "interchange"]),
+    // a bench measures checks beside a bare pass over the document
+    ("quick-xml", &["flight-plan", "interchange", "flight-exec"]),
     // the fuzzer asks its interpreter what an expression means
     ("cel", &["flight-plan", "fuzz-targets"]),
     ("mcap", &["recording"]),
