@@ -87,7 +87,7 @@ fn check(document: &str) -> usize {
 
 /// Anything else would make the check shorter than it is.
 fn is_expected(problem: &Problem) -> bool {
-    if problem.is_error() && problem.code != "below-terrain" {
+    if problem.is_error() && !["below-terrain", "too-steep"].contains(&problem.code) {
         panic!("the plan is not as it is meant: {problem}");
     }
     true
@@ -97,7 +97,7 @@ fn is_expected(problem: &Problem) -> bool {
 fn long(legs: usize) -> String {
     let mut text = String::new();
     for i in 0..legs {
-        let lat = 36.3 + 0.005 * (i / 2 % 40) as f64;
+        let lat = 36.35 + 0.005 * (i / 2 % 40) as f64;
         let lon = -84.2 + 0.011 * (i.div_ceil(2) % 2) as f64;
         let _ = writeln!(text, r#"<TF id="leg-{i}" lat="{lat:.6}" lon="{lon:.6}"/>"#);
     }
@@ -108,13 +108,13 @@ fn long(legs: usize) -> String {
 fn wide(zones: usize) -> String {
     let (mut head, mut legs) = (String::from("<zones>"), String::new());
     for i in 0..zones {
-        let (lat, lon) = (36.1 + 0.01 * (i / 32) as f64, -84.0 + 0.01 * (i % 32) as f64);
+        let (lat, lon) = (36.3 + 0.01 * (i / 32) as f64, -84.15 + 0.01 * (i % 32) as f64);
         let _ = writeln!(head, r#"<keepOut id="z{i}" lat="{lat:.6}" lon="{lon:.6}" radius="300"/>"#);
     }
     head += "</zones><variables>";
     for i in 0..VARIABLES {
         let _ = writeln!(head, r#"<variable name="v{i}" type="number" initial="500" min="480" max="520"/>"#);
-        let (lat, lon) = (36.3 + 0.01 * (i / 2) as f64, -84.2 + 0.02 * (i.div_ceil(2) % 2) as f64);
+        let (lat, lon) = (36.35 + 0.01 * (i / 2) as f64, -84.2 + 0.02 * (i.div_ceil(2) % 2) as f64);
         let _ = writeln!(
             legs,
             r#"<TF id="leg-{i}" lat="{lat:.6}" lon="{lon:.6}" altitude="= v{i}" altitudeReference="amsl"/>"#
