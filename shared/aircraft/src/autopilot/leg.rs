@@ -120,6 +120,11 @@ impl Corner {
         Corner { angle_rad, next_length_m: onward.length() }
     }
 
+    /// No turn fits in it.
+    pub(super) fn is_reversal(&self) -> bool {
+        self.angle_rad >= REVERSAL_RAD
+    }
+
     /// The turn as a share of a right angle, at most 1.
     pub(super) fn share(&self) -> f64 {
         (self.angle_rad / FRAC_PI_2).min(1.0)

@@ -35,7 +35,7 @@ pub fn arc_acceptance_m(airspeed_mps: f64) -> f64 {
 const TURN_BANK_DEG: f64 = 25.0;
 
 /// The acceptance radius that ArduPlane is told for a waypoint before which it is to turn: by the turn anticipation r · tan(A/2) at the airspeed,
-/// m/s; whole metres. `None`: there is next to nothing to turn, or no turn fits, and it does as it likes.
+/// m/s; whole metres. Where no turn fits, it flies to the point. `None`: there is next to nothing to turn, and it does as it likes.
 ///
 /// It is half of the leg before and half of the one behind at most: so what remains of a leg, when the corner before was left, is
 /// longer than the acceptance radius at its end, and no waypoint is passed over.
@@ -44,7 +44,13 @@ const TURN_BANK_DEG: f64 = 25.0;
 pub fn turn_acceptance_m(from: LatLon, at: LatLon, onward: LatLon, airspeed_mps: f64) -> Option<f64> {
     let frame = LocalFrame::new(at);
     let (before, behind) = (frame.to_local(from) * -1.0, frame.to_local(onward));
+    if before.length().min(behind.length()) <= FLY_OVER_M {
+        return None;
+    }
     let corner = Corner::between(before, behind);
+    if corner.is_reversal() {
+        return Some(FLY_OVER_M + 1.0);
+    }
     let radius_m = airspeed_mps * airspeed_mps / (GRAVITY_MPS2 * TURN_BANK_DEG.to_radians().tan());
     let early_m = corner.anticipation_m(radius_m, 0.5 * before.length()).round();
     (early_m > FLY_OVER_M).then_some(early_m)
@@ -71,16 +77,13 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_to_turn_or_nothing_fits_it_is_told_nothing() {
-        for (angle_deg, before_m, behind_m) in [
-            (0.0, 900.0, 900.0),
-            (3.0, 900.0, 900.0),
-            (179.0, 900.0, 900.0),
-            (90.0, 0.0, 900.0),
-            (90.0, 900.0, 0.0),
-        ] {
+    fn where_nothing_is_to_turn_it_is_told_nothing_and_the_point_where_no_turn_fits() {
+        for (angle_deg, before_m, behind_m) in
+            [(0.0, 900.0, 900.0), (3.0, 900.0, 900.0), (90.0, 0.0, 900.0), (90.0, 900.0, 0.0)]
+        {
             assert_eq!(told(angle_deg, before_m, behind_m), None, "{angle_deg} {before_m} {behind_m}");
         }
+        assert_eq!(told(179.0, 900.0, 900.0), Some(6.0));
     }
 
     #[test]

@@ -258,10 +258,10 @@ fn turns_are_put_right_when_what_follows_them_is_known_and_nothing_is_left_for_i
     rig.window.feed(ALL, vec![corner(5)]);
     rig.settle();
     assert_eq!(turns(&rig, 5), [None, Some(137.0), Some(137.0), Some(137.0), None]);
-    // back to where it came from: no turn fits
+    // back to where it came from: no turn fits, and it flies to the point
     rig.window.feed(Serial(3), vec![Fed { serial: Serial(9), ..corner(2) }]);
     rig.settle();
-    assert_eq!(turns(&rig, 3), [None, Some(137.0), None]);
+    assert_eq!(turns(&rig, 3), [None, Some(137.0), Some(6.0)]);
     assert_eq!(rig.autopilot.steered.len(), steered, "it never steers to anything else meanwhile");
     assert_eq!(rig.window.target(), Target::Waypoint(Serial(1)));
 }
