@@ -32,6 +32,7 @@ pub const DIALECT: Dialect = Dialect {
     steer: modes::steer,
     arm: &[Command::Arm],
     forgets_speed: true,
+    speed_repeats: 0,
     need: None,
     advice: &ADVICE,
     manner: Manner { we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER, wind: WIND_DATA::ID },

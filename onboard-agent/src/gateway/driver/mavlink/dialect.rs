@@ -38,6 +38,8 @@ pub struct Dialect {
     pub arm: &'static [Command],
     /// A change of mode makes it forget the airspeed that was commanded.
     pub forgets_speed: bool,
+    /// An airspeed is commanded again with so many heartbeats after it: it may not have been taken, whatever was answered.
+    pub speed_repeats: u8,
     /// The parameter that decides whether it can be flown.
     pub need: Option<&'static Need>,
     /// Parameters that should be so before it is flown.

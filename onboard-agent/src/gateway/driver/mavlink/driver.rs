@@ -4,6 +4,7 @@
 //! autopilot it is. One without a dialect is refused in plain words, and so is one that turns into another.
 
 mod capability;
+mod speed;
 
 pub use capability::unsupported;
 
@@ -70,8 +71,7 @@ pub struct MavlinkDriver {
     steering: Option<(OrderId, Aim)>,
     /// It was sent to a place, and has not been sent elsewhere since.
     sent: bool,
-    /// The airspeed that was commanded last, m/s.
-    speed_mps: Option<f64>,
+    speed: speed::Speed,
     /// Something happened that may concern the list.
     stirred: bool,
     reports: VecDeque<Report>,
@@ -192,9 +192,7 @@ impl MavlinkDriver {
         }
         self.report_mode(dialect);
         let changed = before.is_some_and(|before| before.mode != beat.custom_mode);
-        if changed && dialect.forgets_speed {
-            self.say_speed_again(now, dialect, events);
-        }
+        self.say_speed_again(now, dialect, changed && dialect.forgets_speed, events);
     }
 
     fn report_mode(&mut self, dialect: &Dialect) {
@@ -203,15 +201,6 @@ impl MavlinkDriver {
         self.list.flown = armed && mode == Mode::Waypoints;
         let name = (dialect.mode_name)(number);
         self.reports.push_back(Report::Heartbeat { mode, name, armed, failsafe });
-    }
-
-    /// An airspeed that was commanded is commanded again, in the modes that we ask for.
-    fn say_speed_again(&mut self, now: Time, dialect: &Dialect, events: &mut Vec<SessionEvent>) {
-        let Some(Seen { mode, armed: true, .. }) = self.seen else { return };
-        let ours = matches!((dialect.meaning)(mode, self.sent), Mode::Waypoints | Mode::Direct);
-        if let Some(mps) = self.speed_mps.filter(|_| ours) {
-            self.session.command(now, Client::Nobody, Command::Speed(mps), events);
-        }
     }
 
     /// What telemetry means for the list.
@@ -346,14 +335,14 @@ impl Driver for MavlinkDriver {
             Order::Leave(serial) => self.list.leave(serial),
             Order::Forget => {
                 self.list.forget();
-                self.speed_mps = None;
+                self.speed = speed::Speed::default();
             }
             Order::HandsOff(off) => self.list.hands_off = off,
             Order::Adopt(known) => self.list.adopt(id, known),
             Order::Steer(aim) => self.steer(now, id, aim, &mut events),
             Order::Arm => self.arm(now, id, &mut events),
             Order::Speed(mps) => {
-                self.speed_mps = Some(mps);
+                self.speed = speed::Speed::said(mps, self.dialect());
                 self.session.command(now, Client::Order(id), Command::Speed(mps), &mut events);
             }
             Order::Terminate => {

@@ -377,12 +377,23 @@ fn holding_and_going_to_a_place_are_one_mode_and_are_told_apart() {
 fn the_airspeed_that_a_change_of_mode_makes_it_forget_is_said_again() {
     let mut rig = Rig::flying();
     assert_eq!(rig.carry_out(Order::Speed(27.0)), Ok(()));
+    rig.run(4);
+    let said = rig.px4.speeds.len();
     rig.carry_out(Order::Steer(Aim::Hold)).unwrap();
     rig.run(2);
-    assert_eq!(rig.px4.speeds, [27.0], "a hold is flown as PX4 likes");
+    assert_eq!(rig.px4.speeds.len(), said, "a hold is flown as PX4 likes");
     rig.carry_out(Order::Steer(Aim::Waypoints)).unwrap();
     rig.run(2);
-    assert_eq!(rig.px4.speeds, [27.0, 27.0]);
+    assert_eq!(rig.px4.speeds[said..], [27.0]);
+}
+
+/// At the end of a take-off it accepts one that it then doesn't fly.
+#[test]
+fn an_airspeed_is_said_again_with_the_next_heartbeats_and_no_more() {
+    let mut rig = Rig::flying();
+    assert_eq!(rig.carry_out(Order::Speed(27.0)), Ok(()));
+    rig.run(6);
+    assert_eq!(rig.px4.speeds, [27.0, 27.0, 27.0]);
 }
 
 #[test]
