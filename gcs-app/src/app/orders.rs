@@ -142,18 +142,22 @@ impl App {
     /// A step that can be undone, like any other.
     fn create(&mut self, mut outline: Outline) {
         let profile = Profile::by_name(&outline.aircraft).unwrap_or_default();
-        outline.runway.elevation_amsl_m = self.ground_amsl_m(outline.runway.threshold).round();
+        let ground = self.ground(outline.runway.threshold);
+        // the form has shown who knows it
+        if ground == Ground::Unknown {
+            self.tell_ground(ground);
+        }
+        outline.runway.elevation_amsl_m = ground.amsl_m().round();
         self.document.replace(outline.plan(&profile, self.layers.ground().as_ref()));
         self.map.fit();
     }
 
-    /// Says who knows it, unless it is the elevations that are loaded.
-    fn ground_amsl_m(&mut self, at: LatLon) -> f64 {
-        let ground = Ground::of(self.layers.ground().as_ref(), at);
-        if !matches!(ground, Ground::Elevations(_)) {
-            self.view.notice = Some(format!("The ground is {}", ground.words(self.view.units)));
-        }
-        ground.amsl_m()
+    fn ground(&self, at: LatLon) -> Ground {
+        Ground::of(self.layers.ground().as_ref(), at)
+    }
+
+    fn tell_ground(&mut self, ground: Ground) {
+        self.view.notice = Some(format!("The ground is {}", ground.words(self.view.units)));
     }
 
     fn add_runway(&mut self, threshold: LatLon, end: LatLon, both: bool) -> Result<(), String> {
@@ -162,7 +166,11 @@ impl App {
         let mut edits = Vec::new();
         let mut made = None;
         for (threshold, end) in ways.into_iter().take(if both { 2 } else { 1 }) {
-            let runway = create::runway(&plan, threshold, end, self.ground_amsl_m(threshold));
+            let ground = self.ground(threshold);
+            if !matches!(ground, Ground::Elevations(_)) {
+                self.tell_ground(ground);
+            }
+            let runway = create::runway(&plan, threshold, end, ground.amsl_m());
             made = made.or_else(|| Some(runway.id.clone()));
             // the second is called as nothing is then
             plan.runways.push(runway.clone());

@@ -81,7 +81,6 @@ fn add_alternates(choice: &EmergencyChoice, ids: &mut HashSet<Id>) {
 mod tests {
     use super::*;
     use crate::assets;
-    use std::time::Instant;
 
     fn kin(what: &Selection) -> HashSet<Id> {
         around(&flight_plan::read(assets::FIRE_WATCH.as_bytes()).plan, std::iter::once(what))
@@ -96,28 +95,14 @@ mod tests {
         let of_stage = kin(&Selection::Stage(stage));
         assert!(["look", "regroup"].iter().all(|leg| of_stage.contains(*leg)));
     }
-    /// Ctrl+A, and every frame after it.
+
     #[test]
-    fn all_legs_of_a_large_plan_take_no_longer_than_some_walks_over_it() {
-        const LEGS: usize = 4000;
-        let legs: String =
-            (0..LEGS).map(|n| format!(r#"<TF id="leg{n}" lat="36.3" lon="-84.1"/>"#)).collect();
-        let stage = format!(r#"<mainPlan><stage id="s" type="mission">{legs}</stage></mainPlan>"#);
-        let text = format!(
-            r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer">{stage}</flightPlan>"#
-        );
-        let plan = flight_plan::read(text).plan;
-        let began = Instant::now();
+    fn of_several_what_goes_with_any_of_them_goes_with_all() {
+        let plan = flight_plan::read(assets::FIRE_WATCH.as_bytes()).plan;
         let all: Vec<Selection> =
             plan.all_legs().iter().map(|context| Selection::Leg(context.leg.id.clone())).collect();
-        let walk = began.elapsed();
-        let tries = (0..5).map(|_| {
-            let began = Instant::now();
-            assert_eq!(around(&plan, all.iter()).len(), LEGS);
-            began.elapsed()
-        });
-        // the machine may have been busy otherwise in some of them
-        let takes = tries.min().unwrap();
-        assert!(takes < 20 * walk, "{takes:?}, and {walk:?} for a walk");
+        let each: HashSet<Id> = all.iter().flat_map(kin).collect();
+        assert_eq!(around(&plan, all.iter()), each);
+        assert!(each.len() > all.len(), "with alternates");
     }
 }
