@@ -241,7 +241,7 @@ fn stages_are_moved_and_copied_as_one_set() {
     assert_eq!(taken(&mut window, Event::Cut), text);
     let cut = window.plan();
     assert_eq!(cut.stages.len(), before.stages.len(), "what is not on the clipboard stays");
-    assert!(["circuit", "more"].iter().all(|id| cut.stage(&Id::new(*id)).unwrap().legs.is_empty()));
+    assert!(["circuit", "more"].iter().all(|id| cut.stage(&Id::new(id)).unwrap().legs.is_empty()));
 }
 
 #[test]
