@@ -30,7 +30,13 @@ def test_a_long_check_shows_that_it_goes_on_and_ends_at_ctrl_c(tmp_path):
     begun = time.monotonic()
     environment = {**os.environ, "TERM": "xterm"}
     check = subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=terminal, env=environment, start_new_session=True
+        command,
+        stdout=subprocess.DEVNULL,
+        stderr=terminal,
+        env=environment,
+        start_new_session=True,
+        # who runs the tests in the background has the shell ignore it for all of them
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     os.close(terminal)
     shown = b""
