@@ -50,6 +50,7 @@ fn aircraft(n: u64) -> AircraftState {
         battery: 0.8,
         fuel: None,
         on_ground: false,
+        engine_out: false,
     }
 }
 

@@ -9,7 +9,7 @@ use crate::theme::Palette;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
 use flight_exec::rehearse::Diversion;
 use flight_exec::review::Margins;
-use flight_plan::{Cause, FlightPlan, Id, Problem};
+use flight_plan::{FlightPlan, Id, Problem};
 use geometry::LatLon;
 use std::collections::HashSet;
 
@@ -82,13 +82,9 @@ fn shortened(text: &str) -> String {
 /// The way out after the alarm: after an engine failure the glide, and fainter the plan as it would be flown with an engine.
 pub fn draw_diversion(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
     let Some(found) = scene.diversion() else { return };
-    let engine = found.cause == Cause::Engine;
-    let powered: Vec<LatLon> =
-        found.powered.iter().flat_map(|f| f.track.iter().map(|q| q.position)).collect();
-    let glide: Vec<LatLon> = found.glide.iter().flat_map(|g| g.path.iter().map(|q| q.position)).collect();
-    let (chosen, other) = if engine { (&glide, &powered) } else { (&powered, &glide) };
-    way(painter, view, other, Stroke::new(1.2, p.weak), p);
-    way(painter, view, chosen, Stroke::new(2.6, p.text), p);
+    let [chosen, other] = found.ways().map(|way| Vec::from_iter(way.iter().map(|point| point.position)));
+    way(painter, view, &other, Stroke::new(1.2, p.weak), p);
+    way(painter, view, &chosen, Stroke::new(2.6, p.text), p);
     if let Some(end) = chosen.last() {
         let at = view.place(*end);
         if !reaches(found) {

@@ -13,6 +13,7 @@ use egui::{
     Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
     vec2,
 };
+use flight_exec::rehearse::GlidePoint;
 
 /// The panel.
 #[derive(Debug, Default)]
@@ -279,13 +280,8 @@ fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
 /// The way out after the alarm: it goes on beyond the end of the flight, if need be.
 fn draw_diversion(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     let Some(found) = scene.diversion() else { return };
-    let at = |time_s: f64, altitude_amsl_m: f64| pos2(axes.x(time_s), axes.y(altitude_amsl_m));
-    let powered = found.powered.iter().flat_map(|f| &f.track).map(|q| at(q.time_s, q.altitude_amsl_m));
-    let glide = found.glide.iter().flat_map(|g| &g.path);
-    let glide = glide.map(|q| at(found.time_s + q.time_s, q.altitude_amsl_m));
-    let (powered, glide): (Vec<Pos2>, Vec<Pos2>) = (powered.collect(), glide.collect());
-    let engine = found.cause == flight_plan::Cause::Engine;
-    let (chosen, other) = if engine { (glide, powered) } else { (powered, glide) };
+    let place = |q: &GlidePoint| pos2(axes.x(found.time_s + q.time_s), axes.y(q.altitude_amsl_m));
+    let [chosen, other] = found.ways().map(|way| Vec::from_iter(way.iter().map(place)));
     for (path, stroke) in [(other, Stroke::new(1.2, p.weak)), (chosen, Stroke::new(2.2, p.text))] {
         painter.extend(Shape::dashed_line(&path, stroke, 8.0, 5.0));
     }

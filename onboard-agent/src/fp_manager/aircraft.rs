@@ -35,8 +35,8 @@ impl Aircraft {
     }
 
     /// Everything together, once a position is known. Without air data there is no wind; without
-    /// battery data it is taken as full, as conditions on it must not fire on nothing.
-    pub fn state(&self) -> Option<AircraftState> {
+    /// battery data it is taken as full, as conditions on it must not fire on nothing. `engine_out`: see [`AircraftState::engine_out`].
+    pub fn state(&self, engine_out: bool) -> Option<AircraftState> {
         let p = self.position?;
         let (wind_east_mps, wind_north_mps) =
             self.air.map_or((0.0, 0.0), |a| (a.wind_east_mps, a.wind_north_mps));
@@ -51,6 +51,7 @@ impl Aircraft {
             battery: self.power.map_or(1.0, |p| p.battery.clamp(0.0, 1.0)),
             fuel: self.power.and_then(|p| p.fuel).filter(|f| f.is_finite()).map(|f| f.clamp(0.0, 1.0)),
             on_ground: p.on_ground,
+            engine_out,
         })
     }
 }

@@ -12,6 +12,9 @@ use wire::Convert;
 /// More identifiers are not remembered: a gateway has a few dozen alarms.
 const MOST: usize = 256;
 
+/// The gateway's alarms of an engine that has stopped, or seems to have.
+const ENGINE_OUT: [&str; 2] = ["engine-out", "engine-suspected"];
+
 /// What was answered.
 #[derive(Debug, Default)]
 pub struct Alarms {
@@ -39,6 +42,11 @@ impl Alarms {
     /// Identifiers of what was answered, to be kept for a restart.
     pub fn answered(&self) -> &BTreeSet<String> {
         &self.answered
+    }
+
+    /// An emergency plan was asked for because the engine gives no power, or seems to, and that has not gone away.
+    pub fn engine_is_out(&self) -> bool {
+        ENGINE_OUT.iter().any(|id| self.answered.contains(*id))
     }
 
     /// It was acted on; until it goes away, nothing more comes of it.

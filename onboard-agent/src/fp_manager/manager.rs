@@ -114,7 +114,7 @@ impl Manager {
 
     /// The wind as it is measured (calm, as long as nothing is known), and the time of day.
     pub fn conditions(&self, now: Time) -> Conditions {
-        let state = self.aircraft.state();
+        let state = self.aircraft.state(self.alarms.engine_is_out());
         let wind =
             state.map_or(Wind::CALM, |s| Wind { east_mps: s.wind_east_mps, north_mps: s.wind_north_mps });
         let since_s = |then| now.saturating_sub(then).as_secs();
@@ -141,7 +141,8 @@ impl Manager {
     pub fn tick(&mut self, now: Time, out: &mut Vec<Effect>) {
         self.timeline.begin(now, self.executor.last_step());
         self.gateway_session.tick(now);
-        let input = self.aircraft.state().map_or(Input::Tick, Input::Aircraft);
+        let state = self.aircraft.state(self.alarms.engine_is_out());
+        let input = state.map_or(Input::Tick, Input::Aircraft);
         self.step(now, input, out);
         self.send(now, out);
     }

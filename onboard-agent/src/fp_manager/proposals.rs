@@ -158,6 +158,7 @@ mod tests {
             battery: 1.0,
             fuel: None,
             on_ground: true,
+            engine_out: false,
         };
         let program = Arc::new(program);
         for input in [

@@ -83,5 +83,6 @@ fn state(position: LatLon) -> AircraftState {
         battery: 1.0,
         fuel: None,
         on_ground: false,
+        engine_out: false,
     }
 }

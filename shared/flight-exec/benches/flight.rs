@@ -70,6 +70,7 @@ impl Flying {
             battery: 1.0,
             fuel: None,
             on_ground: false,
+            engine_out: false,
         };
         self.step(Input::Aircraft(state));
     }

@@ -6,6 +6,7 @@
 mod acting;
 mod commands;
 mod emergency;
+mod gliding;
 mod plan_before;
 mod progress;
 mod proposal;
@@ -57,7 +58,7 @@ impl Executor {
         let before = out.len();
         match input {
             Input::Tick => {}
-            Input::Aircraft(state) if state.is_sound() => self.life.put_aircraft(Some(state)),
+            Input::Aircraft(state) if state.is_sound() => self.aircraft_reported(state, out),
             // numbers that are none: the last sound report counts on
             Input::Aircraft(_) => {}
             Input::Propose { request, program, based_on, objections } => {

@@ -97,6 +97,7 @@ impl Flight {
             battery: self.battery,
             fuel: None,
             on_ground,
+            engine_out: false,
         }));
     }
 

@@ -10,6 +10,7 @@ const LAYERS: &[&str] = &[
     "layout::elevations",
     "layout::path",
     "layout::world",
+    "layout::homeward",
     "layout::expand",
     "layout::cursor",
     "layout::stretch",

@@ -123,6 +123,36 @@ fn an_alarm_leads_where_a_whole_flight_with_that_alarm_leads() {
     }
 }
 
+/// Where a glide straight to the runway has height to spare, the plan as it is flown comes down on it, whatever laps and detours it has;
+/// and where it is said to be reached, it was flown there.
+#[test]
+fn what_is_in_reach_of_a_glide_is_reached_in_flight_too() {
+    let mut in_reach = 0;
+    for name in ["fire-watch", "search", "alternates"] {
+        let plan = plan(name);
+        for wind in [Wind::CALM, Wind::from_direction(270.0, 5.0)] {
+            let rehearsal = rehearsed(&plan, &WhatIf { wind, ..WhatIf::default() });
+            let duration_s = rehearsal.preview().unwrap().time_s;
+            for n in (1..24).step_by(4) {
+                let Some(found) = rehearsal.divert(duration_s * f64::from(n) / 24.0, Cause::Engine) else {
+                    continue;
+                };
+                let (Some(glide), Some(glided)) = (&found.glide, &found.glided) else { continue };
+                if glide.margin_m >= 0.0 && glide.hill.is_none() {
+                    in_reach += 1;
+                    let what = format!("{name}, {wind:?}, {n}: {:.0} m to spare", glide.margin_m);
+                    assert_eq!(glided.missed_m, 0.0, "{what}");
+                    let end = glided.track.last().unwrap();
+                    let runway = plan.runway(&found.plan.as_ref().unwrap().1).unwrap();
+                    assert!(end.altitude_amsl_m <= runway.elevation_amsl_m, "{what}");
+                }
+                assert_eq!(reach(&found) == Reach::Out, glided.missed_m > 0.0);
+            }
+        }
+    }
+    assert!(in_reach > 20, "{in_reach}");
+}
+
 fn reach(diversion: &Diversion) -> Reach {
     diversion.reach(15.0, 0.05)
 }

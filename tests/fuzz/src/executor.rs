@@ -128,6 +128,7 @@ impl Flight {
             battery: 0.9,
             fuel: None,
             on_ground: false,
+            engine_out: false,
         }));
         let current = self.buffer.front().map(|w| w.token);
         if current.is_some() || reached.end_of_plan {
@@ -256,5 +257,7 @@ fn reported(report: Report) -> AircraftState {
         battery,
         fuel: Some(battery),
         on_ground: report.on_ground,
+        // nothing is left to run it with
+        engine_out: battery <= 0.0,
     }
 }

@@ -4,9 +4,9 @@ use super::here::{cause_name, reach_name};
 use crate::forecast::Alarm;
 use crate::units::{self, Units};
 use aircraft::Wind;
-use flight_exec::rehearse::{Diversion, Glide, Powered, Reach, WhatIf};
+use flight_exec::rehearse::{Diversion, Glide, Glided, Powered, Reach, WhatIf};
 use flight_exec::review::Margins;
-use flight_plan::{Cause, FlightPlan, VariableValue};
+use flight_plan::{Cause, FlightPlan, Id, VariableValue};
 
 /// A wind: `8.0 m/s from 240°`, or `calm`.
 fn wind(wind: Wind, units: Units) -> String {
@@ -75,13 +75,14 @@ pub fn diversion(diversion: &Diversion, flown: &FlightPlan, units: Units) -> Vec
         return vec![format!("{alarm}: no emergency plan answers here. The gateway's Safe mode decides.")];
     };
     let mut lines = vec![format!("{alarm}: {}, runway {runway}: {verdict}", flown.label(plan))];
+    let glided = diversion.glided.as_ref().map(|flown| glided(flown, runway, units));
     let glide = diversion.glide.as_ref().map(|g| glide(g, margins.glide_m, units));
     let powered = match &diversion.powered {
         Ok(flown) => powered(flown),
         Err(why) => format!("Not flown: {why}."),
     };
     match diversion.cause {
-        Cause::Engine => lines.extend(glide.into_iter().chain([powered])),
+        Cause::Engine => lines.extend(glided.into_iter().chain(glide).chain([powered])),
         _ => lines.extend([powered].into_iter().chain(glide)),
     }
     lines
@@ -94,6 +95,15 @@ fn powered(flown: &Powered) -> String {
         Some(why) => format!("With the engine: {why}."),
         None => format!("With the engine: it ends in the air after {end}."),
     }
+}
+
+fn glided(flown: &Glided, runway: &Id, units: Units) -> String {
+    let time = units::duration(flown.time_s);
+    if flown.missed_m <= 0.0 {
+        return format!("Flown without the engine: on runway {runway} after {time}.");
+    }
+    let missed = units.distance().show(flown.missed_m);
+    format!("Flown without the engine: it comes down {missed} beside runway {runway} after {time}.")
 }
 
 fn glide(glide: &Glide, reserve_m: f64, units: Units) -> String {
@@ -150,12 +160,14 @@ mod tests {
             plan: Some(("return".into(), "R05".into())),
             powered: Err("the aircraft has not taken off".into()),
             glide: Some(glide),
+            glided: Some(Glided { track: Vec::new(), time_s: 90.0, missed_m: 480.0 }),
         };
         let words = |found: &Diversion| diversion(found, &FlightPlan::default(), Units::Si);
         assert_eq!(
             words(&found),
             [
                 "Engine failure: return, runway R05: not reached",
+                "Flown without the engine: it comes down 480 m beside runway R05 after 1:30.",
                 "Glide straight to the runway: ends before it, 40 m too low.",
                 "Not flown: the aircraft has not taken off."
             ]

@@ -1,5 +1,6 @@
 //! Waypoints, and the aircraft that flies them.
 
+use aircraft::Wind;
 use flight_plan::Id;
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
@@ -86,9 +87,17 @@ pub struct AircraftState {
     pub fuel: Option<f64>,
     /// On the ground.
     pub on_ground: bool,
+    /// The engine gives no power any more, as far as is known: it glides.
+    #[serde(default)]
+    pub engine_out: bool,
 }
 
 impl AircraftState {
+    /// The wind where it is.
+    pub fn wind(&self) -> Wind {
+        Wind { east_mps: self.wind_east_mps, north_mps: self.wind_north_mps }
+    }
+
     /// Every number is one, and the position is on Earth.
     pub fn is_sound(&self) -> bool {
         let numbers = [

@@ -37,6 +37,7 @@ impl Setup {
             released: overrides.released(),
             waited: overrides.waited(),
             counts: overrides.counts(),
+            glides_in: life.aircraft().filter(|a| a.engine_out).map(AircraftState::wind),
             arriving: false,
             looking_ahead: false,
             seen: self.seen.as_ref(),

@@ -129,9 +129,7 @@ impl PathAhead<'_> {
     /// One straight piece more, at the speed over the ground.
     pub(super) fn along(&self, way: Way, from: LatLon, to: LatLon, airspeed_mps: f64) -> Way {
         let (metres, course_deg) = distance_and_course(from, to);
-        let wind = self
-            .aircraft
-            .map_or(Wind::CALM, |a| Wind { east_mps: a.wind_east_mps, north_mps: a.wind_north_mps });
+        let wind = self.aircraft.map_or(Wind::CALM, AircraftState::wind);
         let mps = wind.ground_speed_mps(airspeed_mps, course_deg).unwrap_or(MIN_GROUND_MPS);
         Way { metres: way.metres + metres, seconds: way.seconds + metres / mps.max(MIN_GROUND_MPS) }
     }

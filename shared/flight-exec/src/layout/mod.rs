@@ -6,6 +6,7 @@
 pub mod cursor;
 pub(crate) mod elevations;
 pub mod expand;
+pub(crate) mod homeward;
 pub mod path;
 pub mod stretch;
 pub(crate) mod translate;

@@ -3,7 +3,7 @@
 use crate::api::Time;
 use crate::layout::path::Level;
 use crate::value::{Config, Decision, LoopCount};
-use aircraft::Profile;
+use aircraft::{Profile, Wind};
 use flight_plan::{
     Altitude, AltitudeReference, Env, EvalError, FlightState, Id, Leg, Place, Program, Stage, Value,
     VariableValue, Variables,
@@ -69,6 +69,8 @@ pub struct World<'a> {
     pub waited: Option<u64>,
     /// Counts set by command, or for a review.
     pub counts: &'a [LoopCount],
+    /// The engine is out: the wind in which it glides.
+    pub glides_in: Option<Wind>,
     /// The aircraft is at the cursor's place: measured values count instead of predicted ones.
     pub arriving: bool,
     /// A look ahead from inside an expansion: no further one.

@@ -223,7 +223,12 @@ impl<'a> Flight<'a> {
         self.pass(self.at.now_us - late_us);
         let wind = self.wind();
         self.at.aircraft.settle(seconds(late_us), &wind);
+        let reached = self.at.buffer.front().map(|waypoint| waypoint.token);
         self.report();
+        // the report may have led elsewhere
+        if self.at.buffer.front().map(|waypoint| waypoint.token) != reached {
+            return self.check_limits();
+        }
         self.at.buffer.pop_front();
         self.at.moment.waypoints += 1;
         if let Some(passage) = &mut self.at.passage {
@@ -274,6 +279,7 @@ impl<'a> Flight<'a> {
             battery: self.at.aircraft.battery().share(),
             fuel: None,
             on_ground: state.on_ground,
+            engine_out: !self.at.aircraft.engine().healthy,
         };
         let waits = matches!(self.at.executor.status_phase(), Phase::Holding | Phase::AwaitingDecision);
         let since_us = self.at.now_us - self.at.stepped_us;

@@ -13,7 +13,7 @@
 
 mod diversion;
 
-pub use diversion::{Diversion, Glide, Powered, Reach, glide_instead};
+pub use diversion::{Diversion, Glide, Glided, Powered, Reach, glide_instead};
 
 use super::changes::{Changes, reads_flight};
 use super::equivalence::are_equivalent;

@@ -70,6 +70,8 @@ pub enum Act {
         /// The new plan.
         program: Arc<Program>,
     },
+    /// The engine fails, and stays so.
+    FailEngine,
     /// The preview ends here.
     End,
 }

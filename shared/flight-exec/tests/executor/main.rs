@@ -6,6 +6,7 @@ mod commands;
 mod damaged;
 mod endings;
 mod flights;
+mod gliding;
 #[path = "../common/grid.rs"]
 mod grid;
 mod kept;

@@ -38,6 +38,7 @@ pub struct Rig {
     pub feeds: usize,
     pub battery: f64,
     pub fuel: Option<f64>,
+    pub engine_out: bool,
     pub wind_east_mps: f64,
     /// Reported instead of the waypoint's altitude.
     pub altitude_amsl_m: Option<f64>,
@@ -60,6 +61,7 @@ impl Rig {
             feeds: 0,
             battery: 1.0,
             fuel: None,
+            engine_out: false,
             wind_east_mps: 0.0,
             altitude_amsl_m: None,
             position: HOME,
@@ -167,6 +169,7 @@ impl Rig {
             battery: self.battery,
             fuel: self.fuel,
             on_ground: self.flown.is_empty(),
+            engine_out: self.engine_out,
         }
     }
 

@@ -493,6 +493,7 @@ impl Flight {
             battery: 0.8,
             fuel: None,
             on_ground: self.position == HOME,
+            engine_out: false,
         }
     }
 

@@ -3,9 +3,13 @@
 use super::{Cursor, CursorLog, CursorPhase, Emission, Step};
 use crate::api::Action;
 use crate::layout::expand::Point;
+use crate::layout::homeward::{Arrival, halts};
 use crate::layout::path::{PathEnd, PathState, distance_and_course};
 use crate::layout::world::World;
 use crate::value::Choice;
+use aircraft::Wind;
+use aircraft::glide::GlideStart;
+use aircraft::power::glide_sink_mps;
 use flight_plan::{Act, Trigger};
 
 /// Each waypoint may lie so much beyond what the aircraft climbs on the way to it, metres, so that it never waits for its
@@ -55,6 +59,43 @@ impl Cursor {
         }
     }
 
+    /// How far it can descend and climb on a way, metres; with the engine out it descends, however little it is asked to.
+    ///
+    /// A climb is spread over the waypoints of its leg: nobody could fly it between two of them, and the gateway refuses such a gradient.
+    fn vertical_room_m(&self, length_m: f64, airspeed_mps: f64, world: &World) -> (f64, f64) {
+        let (profile, seconds) = (world.profile, length_m / world.ground_speed_mps(airspeed_mps));
+        let descent_m = profile.max_descent_mps * seconds;
+        let climb_m = match self.glides_in(world) {
+            Some(_) => (-glide_sink_mps(profile, airspeed_mps, 1.0) * seconds).max(-descent_m),
+            None => profile.max_climb_mps * seconds,
+        };
+        (descent_m, climb_m)
+    }
+
+    /// An emergency plan is flown with the engine out: the wind.
+    fn glides_in(&self, world: &World) -> Option<Wind> {
+        world.glides_in.filter(|_| self.section.is_some())
+    }
+
+    /// With the engine out: an altitude below which the glide home from a point would be short of its reserve, metres AMSL. No height is
+    /// given away there.
+    fn kept_for_the_glide(&self, point: Point, course_deg: f64, world: &World) -> f64 {
+        let needed_m = || {
+            let (wind, section) = (self.glides_in(world)?, self.section?);
+            if matches!(point.action, Action::Land { .. }) {
+                return None;
+            }
+            let runway = &world.program.flown().emergency_plans.get(section)?.runway;
+            let runway = world.program.plan.runway(runway)?;
+            let top = self.loops.first().map_or(self.index, |outermost| outermost.index);
+            let ahead = halts(world, section, (self.stage, top + 1));
+            let from = GlideStart { position: point.position, altitude_amsl_m: 0.0, course_deg };
+            let arrival = Arrival::of(world, wind, from, ahead.iter().filter_map(|halt| halt.place), runway)?;
+            Some(-arrival.spare_m())
+        };
+        needed_m().unwrap_or(f64::NEG_INFINITY)
+    }
+
     /// The waypoint at a point, `altitude_amsl_m` high, and the path up to it.
     pub(super) fn emit(&mut self, point: Point, altitude_amsl_m: f64, world: &World) -> Emission {
         let level = point.level.unwrap_or(self.level);
@@ -62,10 +103,8 @@ impl Cursor {
         let from = self.rejoined.take().map_or(self.path, |path| *path);
         let (length_m, course_deg) = distance_and_course(from.last.position, point.position);
         let time_s = length_m / airspeed_mps.max(1.0);
-        // a climb is spread over the waypoints of its leg: nobody could fly it between two of them, and the gateway refuses
-        // such a gradient
-        let (profile, climbed_s) = (world.profile, length_m / world.ground_speed_mps(airspeed_mps));
-        let (descent_m, climb_m) = (profile.max_descent_mps * climbed_s, profile.max_climb_mps * climbed_s);
+        let altitude_amsl_m = self.kept_for_the_glide(point, course_deg, world).max(altitude_amsl_m);
+        let (descent_m, climb_m) = self.vertical_room_m(length_m, airspeed_mps, world);
         let towards = |from_m: f64, lead_m: f64| {
             altitude_amsl_m.max(from_m - descent_m - lead_m).min(from_m + climb_m + lead_m)
         };

@@ -1,13 +1,19 @@
 //! Take-off and landing: the autopilot performs them, the plan says where and how high.
 
+use super::arc::vertices;
 use super::track::SAME_PLACE_M;
 use super::{ExpandError, Point};
 use crate::api::Action;
+use crate::layout::homeward::Arrival;
 use crate::layout::path::{Level, PathState, distance_m};
 use crate::layout::world::World;
+use aircraft::Wind;
+use aircraft::glide::GlideStart;
+use aircraft::power::glide_sink_mps;
 use flight_plan::{AltitudeReference, Runway, Stage};
-use geometry::LatLon;
-use geometry::geodesy::normalise_180;
+use geometry::geodesy::{normalise_180, normalise_360};
+use geometry::{LatLon, PathElement};
+use std::f64::consts::TAU;
 
 /// Off the runway's heading by more than this a path is not on the final approach, which then gets a point to line up at first, degrees.
 pub const ALIGNED_DEG: f64 = 30.0;
@@ -47,6 +53,11 @@ pub fn land(stage: &Stage, path: &PathState, world: &World) -> Result<Vec<Point>
         distance_m(from, gate.position) < SAME_PLACE_M
             || normalise_180(from.bearing_deg(gate.position) - runway.heading_deg).abs() <= ALIGNED_DEG
     };
+    if let Some(wind) = world.glides_in {
+        let straight = !is_worth_its_height(gate.position, path, runway, (wind, world));
+        let approach = if straight { Vec::new() } else { losing_height(gate, path, runway, world) };
+        return Ok(approach.into_iter().chain([touch_down(runway)]).collect());
+    }
     let mut from = path.last.position;
     let threshold_m = |at| distance_m(at, runway.threshold);
     let passed = |entry| {
@@ -62,13 +73,66 @@ pub fn land(stage: &Stage, path: &PathState, world: &World) -> Result<Vec<Point>
         points.push(on_final(runway, final_m + 4.0 * radius_m, world));
     }
     points.push(gate);
-    points.push(Point {
+    points.push(touch_down(runway));
+    Ok(points)
+}
+
+fn touch_down(runway: &Runway) -> Point {
+    Point {
         fly_over: true,
         action: Action::Land { heading_deg: runway.heading_deg },
         level: Some(Level { metres: runway.elevation_amsl_m, reference: AltitudeReference::Amsl }),
         ..Point::fly(runway.threshold)
-    });
-    Ok(points)
+    }
+}
+
+/// With the engine out a final approach begins at its gate, if the height suffices for the way by it; nothing is flown to line up for it,
+/// and nobody goes back to it from nearer on the runway's line.
+fn is_worth_its_height(
+    gate: LatLon,
+    path: &PathState,
+    runway: &Runway,
+    (wind, world): (Wind, &World),
+) -> bool {
+    let (here, altitude_amsl_m) = (path.last.position, path.predicted_amsl_m);
+    let is_nearer = distance_m(here, runway.threshold) <= distance_m(gate, runway.threshold);
+    let is_in_line =
+        normalise_180(here.bearing_deg(runway.threshold) - runway.heading_deg).abs() <= ALIGNED_DEG;
+    let from = GlideStart { position: here, altitude_amsl_m, course_deg: path.course_deg };
+    let arrival = Arrival::of(world, wind, from, [gate].into_iter(), runway);
+    !(is_nearer && is_in_line) && arrival.is_some_and(|arrival| arrival.height_m >= 0.0)
+}
+
+/// More circles than any height takes.
+const MAX_CIRCLES: f64 = 30.0;
+
+/// With the engine out: to where the final approach begins, and around there as often as it takes to lose what is too much of the height.
+/// As many circles as the steepest descent needs, and no more than a glide has height for.
+fn losing_height(gate: Point, path: &PathState, runway: &Runway, world: &World) -> Vec<Point> {
+    let (profile, mps) = (world.profile, path.last.airspeed_mps.max(1.0));
+    let radius_m = world.turn_radius_m(mps);
+    let circle_s = TAU * radius_m / mps;
+    let way_s = distance_m(path.last.position, gate.position) / mps;
+    let wanted_m = gate.level.map_or(runway.elevation_amsl_m, |level| level.metres);
+    let turning = 1.0 / profile.planning_bank_deg.to_radians().cos();
+    let (steep_mps, glide_mps, turning_mps) =
+        (profile.max_descent_mps, glide_sink_mps(profile, mps, 1.0), glide_sink_mps(profile, mps, turning));
+    let too_much_m = path.predicted_amsl_m - steep_mps * way_s - wanted_m;
+    let there_is_m = path.predicted_amsl_m - glide_mps * way_s - wanted_m;
+    let needed = (too_much_m / (steep_mps * circle_s)).ceil();
+    let possible = (there_is_m / (turning_mps * circle_s)).floor();
+    let circles = needed.min(possible).clamp(0.0, MAX_CIRCLES);
+    let mut points = vec![gate];
+    if circles > 0.0 {
+        let side = if normalise_180(runway.heading_deg - path.course_deg) < 0.0 { -1.0 } else { 1.0 };
+        let centre = gate.position.destination(runway.heading_deg + side * 90.0, radius_m);
+        let start_bearing_deg = normalise_360(runway.heading_deg - side * 90.0);
+        let around =
+            PathElement::Arc { centre, radius_m, start_bearing_deg, sweep_deg: side * 360.0 * circles };
+        let on_the_way_down = |point| Point { level: gate.level, ..point };
+        points.extend(vertices(&[around], world.config.arc_tolerance_m).into_iter().map(on_the_way_down));
+    }
+    points
 }
 
 fn on_final(runway: &Runway, before_m: f64, world: &World) -> Point {

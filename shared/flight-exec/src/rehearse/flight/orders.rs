@@ -23,6 +23,7 @@ impl Flight<'_> {
                     Act::Command(command) => self.command(command.clone()),
                     Act::Update { program, entry } => self.update(program, entry.clone()),
                     Act::Propose { program } => self.propose(program),
+                    Act::FailEngine => self.at.aircraft.set_engine_healthy(false),
                     Act::End => self.at.ended = true,
                 }
             }

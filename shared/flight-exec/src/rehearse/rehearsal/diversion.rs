@@ -1,7 +1,8 @@
 //! "What happens here": what would become of a flight if an alarm were raised at some point of it.
 //!
 //! The flight is resumed at the nearest place before that point that was kept, and the alarm is given to the executor as it is given
-//! aboard. Where the engine fails, or might, the glide is worked out beside it.
+//! aboard. Where the engine fails the plan is also flown without it, and judged by where that ends; where it might, the glide is worked
+//! out beside it.
 
 use super::super::flight::{Circumstances, Flight};
 use super::super::scenario::{Act, Trigger, When};
@@ -37,6 +38,8 @@ pub struct Diversion {
     pub powered: Result<Powered, String>,
     /// The glide to its runway.
     pub glide: Option<Glide>,
+    /// After an engine failure: the plan as it is flown without the engine.
+    pub glided: Option<Glided>,
 }
 
 /// An emergency plan, flown with an engine.
@@ -52,6 +55,17 @@ pub struct Powered {
     pub landed: bool,
     /// Why it ends early.
     pub cut_short: Option<PreviewError>,
+}
+
+/// An emergency plan, flown with the engine out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Glided {
+    /// From the failure to the ground; times are seconds since the start of the flight.
+    pub track: Vec<TrackPoint>,
+    /// From the failure to the ground, seconds.
+    pub time_s: f64,
+    /// From where it comes down to the runway, metres; 0: it is on the runway.
+    pub missed_m: f64,
 }
 
 /// A glide to a runway.
@@ -104,8 +118,10 @@ impl Rehearsal {
             None => Err("no emergency plan answers here: the gateway's Safe mode decides".into()),
         };
         let glide = answer.filter(|_| powered.is_ok()).map(|answer| here.glide(answer));
+        let fails = answer.filter(|_| cause == Cause::Engine && powered.is_ok());
+        let glided = fails.and_then(|(_, runway)| here.glided(runway));
         let plan = answer.map(|(plan, runway)| (plan.id.clone(), runway.id.clone()));
-        Some(Diversion { time_s, cause, leg: here.leg, plan, powered, glide })
+        Some(Diversion { time_s, cause, leg: here.leg, plan, powered, glide, glided })
     }
 
     /// How the worst alarm would end so many seconds after the start, and which that is; `None`: nothing was flown, or the aircraft
@@ -118,7 +134,7 @@ impl Rehearsal {
             return None;
         }
         let engine = here.answer(Cause::Engine);
-        let reach = engine.map_or(Reach::Out, |answer| here.glide(answer).reach(glide_m));
+        let reach = engine.map_or(Reach::Out, |answer| here.reach_without_engine(answer, glide_m));
         let mut worst = (reach, Cause::Engine);
         let mut tried: Vec<Option<&Id>> = Vec::new();
         for cause in POWERED {
@@ -156,12 +172,36 @@ impl<'a> Here<'a> {
 
     /// As it is flown with an engine, or why it is not.
     fn powered(&self, cause: Cause) -> Option<Result<Powered, String>> {
-        let mut scenario = self.rehearsal.scenario.clone();
         let alarm = Act::Command(Command::Emergency { cause, plan: None });
-        scenario.triggers.push(Trigger { at: When::After { seconds: self.time_s }, then: vec![alarm] });
+        self.flown_on(vec![alarm], |flight| powered(flight, self.time_s))
+    }
+
+    /// As it is flown after the engine failed.
+    fn glided(&self, runway: &Runway) -> Option<Glided> {
+        let alarm = Act::Command(Command::Emergency { cause: Cause::Engine, plan: None });
+        let terrain = self.rehearsal.terrain.as_ref();
+        self.flown_on(vec![Act::FailEngine, alarm], |flight| glided(flight, self.time_s, runway, terrain))?
+    }
+
+    /// What becomes of the flight if this is done here.
+    fn flown_on<T>(&self, then: Vec<Act>, judge: impl FnOnce(Flight) -> T) -> Option<T> {
+        let mut scenario = self.rehearsal.scenario.clone();
+        scenario.triggers.push(Trigger { at: When::After { seconds: self.time_s }, then });
         let (winds, options) = (self.rehearsal.winds, &self.rehearsal.options);
         let given = Circumstances { winds, scenario: &scenario, options };
-        Some(powered(self.flown.resumed_before(self.time_s, given)?, self.time_s))
+        Some(judge(self.flown.resumed_before(self.time_s, given)?))
+    }
+
+    /// What is out of reach of a glide is not flown to find that out.
+    fn reach_without_engine(&self, (plan, runway): Answer, glide_m: f64) -> Reach {
+        let calculated = self.glide((plan, runway)).reach(glide_m);
+        let straight = [runway.threshold];
+        let (profile, winds) = (&self.rehearsal.profile, self.rehearsal.winds);
+        let arrives = glide(profile, winds, self.start, &straight, runway.heading_deg)
+            .and_then(|points| points.last().copied())
+            .is_some_and(|last| last.altitude_amsl_m >= runway.elevation_amsl_m);
+        let glided = if arrives { self.glided(runway) } else { None };
+        reach_glided(calculated, glided.as_ref())
     }
 
     fn glide(&self, (plan, runway): Answer) -> Glide {
@@ -239,9 +279,38 @@ impl Diversion {
     /// threshold, metres, and share of the energy when landed.
     pub fn reach(&self, glide_m: f64, energy_share: f64) -> Reach {
         if self.cause == Cause::Engine {
-            return self.glide.as_ref().map_or(Reach::Out, |glide| glide.reach(glide_m));
+            let calculated = self.glide.as_ref().map_or(Reach::Out, |glide| glide.reach(glide_m));
+            return reach_glided(calculated, self.glided.as_ref());
         }
         reach_powered(&self.powered, energy_share)
+    }
+
+    /// The way that is flown, and beside it the one with the engine after its failure, or the glide where it runs. Seconds since the alarm.
+    pub fn ways(&self) -> [Vec<GlidePoint>; 2] {
+        let powered = self.powered.as_ref().map_or(&[][..], |flown| &flown.track);
+        let glide = self.glide.as_ref().map_or(&[][..], |glide| &glide.path);
+        match &self.glided {
+            Some(glided) => [self.since_alarm(&glided.track), self.since_alarm(powered)],
+            None => [self.since_alarm(powered), glide.to_vec()],
+        }
+    }
+
+    fn since_alarm(&self, track: &[TrackPoint]) -> Vec<GlidePoint> {
+        let point = |at: &TrackPoint| GlidePoint {
+            time_s: at.time_s - self.time_s,
+            position: at.position,
+            altitude_amsl_m: at.altitude_amsl_m,
+        };
+        track.iter().map(point).collect()
+    }
+}
+
+/// What counts is where it comes down; how much there was to spare is calculated. Where not all of the plan can be glided along, a part is
+/// left out in flight: then nothing is to spare.
+fn reach_glided(calculated: Reach, glided: Option<&Glided>) -> Reach {
+    match glided {
+        Some(glided) if glided.missed_m <= 0.0 => calculated.max(Reach::Tight),
+        _ => Reach::Out,
     }
 }
 
@@ -306,6 +375,39 @@ fn powered(flight: Flight, since_s: f64) -> Result<Powered, String> {
         landed: flown.landed,
         cut_short,
     })
+}
+
+/// The flight after the engine failed, up to where it is in the ground.
+fn glided(flight: Flight, since_s: f64, runway: &Runway, terrain: &dyn Terrain) -> Option<Glided> {
+    let (flown, _) = flight.flown_as_far_as_possible();
+    let first = flown.track.partition_point(|point| point.time_s < since_s);
+    let mut track = flown.track.get(first..)?.to_vec();
+    let is_down = |at: &TrackPoint| at.altitude_amsl_m <= ground_m(at.position, runway, terrain);
+    if let Some(down) = track.iter().position(is_down) {
+        track.truncate(down + 1);
+    }
+    let last = *track.last()?;
+    let away_m = beside_m(last.position, runway);
+    let missed_m = if is_down(&last) { (away_m - TOLERANCE_M).max(0.0) } else { away_m.max(1.0) };
+    Some(Glided { time_s: last.time_s - since_s, track, missed_m })
+}
+
+/// So near to a runway's centre line, or to its ends, one is on it, metres.
+const TOLERANCE_M: f64 = 60.0;
+
+/// From a place to the nearest point of a runway's centre line, metres.
+fn beside_m(place: LatLon, runway: &Runway) -> f64 {
+    let (from_m, bearing_deg) = distance_and_course(runway.threshold, place);
+    let angle_rad = (bearing_deg - runway.heading_deg).to_radians();
+    let along_m = from_m * angle_rad.cos();
+    (along_m - along_m.clamp(0.0, runway.length_m)).hypot(from_m * angle_rad.sin())
+}
+
+/// The ground of a place; near the runway, and where nothing is known, the runway's.
+fn ground_m(place: LatLon, runway: &Runway, terrain: &dyn Terrain) -> f64 {
+    let near =
+        distance_and_course(place, runway.threshold).0 < AT_RUNWAY_M || beside_m(place, runway) < TOLERANCE_M;
+    terrain.elevation_m(place).filter(|_| !near).unwrap_or(runway.elevation_amsl_m)
 }
 
 /// A glide in small steps, up to where it is in the ground: short of the runway, or in a hill, which is given.

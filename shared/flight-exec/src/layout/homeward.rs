@@ -1,0 +1,81 @@
+//! The glide home with the engine out: where the rest of an emergency plan leads, and the height with which a glide arrives.
+
+use super::world::World;
+use aircraft::Wind;
+use aircraft::glide::{GlideStart, glide};
+use flight_plan::{Id, Runway, Stage, StageKind};
+use geometry::LatLon;
+
+/// Most legs on the way home that are looked at.
+const MAX_HALTS: usize = 200;
+/// What is kept of the height for what a glide does not know of (gusts, the way an autopilot turns): metres, and a share of what the
+/// glide takes.
+const RESERVE_M: f64 = 15.0;
+const RESERVE_SHARE: f64 = 0.1;
+
+/// A part of an emergency plan that can be gone to: a leg of a stage, or a landing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Halt {
+    /// The leg, or the stage that lands.
+    pub id: Id,
+    /// Where it leads; of a landing, where the final approach begins. `None`: to no place of its own.
+    pub place: Option<LatLon>,
+}
+
+/// The way home from a leg of an emergency plan on (indices of its stage and, in that, of the leg, or of the loop around it).
+pub fn halts(world: &World, section: usize, (stage, leg): (usize, usize)) -> Vec<Halt> {
+    let stages = world.program.stages(Some(section)).iter().enumerate().skip(stage);
+    let halts = stages.flat_map(|(index, s)| of_stage(world, s, if index == stage { leg } else { 0 }));
+    halts.take(MAX_HALTS).collect()
+}
+
+fn of_stage(world: &World, stage: &Stage, first: usize) -> Vec<Halt> {
+    if stage.kind == StageKind::Land {
+        let runway = stage.runway.as_ref().and_then(|id| world.program.plan.runway(id));
+        let gate = |runway: &Runway| final_begins_at(runway, world.config.final_approach_m);
+        return vec![Halt { id: stage.id.clone(), place: runway.map(gate) }];
+    }
+    let legs = stage.legs.iter().skip(first);
+    let halt = |leg: &flight_plan::Leg| {
+        let place = leg.place().and_then(|place| world.place(place).ok());
+        Halt { id: leg.id.clone(), place }
+    };
+    legs.map(|leg| halt(leg)).collect()
+}
+
+/// Where a final approach of a length begins.
+pub fn final_begins_at(runway: &Runway, length_m: f64) -> LatLon {
+    runway.threshold.destination(runway.heading_deg + 180.0, length_m)
+}
+
+/// How a glide by way of some places to a runway ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrival {
+    /// Height above the threshold there, metres; what is lacking, if it is negative.
+    pub height_m: f64,
+    /// Height that the way takes, metres.
+    pub taken_m: f64,
+}
+
+impl Arrival {
+    /// So much more than the reserve, metres; what of it is lacking, if it is negative.
+    pub fn spare_m(&self) -> f64 {
+        self.height_m - RESERVE_M - RESERVE_SHARE * self.taken_m
+    }
+
+    /// `None`: the wind does not let it get there.
+    pub fn of(
+        world: &World,
+        wind: Wind,
+        from: GlideStart,
+        places: impl Iterator<Item = LatLon>,
+        runway: &Runway,
+    ) -> Option<Self> {
+        let way: Vec<LatLon> = places.chain([runway.threshold]).collect();
+        let end = *glide(world.profile, wind.into(), from, &way, runway.heading_deg)?.last()?;
+        Some(Self {
+            height_m: end.altitude_amsl_m - runway.elevation_amsl_m,
+            taken_m: from.altitude_amsl_m - end.altitude_amsl_m,
+        })
+    }
+}

@@ -1,0 +1,74 @@
+//! With the engine out: as much of an emergency plan as the height allows.
+
+use crate::grid::{GROUND_M, document_with};
+use crate::rig::Rig;
+use flight_exec::{Action, Command, Event};
+use flight_plan::Cause;
+
+/// An emergency plan that goes to a fix, holds there until it is released, and lands.
+fn holding_first() -> String {
+    let holds = r#"<DF id="b-df" fix="A1" altitude="150" altitudeReference="agl"/><HM id="b-hold" fix="A1" course="0" turn="right" length="600"/>"#;
+    let legs = r#"<TF id="a" fix="B1"/><TF id="b" fix="C1"/>"#;
+    let direct = r#"<DF id="b-df" fix="A1" altitude="150" altitudeReference="agl"/>"#;
+    document_with(legs, "", "").replace(direct, holds)
+}
+
+/// On its way along the mission, so high above the ground, metres, the engine out or not: the emergency plan is begun.
+fn emergency_at(height_m: f64, engine_out: bool) -> Rig {
+    let mut rig = Rig::flying(&holding_first());
+    rig.fly_to("b");
+    (rig.altitude_amsl_m, rig.engine_out) = (Some(GROUND_M + height_m), engine_out);
+    rig.report();
+    rig.command(Command::Emergency { cause: Cause::Engine, plan: None }).unwrap();
+    rig.report();
+    rig
+}
+
+fn left_out(rig: &Rig) -> Option<&Event> {
+    rig.events.iter().find(|e| matches!(e, Event::ProblemAhead { code, .. } if code == "glide-shortened"))
+}
+
+#[test]
+fn what_the_height_does_not_allow_is_left_out_and_said() {
+    let mut rig = emergency_at(220.0, true);
+    assert!(left_out(&rig).is_some(), "{:?}", rig.events.last());
+    rig.fly_to("b-land");
+    assert!(!rig.legs().contains("b-hold"), "{}", rig.legs());
+}
+
+#[test]
+fn an_engine_that_runs_leaves_nothing_out() {
+    let mut rig = emergency_at(220.0, false);
+    rig.fly_to("b-hold");
+    assert_eq!(left_out(&rig), None);
+}
+
+#[test]
+fn a_hold_is_flown_as_long_as_there_is_height_and_then_left() {
+    let mut rig = emergency_at(1500.0, true);
+    rig.fly_to("b-hold");
+    assert_eq!(left_out(&rig), None);
+    for height_m in (0..15).rev().map(|n| 100.0 * f64::from(n)) {
+        rig.altitude_amsl_m = Some(GROUND_M + height_m);
+        if !rig.fly_one() || rig.leg() != "b-hold" {
+            break;
+        }
+    }
+    assert_eq!(rig.leg(), "b-land");
+    assert!(left_out(&rig).is_some());
+}
+
+#[test]
+fn no_height_is_given_away_on_the_way_and_what_is_too_much_is_lost_before_the_final() {
+    let low = emergency_at(700.0, true);
+    let first = low.buffer.front().unwrap();
+    assert!(first.altitude_amsl_m > GROUND_M + 200.0, "the plan's 150 m would be too low: {first:?}");
+    let mut high = emergency_at(1500.0, true);
+    high.command(Command::SkipLeg).unwrap();
+    high.fly_to("b-hold");
+    high.command(Command::GoTo { leg: "b-land".into() }).unwrap();
+    let circling = high.buffer.iter().filter(|w| w.on_arc).count();
+    assert!(circling > 2, "{circling}");
+    let land = high.executor.ahead().find(|w| matches!(w.action, Action::Land { .. }));
+    assert!(land.is_none_or(|w| (w.altitude_amsl_m - GROUND_M).abs() < 1.0));
+}
