@@ -83,8 +83,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("eframe", &["gcs-app"]),
     ("walkers", &["gcs-app"]),
     ("reqwest", &["gcs-app"]),
-    // a bench measures checks beside a bare pass over the document
-    ("quick-xml", &["flight-plan", "interchange", "flight-exec"]),
+    ("quick-xml", &["flight-plan", "interchange"]),
     // the fuzzer asks its interpreter what an expression means
     ("cel", &["flight-plan", "fuzz-targets"]),
     ("mcap", &["recording"]),
