@@ -4,6 +4,7 @@ pub mod environment;
 pub mod file;
 
 mod links;
+mod plausible;
 
 use crate::gateway::driver::{self, Registration};
 use crate::inside::Address;
@@ -167,6 +168,7 @@ impl Options {
     /// # Errors
     /// One can't.
     pub fn check(&self) -> anyhow::Result<()> {
+        self.plausible()?;
         for entry in SERVICES.iter().filter(|entry| (entry.is_wanted)(self)) {
             // it runs only once it is awaited
             drop((entry.start)(self, crate::shutdown().1)?);
@@ -377,7 +379,10 @@ fn from_file(path: &Path) -> anyhow::Result<Options> {
 /// # Errors
 /// Something is, or it can't be read.
 pub fn check_file(path: &Path, environment: &Options) -> anyhow::Result<()> {
-    let check = |options: &Options| environment.clone().over(options.clone()).check();
+    let check = |options: &Options| {
+        let options = environment.clone().over(options.clone());
+        options.check().and_then(|()| options.plan_can_be_flown())
+    };
     if is_json(path) {
         return check(&from_file(path)?);
     }

@@ -18,6 +18,9 @@ const PAUSE_MAX: Duration = Duration::from_secs(5);
 const STABLE: Duration = Duration::from_secs(10);
 /// Who does not end in this time after being asked is killed.
 const GRACE: Duration = Duration::from_secs(3);
+/// Who died so often in a row without having lived for [`STABLE`] will not learn any more whether an aircraft needs it: asked to end,
+/// nobody waits for it.
+const HOPELESS: u32 = 5;
 /// Exit status of a service that was started wrongly. At its first start nothing helps but to correct that; later something that
 /// it needs was taken away, as a file on a stick, and may come back.
 pub const USAGE: i32 = 2;
@@ -83,7 +86,7 @@ pub async fn run(program: &Path, processes: &[Process], mut shutdown: Shutdown) 
 
 /// Keeps one process running.
 async fn keep(program: PathBuf, process: Process, mut shutdown: Shutdown) -> anyhow::Result<()> {
-    let (mut pause, mut is_first) = (PAUSE_MIN, true);
+    let (mut pause, mut is_first, mut in_a_row) = (PAUSE_MIN, true, 0);
     loop {
         let started = Instant::now();
         let died = match start(&program, &process) {
@@ -100,13 +103,14 @@ async fn keep(program: PathBuf, process: Process, mut shutdown: Shutdown) -> any
             Err(error) if is_first => return Err(error),
             Err(error) => format!("can't be started ({error:#})"),
         };
+        in_a_row += 1;
         if started.elapsed() >= STABLE {
-            pause = PAUSE_MIN;
+            (pause, in_a_row) = (PAUSE_MIN, 0);
         }
         tracing::error!("{} {died}; restarting it in {} ms", process.name, pause.as_millis());
         let mut asked = shutdown.clone();
         tokio::select! {
-            () = asked.requested(), if !process.may_stay => return Ok(()),
+            () = asked.requested(), if !process.may_stay || in_a_row >= HOPELESS => return Ok(()),
             () = shutdown.insisted() => return Ok(()),
             () = tokio::time::sleep(pause) => {}
         }
@@ -355,6 +359,19 @@ mod tests {
         appears(&asked, 1).await;
         trigger.insist();
         tokio::time::timeout(Duration::from_secs(30), supervisor).await.unwrap().unwrap().unwrap();
+    }
+
+    /// With a configuration that it can't live with, it could not be stopped either.
+    #[tokio::test]
+    async fn who_may_stay_and_dies_again_and_again_ends_when_asked() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = program(directory.path(), "exit 1");
+        let (trigger, shutdown) = shutdown();
+        let supervisor = tokio::spawn(async move { run(&path, &[staying("gateway")], shutdown).await });
+        started(directory.path(), 2).await;
+        trigger.shut_down();
+        tokio::time::timeout(Duration::from_secs(60), supervisor).await.unwrap().unwrap().unwrap();
+        assert!(starts(directory.path()) >= HOPELESS as usize, "it has its chances: an aircraft may need it");
     }
 
     /// A file with so many lines.

@@ -149,3 +149,27 @@ fn what_is_switched_off_nearer_stays_off() {
     let options = parse("onboard-agent run --insecure --simulated=off").over(options);
     assert_eq!((options.insecure, options.simulated), (Some(true), Some(false)));
 }
+
+/// Each of them was taken, and the service that it is for died every five seconds.
+#[test]
+fn what_no_service_could_start_with_is_found_by_check_config() {
+    let directory = tempfile::tempdir().unwrap();
+    let (path, no_plan) = (directory.path().join("agent.toml"), directory.path().join("plan.xml"));
+    std::fs::write(&no_plan, "a host's name").unwrap();
+    let plan = format!("plan = '{}'", no_plan.display());
+    for (line, says) in [
+        ("vehicle = 'uav 1/*'", "--vehicle"),
+        ("vehicle = ''", "--vehicle"),
+        ("listen = 'tcp/127.0.0.1:70000'", "--listen tcp/127.0.0.1:70000"),
+        ("connect = 'foo'", "--connect foo"),
+        ("autopilot = ['udp:127.0.0.1:1', 'udp:127.0.0.1:1']", "twice"),
+        (plan.as_str(), "--plan"),
+    ] {
+        std::fs::write(&path, line).unwrap();
+        let error = format!("{:#}", check_file(&path, &Options::default()).unwrap_err());
+        assert!(error.contains(says), "{line}: {error}");
+    }
+    std::fs::write(&path, "vehicle = 'uav-1'\nlisten = 'tcp/[::1]:7447'\nconnect = 'tcp/localhost:7447'\n")
+        .unwrap();
+    check_file(&path, &Options::default()).unwrap();
+}
