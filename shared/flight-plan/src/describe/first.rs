@@ -1,7 +1,7 @@
 //! What something says when it is new.
 
 use super::reference::{Choice, choices_of};
-use super::{Children, Description, Kind, Property, Row, Sort};
+use super::{Children, Description, Kind, Property, Row, Sort, hole};
 use crate::{Element, FlightPlan, Id, Place, Value};
 use geometry::LatLon;
 
@@ -52,6 +52,11 @@ impl First<'_> {
 
     /// A new element beside others.
     pub fn element(&self, what: &Description, beside: &[Element]) -> Element {
+        if what.element == "hole"
+            && let Some(hole) = hole::inside(beside)
+        {
+            return hole;
+        }
         let alike: Vec<&Element> = beside.iter().filter(|other| other.name == what.element).collect();
         let mut new = Element { name: what.element.into(), ..Element::default() };
         what.groups.iter().for_each(|rows| self.begin(&mut new, rows, &alike));
@@ -161,11 +166,13 @@ impl First<'_> {
 /// Between new corners, metres.
 const SIDE_M: f64 = 400.0;
 
-fn text(at: LatLon) -> String {
-    format!("{} {}", at.lat_deg, at.lon_deg)
+/// To a centimetre: more digits say nothing.
+pub(super) fn text(at: LatLon) -> String {
+    let rounded = |degrees: f64| (degrees * 1e7).round() / 1e7;
+    format!("{} {}", rounded(at.lat_deg), rounded(at.lon_deg))
 }
 
-fn position(text: &str) -> Option<LatLon> {
+pub(super) fn position(text: &str) -> Option<LatLon> {
     let (lat, lon) = text.split_once(' ')?;
     Some(LatLon::new(lat.parse().ok()?, lon.parse().ok()?))
 }

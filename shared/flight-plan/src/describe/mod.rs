@@ -10,6 +10,7 @@ mod change;
 mod draft;
 mod first;
 mod formula;
+mod hole;
 mod legs;
 mod parts;
 mod patterns;

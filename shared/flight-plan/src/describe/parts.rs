@@ -144,7 +144,7 @@ pub(super) const CORNERS: Children = Children {
 
 const RADIUS: Row =
     P(value("radius", "Radius", Quantity::Length, 1.0, "300").help("From its centre to its edge."));
-const HOLE: Description =
+pub(super) const HOLE: Description =
     element("hole", "Hole", "A part of the area that does not belong to it.", &[&[Row::Children(CORNERS)]]);
 const AREA: Description = Description {
     element: "area",
