@@ -108,12 +108,12 @@ impl Outline {
             legs: mission.into_iter().map(Arc::new).collect(),
             ..stage("mission", self.template.name(), StageKind::Mission)
         });
-        plan.stages.extend(frame.way_home(""));
+        plan.stages.extend(frame.way_home("", &[]));
         plan.emergency_plans = vec![EmergencyPlan {
             id: "return".into(),
             name: format!("Return to {}", self.runway.id),
             runway: self.runway.id.clone(),
-            stages: frame.way_home("r-"),
+            stages: frame.way_home("r-", &[]),
         }];
         plan
     }

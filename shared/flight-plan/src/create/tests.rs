@@ -189,6 +189,40 @@ fn an_emergency_plan_drawn_outwards_is_flown_inwards() {
     assert_eq!(flown, [("DF", far), ("TF", middle), ("TF", near)]);
 }
 
+/// Places on the centre line that are nearer than the automatic final are flown after its beginning, whatever else was drawn.
+#[test]
+fn an_emergency_plan_drawn_along_the_centre_line_never_turns_back_out() {
+    let plan = made(Template::Survey);
+    let runway = plan.runways[0].clone();
+    let profile = Profile::default();
+    // the runway's heading is 90
+    let on_line =
+        |before_m: f64, beside_m: f64| at(HOME.destination(270.0, before_m).destination(0.0, beside_m));
+    for drawn in [vec![900.0, 1450.0], vec![2000.0], vec![900.0, 1450.0, 6000.0], vec![1300.0, 9000.0]] {
+        let outwards: Vec<Place> = drawn.iter().map(|before_m| on_line(*before_m, 40.0)).collect();
+        let (id, edit) = emergency_plan(&plan, &runway, &outwards, &profile, &Flat(200.0));
+        let with = edit.apply(&plan).unwrap();
+        assert_eq!(errors(&with), Vec::<String>::new());
+        let stages = &with.emergency_plan(&id).unwrap().stages;
+        let flown: Vec<Place> =
+            stages.iter().flat_map(|stage| &stage.legs).filter_map(|leg| leg.place().cloned()).collect();
+        let far_m = |place: &Place| match place {
+            Place::Fix(fix) => with.fix(fix).unwrap().position.distance_m(HOME),
+            Place::Position(Value::Constant(at)) => at.distance_m(HOME),
+            Place::Position(Value::Expression(_)) => panic!("{place:?}"),
+        };
+        assert!(flown.is_sorted_by(|one, next| far_m(one) >= far_m(next)), "{drawn:?}: {flown:?}");
+        assert!(outwards.iter().all(|place| flown.contains(place)), "what was drawn is kept");
+        let known = |fix: &Id| flown.contains(&Place::Fix(fix.clone())) || plan.fix(fix).is_some();
+        assert!(with.fixes.iter().all(|fix| known(&fix.id)), "no fix is made for nothing");
+    }
+    let beside = [on_line(1000.0, 900.0)];
+    let (id, edit) = emergency_plan(&plan, &runway, &beside, &profile, &Flat(200.0));
+    let with = edit.apply(&plan).unwrap();
+    let first = with.emergency_plan(&id).unwrap().stages[0].legs[0].place().cloned();
+    assert_eq!(first.as_ref(), beside.first(), "a circuit comes from beside the runway");
+}
+
 #[test]
 fn a_number_becomes_a_variable_and_comes_back() {
     let plan = made(Template::Survey);

@@ -3,8 +3,8 @@
 use crate::template;
 use crate::uses::SlotMut;
 use crate::{
-    Edit, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Id, Leg, LegKind, Place, PlanWaypoint, Runway,
-    Stage, StageKind, Thing, Turnaround, Value, Variable, VariableValue, Zone, ZoneKind, ZoneShape,
+    Edit, EmergencyChoice, Fix, FlightPlan, Id, Leg, Place, Runway, Stage, StageKind, Thing, Turnaround,
+    Value, Variable, VariableValue, Zone, ZoneKind, ZoneShape,
 };
 use aircraft::Profile;
 use geometry::LatLon;
@@ -131,7 +131,8 @@ pub fn shift_stage(plan: &FlightPlan, stage: &Id, by: isize) -> Option<Edit> {
 }
 
 /// An emergency plan that brings the aircraft to a runway from anywhere, with the fixes that it needs; the first of a plan
-/// becomes the plan's own. `outwards`: the places it leads through, from the runway outwards.
+/// becomes the plan's own. `outwards`: the places it leads through, from the runway outwards. It is flown inwards all the way: places on the
+/// centre line come after the beginning of the final, where that is farther out.
 pub fn emergency_plan(
     plan: &FlightPlan,
     runway: &Runway,
@@ -140,31 +141,13 @@ pub fn emergency_plan(
     terrain: &dyn Terrain,
 ) -> (Id, Edit) {
     let id = plan.unique_id("return");
-    let (fixes, mut emergency) = template::bring_home(plan, &id, runway, profile, terrain);
-    lead_through(&mut emergency, outwards);
+    let (fixes, emergency) = template::bring_home(plan, &id, (runway, outwards), profile, terrain);
     let mut edits: Vec<Edit> = fixes.into_iter().map(|fix| Edit::Add(Box::new(Thing::Fix(fix)))).collect();
     edits.push(Edit::Add(Box::new(Thing::EmergencyPlan(emergency))));
     if plan.emergency.by_cause.is_empty() {
         edits.push(Edit::SetEmergency { of: None, cause: None, plan: Some(id.clone()) });
     }
     (id, Edit::All(edits))
-}
-
-/// Lets an emergency plan come to its first leg from the last of these places, by way of the others.
-fn lead_through(emergency: &mut EmergencyPlan, outwards: &[Place]) {
-    let prefix = emergency.id.clone();
-    let Some(stage) = emergency.stages.first_mut() else { return };
-    let Some(first) = stage.legs.first().cloned() else { return };
-    let way = outwards.iter().rev().enumerate().map(|(index, place)| {
-        let to = PlanWaypoint { place: place.clone(), fly_over: false };
-        let (altitude, kind) = match index {
-            0 => (first.altitude.clone(), LegKind::Df { to, turn: None }),
-            _ => (None, LegKind::Tf(to)),
-        };
-        let id = Id::new(&format!("{prefix}-w{}", index + 1));
-        Arc::new(Leg { id, name: String::new(), altitude, kind, ..first.as_ref().clone() })
-    });
-    stage.legs.splice(0..0, way.collect::<Vec<_>>());
 }
 
 /// Removes a fix, runway, zone, procedure, emergency plan, stage or variable; legs keep the place of a fix, and nothing

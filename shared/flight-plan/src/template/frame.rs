@@ -1,7 +1,7 @@
 //! What all templates have in common: places around the runway, heights above it, the way out and the way home.
 
 use super::{Outline, above_home, fix, hold, leg, stage, to};
-use crate::{Altitude, Fix, Id, Leg, LegKind, Runway, Stage, StageKind, TurnDirection};
+use crate::{Altitude, Fix, Id, Leg, LegKind, Place, PlanWaypoint, Runway, Stage, StageKind, TurnDirection};
 use aircraft::Profile;
 use geometry::LatLon;
 use std::sync::Arc;
@@ -15,6 +15,8 @@ const CLEARANCE_M: f64 = 150.0;
 const LOWEST_M: f64 = 60.0;
 /// Descent on the final, metres down per metre forward.
 const GLIDE_SLOPE: f64 = 0.075;
+/// A place on the final stands for the gate from so far before it on, metres.
+const GATE_ROOM_M: f64 = 300.0;
 /// Share of what an aircraft can fly that its mission's tracks may take; the rest is for climbs, turns and the way there.
 const TRACKS: f64 = 0.25;
 /// The ground is looked at in a grid of so many by so many places.
@@ -100,8 +102,14 @@ impl<'a> Frame<'a> {
         (5.0 * self.turn_radius_m).max(900.0)
     }
 
-    fn gate_height_m(&self) -> f64 {
-        (self.gate_m * GLIDE_SLOPE).min(self.final_height_m()).max(self.hill_m + LOWEST_M).round()
+    /// Of the glide slope, so many metres before the threshold.
+    fn slope_height_m(&self, before_m: f64) -> f64 {
+        (before_m * GLIDE_SLOPE).min(self.final_height_m()).max(self.hill_m + LOWEST_M).round()
+    }
+
+    /// The final leads over a gate, unless one of these places on it is there already: metres before the threshold.
+    pub(super) fn has_gate(&self, over: &[(f64, Place)]) -> bool {
+        over.iter().all(|(before_m, _)| *before_m > self.gate_m + GATE_ROOM_M)
     }
 
     /// Not above the mission: a mission that ends beside the final would leave no room to climb there.
@@ -147,8 +155,23 @@ impl<'a> Frame<'a> {
         ]
     }
 
-    /// From anywhere to the runway. `prefix`: of the identifiers.
-    pub(super) fn way_home(&self, prefix: &str) -> Vec<Stage> {
+    /// Down the final from its beginning: over these places, so many metres before the threshold, and the gate.
+    fn approach(&self, prefix: &str, over: &[(f64, Place)]) -> Vec<Leg> {
+        let mut places = over.to_vec();
+        if self.has_gate(over) {
+            places.push((self.gate_m, Place::Fix(self.gate_fix.clone())));
+        }
+        places.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let legs = places.into_iter().enumerate().map(|(index, (before_m, place))| {
+            let kind = LegKind::Tf(PlanWaypoint { place, fly_over: false });
+            let altitude = Some(above_home(self.slope_height_m(before_m)));
+            Leg { altitude, ..leg(&format!("{prefix}ap{}", index + 1), "Final approach", kind) }
+        });
+        legs.collect()
+    }
+
+    /// From anywhere to the runway. `prefix`: of the identifiers; `over`: places of the final, so many metres before the threshold.
+    pub(super) fn way_home(&self, prefix: &str, over: &[(f64, Place)]) -> Vec<Stage> {
         let id = |text: &str| format!("{prefix}{text}");
         let holding = hold(self.final_fix.as_str(), self.runway.heading_deg, TurnDirection::Right);
         let (height_m, final_m) = (self.height_m, self.final_height_m());
@@ -158,10 +181,7 @@ impl<'a> Frame<'a> {
             Leg { altitude: Some(above_home(height_m)), ..leg(&id("a1"), "Direct to the final", direct) },
             Leg { altitude: Some(above_home(final_m)), ..leg(&id("a2"), "Descend in the hold", line_up) },
         ];
-        let approach = Leg {
-            altitude: Some(above_home(self.gate_height_m())),
-            ..leg(&id("ap1"), "Final approach", LegKind::Tf(to(self.gate_fix.as_str())))
-        };
+        let approach = self.approach(prefix, over);
         let runway = Some(self.runway.id.clone());
         vec![
             Stage {
@@ -169,7 +189,7 @@ impl<'a> Frame<'a> {
                 ..stage(&id("arrival"), "Arrival", StageKind::Arrival)
             },
             Stage {
-                legs: vec![Arc::new(approach)],
+                legs: approach.into_iter().map(Arc::new).collect(),
                 ..stage(&id("approach"), "Approach", StageKind::Approach)
             },
             Stage { runway, ..stage(&id("land"), "Landing", StageKind::Land) },

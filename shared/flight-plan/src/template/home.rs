@@ -2,21 +2,28 @@
 
 use super::frame::Frame;
 use super::{Extent, Outline, Template, fix};
-use crate::{Altitude, AltitudeReference, EmergencyPlan, Fix, FlightPlan, Id, Runway, Stage, Value};
+use crate::{
+    Altitude, AltitudeReference, EmergencyPlan, Fix, FlightPlan, Id, Leg, LegKind, Place, PlanWaypoint,
+    Runway, Stage, Value,
+};
 use aircraft::Profile;
-use geometry::LatLon;
+use geometry::{LatLon, LocalFrame, Vec2};
 use std::sync::Arc;
 use terrain::Terrain;
 
 /// How far around a runway the ground is looked at for a way home, metres.
 const HOME_REACH_M: f64 = 3000.0;
+/// A place is on the centre line if it is no farther beside it than this, metres and as a share of its distance to the threshold.
+const BESIDE_M: f64 = 50.0;
+const BESIDE_SHARE: f64 = 0.15;
 
 /// An emergency plan that brings the aircraft to a runway from anywhere, and the fixes that it needs. Fixes of the plan that are
-/// in the right places are used.
+/// in the right places are used. `outwards`: the places it leads through, from the runway outwards: those on the centre line after
+/// the beginning of the final, the others before.
 pub(crate) fn bring_home(
     plan: &FlightPlan,
     id: &Id,
-    runway: &Runway,
+    (runway, outwards): (&Runway, &[Place]),
     profile: &Profile,
     terrain: &dyn Terrain,
 ) -> (Vec<Fix>, EmergencyPlan) {
@@ -41,17 +48,57 @@ pub(crate) fn bring_home(
         )
     };
     frame.final_fix = on_final("FINAL", frame.at(-frame.final_m, 0.0));
-    frame.gate_fix = on_final("GATE", frame.at(-frame.gate_m, 0.0));
+    let over = on_the_final(plan, runway, outwards, frame.final_m);
+    if frame.has_gate(&over) {
+        frame.gate_fix = on_final("GATE", frame.at(-frame.gate_m, 0.0));
+    }
     // altitudes are above the take-off runway, wherever this one is; above the sea where the flights have different ones
     let (datum_m, reference) = match (plan.home(), plan.common_home()) {
         (None, _) => (runway.elevation_amsl_m, AltitudeReference::Home),
         (Some(_), Some(home)) => (home.elevation_amsl_m, AltitudeReference::Home),
         (Some(_), None) => (0.0, AltitudeReference::Amsl),
     };
-    let mut stages = frame.way_home(&format!("{id}-"));
+    let mut stages = frame.way_home(&format!("{id}-"), &over);
+    if let Some(arrival) = stages.first_mut() {
+        lead_through(arrival, id, outwards.get(over.len()..).unwrap_or_default());
+    }
     stages.iter_mut().for_each(|stage| raise(stage, runway.elevation_amsl_m - datum_m, reference));
     let name = format!("Return to {}", runway.id);
     (made, EmergencyPlan { id: id.clone(), name, runway: runway.id.clone(), stages })
+}
+
+/// The first of some places that are drawn outwards, as far as they are on the centre line and nearer than the final begins, with their
+/// distances to the threshold, metres.
+fn on_the_final(plan: &FlightPlan, runway: &Runway, outwards: &[Place], final_m: f64) -> Vec<(f64, Place)> {
+    let frame = LocalFrame::new(runway.threshold);
+    let ahead = Vec2::from_bearing_rad(runway.heading_deg.to_radians());
+    let on_it = |place: &Place| {
+        let at = match place {
+            Place::Fix(fix) => plan.fix(fix)?.position,
+            Place::Position(Value::Constant(at)) => *at,
+            Place::Position(Value::Expression(_)) => return None,
+        };
+        let from_threshold = frame.to_local(at);
+        let (before_m, beside_m) = (-from_threshold.dot(ahead), from_threshold.cross(ahead).abs());
+        let is_on_line = beside_m <= BESIDE_M + BESIDE_SHARE * before_m;
+        ((0.0..final_m).contains(&before_m) && is_on_line).then(|| (before_m, place.clone()))
+    };
+    outwards.iter().map_while(on_it).collect()
+}
+
+/// Lets a stage come to its first leg from the last of these places, by way of the others.
+fn lead_through(arrival: &mut Stage, prefix: &Id, outwards: &[Place]) {
+    let Some(first) = arrival.legs.first().cloned() else { return };
+    let way = outwards.iter().rev().enumerate().map(|(index, place)| {
+        let to = PlanWaypoint { place: place.clone(), fly_over: false };
+        let (altitude, kind) = match index {
+            0 => (first.altitude.clone(), LegKind::Df { to, turn: None }),
+            _ => (None, LegKind::Tf(to)),
+        };
+        let id = Id::new(&format!("{prefix}-w{}", index + 1));
+        Arc::new(Leg { id, name: String::new(), altitude, kind, ..first.as_ref().clone() })
+    });
+    arrival.legs.splice(0..0, way.collect::<Vec<_>>());
 }
 
 fn raise(stage: &mut Stage, by_m: f64, to: AltitudeReference) {
