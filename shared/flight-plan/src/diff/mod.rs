@@ -37,7 +37,7 @@ pub struct Change {
 }
 
 impl std::fmt::Display for Change {
-    /// `leg o1 changed: altitude 300 → 400`.
+    /// `leg o1 changed: altitude 300 → 400 m AMSL`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.told(self.id.as_ref().map(Id::as_str)))
     }

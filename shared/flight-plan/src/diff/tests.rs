@@ -60,11 +60,11 @@ fn each_change_is_told_in_words() {
         ),
         (
             Edit::SetSpeed { of: "patterns".into(), speed_mps: Some(Value::Constant(20.0)) },
-            &["stage patterns changed: speed 20 added", "leg scan changed: its stage's speed 20 added"],
+            &["stage patterns changed: speed 20 m/s added", "leg scan changed: its stage's speed 20 added"],
         ),
         (
             Edit::Replace { id: "range".into(), with: Box::new(zone) },
-            &["zone range changed: ceiling 3000 removed, ceilingReference amsl removed"],
+            &["zone range changed: ceiling 3000 m AMSL removed, ceilingReference amsl removed"],
         ),
         (
             Edit::RemoveCorner { leg: "range".into(), hole: None, corner: 0 },
@@ -115,6 +115,11 @@ fn values_are_told_as_they_were_and_are() {
             r#"<wait seconds="30"/>"#,
             r#"<wait seconds="45"/>"#,
             "leg tf changed: action 2: wait: seconds 30 → 45",
+        ),
+        (
+            r#"altitude="900" altitudeReference="amsl" speed="24""#,
+            r#"altitude="950" altitudeReference="amsl" speed="24""#,
+            "stage basic changed: altitude 900 → 950 m AMSL",
         ),
         (r#"<videoStart/>"#, r#"<photo/>"#, "leg tf changed: action 1: videoStart → photo"),
         (

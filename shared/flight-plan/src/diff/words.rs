@@ -55,12 +55,41 @@ fn legible(old: &str, new: &str) -> (String, String) {
     if shorter_old == shorter_new { (old.into(), new.into()) } else { (shorter_old, shorter_new) }
 }
 
+/// How an attribute has changed, with what its numbers count in: said once where that is the same for both.
+fn attribute(name: &str, old: &Element, new: &Element) -> Option<String> {
+    let (was, now) = ((old.attribute(name), measure(name, old)), (new.attribute(name), measure(name, new)));
+    let with = |(value, measure): (Option<&str>, &str)| value.map(|value| format!("{value}{measure}"));
+    match (was, now) {
+        ((Some(was), before), (Some(now), measure)) if before == measure => {
+            change_of(name, Some(was), Some(now)).map(|change| format!("{change}{measure}"))
+        }
+        _ => change_of(name, with(was).as_deref(), with(now).as_deref()),
+    }
+}
+
+/// What a number counts in, and an altitude from; nothing for a formula.
+fn measure(name: &str, of: &Element) -> &'static str {
+    let is_number = of.attribute(name).is_some_and(|value| value.parse::<f64>().is_ok());
+    let reference = match name {
+        _ if !is_number => return "",
+        "altitude" => "altitudeReference",
+        "floor" => "floorReference",
+        "ceiling" => "ceilingReference",
+        "speed" => return " m/s",
+        _ => return "",
+    };
+    match of.attribute(reference) {
+        Some("agl") => " m above ground",
+        Some("home") => " m above home",
+        _ => " m AMSL",
+    }
+}
+
 /// Of two elements: their attributes and what is in them.
 fn inside(old: &Element, new: &Element) -> Vec<String> {
-    let changed =
-        new.attributes.iter().map(|(name, value)| change_of(name, old.attribute(name), Some(value)));
+    let changed = new.attributes.iter().map(|(name, _)| attribute(name, old, new));
     let gone = old.attributes.iter().filter(|(name, _)| new.attribute(name).is_none());
-    let gone = gone.map(|(name, value)| change_of(name, Some(value), None));
+    let gone = gone.map(|(name, _)| attribute(name, old, new));
     let mut words: Vec<String> = changed.chain(gone).flatten().collect();
     if let ([was], [now]) = (&old.children[..], &new.children[..])
         && was.name != now.name
