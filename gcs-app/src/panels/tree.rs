@@ -321,9 +321,6 @@ impl Tree {
             Done::Folded => self.fold(index),
             Done::Dragged => {
                 let Some(row) = self.rows.get(index) else { return };
-                if row.branch.is_some() {
-                    queue.view(ViewCommand::Notice(BRANCH_STAYS.into()));
-                }
                 self.drag = Drag::begin(row, scene);
             }
             Done::Chosen => {
@@ -377,8 +374,6 @@ fn is_in_flight(scene: &Scene<'_>) -> bool {
     let flies = matches!(phase, Phase::Flying | Phase::Holding | Phase::AwaitingDecision);
     flies && scene.vehicle.open_link().is_some()
 }
-
-const BRANCH_STAYS: &str = "A branch stays with its fork: drag its legs, or move it among the other branches with Ctrl+Up and Ctrl+Down.";
 
 /// What a click does: with Ctrl, what has a place is selected together.
 fn chosen(ui: &Ui, row: &Row) -> ViewCommand {

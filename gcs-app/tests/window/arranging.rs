@@ -27,7 +27,7 @@ impl Window {
     }
 
     /// Drags a row onto another one, so far down in it, and does not let it go yet.
-    fn drag_row(&mut self, from: &str, to: &str, down: f32) {
+    pub fn drag_row(&mut self, from: &str, to: &str, down: f32) {
         let (from, to) = (self.row(from, 0.5), self.row(to, down));
         self.harness.hover_at(from);
         self.harness.drag_at(from);

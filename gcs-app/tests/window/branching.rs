@@ -188,3 +188,15 @@ fn a_branch_has_its_legs_below_it_and_is_renamed_moved_and_deleted_by_its_row() 
     window.row_menu(("▸ Close look", 0), "Delete it and its legs");
     assert_eq!(ways(&window).len(), 5);
 }
+
+#[test]
+fn a_branch_is_dragged_among_those_of_its_fork() {
+    let mut window = with_drawn_way(1400.0);
+    let drawn = ways(&window);
+    window.drop_row("▸ Way 2", "▸ Go on", 0.2);
+    assert_eq!(ways(&window)[2], "fork1 way2>leg1 on>side3");
+    window.click("Undo");
+    assert_eq!(ways(&window), drawn, "one step");
+    window.drag_row("▸ Way 2", "TF side1", 0.2);
+    assert!(window.shows("A branch goes among those of its fork"));
+}

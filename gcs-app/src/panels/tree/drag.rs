@@ -1,10 +1,10 @@
 //! Rows on their way to another place: a line shows where they would go, or a sentence why they can't.
 
 use super::alternates;
-use super::drop::{At, Found, LegSpot, Mark, for_alternate, for_legs, for_stage, for_thing};
+use super::drop::{At, Found, LegSpot, Mark, for_alternate, for_branch, for_legs, for_stage, for_thing};
 use super::row::{HEIGHT, depth, indent};
 use super::rows::Row;
-use crate::command::{Queue, Selection};
+use crate::command::{BranchId, Queue, Selection};
 use crate::panels::Scene;
 use crate::panels::binding::DraggedVariable;
 use crate::theme;
@@ -25,6 +25,8 @@ const EDGE: f32 = 18.0;
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum What {
     Legs(Vec<Id>),
+    /// A branch of a fork, with its legs.
+    Branch(BranchId),
     Stage(Id),
     Alternate(Id),
     /// A fix, a zone and the like.
@@ -34,6 +36,8 @@ enum What {
 /// A place for what is dragged.
 enum Where {
     Legs(LegSpot),
+    /// Before which one of its fork.
+    Branch(Option<Id>),
     Stage(StageSpot),
     Alternate(Option<Id>),
     /// Before which one of its list.
@@ -79,8 +83,9 @@ pub(super) struct Asking {
 impl Drag {
     /// Of a row, and what is selected with it; `None`: it stays where it is.
     pub fn begin(row: &Row, scene: &Scene<'_>) -> Option<Self> {
-        let selection = row.selection.as_ref().filter(|_| row.branch.is_none())?;
+        let selection = row.selection.as_ref()?;
         let what = match selection {
+            _ if let Some(branch) = row.as_branch() => What::Branch(branch),
             Selection::Leg(id) => match scene.selected_legs() {
                 legs if legs.contains(id) => What::Legs(legs),
                 _ => What::Legs(vec![id.clone()]),
@@ -141,6 +146,9 @@ impl Drag {
     fn place(&self, rows: &[Row], at: At) -> Found<Where> {
         Ok(match &self.what {
             What::Legs(_) => for_legs(rows, at).map(|(mark, spot)| (mark, Where::Legs(spot)))?,
+            What::Branch(of) => {
+                for_branch(rows, at, of).map(|(mark, before)| (mark, Where::Branch(before)))?
+            }
             What::Stage(_) => for_stage(rows, at).map(|(mark, spot)| (mark, Where::Stage(spot)))?,
             What::Alternate(id) => match for_thing(rows, at, &Selection::Emergency(id.clone())) {
                 Ok((mark, before)) => (mark, Where::Thing(before)),
@@ -157,6 +165,9 @@ impl Drag {
             (What::Legs(legs), Where::Legs(LegSpot::At(spot))) => create::relocate(plan, legs, &spot)?,
             (What::Legs(legs), Where::Legs(LegSpot::Branch { fork, branch })) => {
                 create::into_branch(plan, legs, &fork, &branch)?
+            }
+            (What::Branch(of), Where::Branch(before)) => {
+                create::relocate_branch(plan, &of.fork, &of.branch, before.as_ref())
             }
             (What::Stage(stage), Where::Stage(spot)) => create::relocate_stage(plan, stage, &spot),
             (What::Alternate(id), Where::Thing(before)) => create::relocate_thing(plan, id, before.as_ref()),

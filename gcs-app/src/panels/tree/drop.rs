@@ -3,7 +3,7 @@
 use super::keyboard::parent;
 use super::make::Group;
 use super::rows::Row;
-use crate::command::Selection;
+use crate::command::{BranchId, Selection};
 use flight_plan::create::StageSpot;
 use flight_plan::{Id, Spot};
 
@@ -71,6 +71,23 @@ pub(super) fn for_legs(rows: &[Row], at: At) -> Found<LegSpot> {
         (_, true) if is_leg => behind(rows, at.row, at.depth),
         _ => onto(),
     })
+}
+
+/// For a branch: before which one of its fork; `None`: at the end.
+pub(super) fn for_branch(rows: &[Row], at: At, of: &BranchId) -> Found<Option<Id>> {
+    const NOWHERE: &str = "A branch goes among those of its fork.";
+    let alike = |row: usize| rows.get(row)?.as_branch().filter(|other| other.fork == of.fork);
+    // over a leg in it, a branch is meant
+    let mut row = at.row;
+    while alike(row).is_none() {
+        row = parent(rows, row).ok_or(NOWHERE)?;
+    }
+    let depth = rows.get(row).ok_or(NOWHERE)?.depth;
+    if row == at.row && at.down < 0.5 {
+        return Ok((Mark::Above { row, depth }, alike(row).map(|other| other.branch)));
+    }
+    let next = end(rows, row);
+    Ok((Mark::Below { row: next - 1, depth }, alike(next).map(|other| other.branch)))
 }
 
 /// Behind a leg; where it is the last in its loop, behind the loop if the pointer is that far to the left.
@@ -243,6 +260,21 @@ mod tests {
         for row in [0, 9, 10, 99] {
             assert!(for_legs(&rows, At { row, down: 0.5, depth: 0 }).is_err(), "{row}");
         }
+    }
+
+    #[test]
+    fn branches_go_among_those_of_their_fork() {
+        let fork = r#"<intersection id="fork"><branch id="on"/><branch id="look"/>"#;
+        let plan = PLAN.replace(r#"<intersection id="fork"><branch id="on"/>"#, fork);
+        let rows = rows(&flight_plan::read(plan).plan, &BTreeSet::new());
+        let row = |key: &str| rows.iter().position(|row| row.key == key).unwrap();
+        let (on, look) = (row("branch on of fork"), row("branch look of fork"));
+        let of = BranchId { fork: "fork".into(), branch: "look".into() };
+        let spot = |row, down| for_branch(&rows, At { row, down, depth: 0 }, &of);
+        assert_eq!(spot(on, 0.2), Ok((Mark::Above { row: on, depth: 3 }, Some("on".into()))));
+        assert_eq!(spot(on, 0.8), Ok((Mark::Below { row: on, depth: 3 }, Some("look".into()))));
+        assert_eq!(spot(look, 0.8), Ok((Mark::Below { row: look, depth: 3 }, None)));
+        assert!(spot(row("leg a"), 0.5).is_err());
     }
 
     #[test]

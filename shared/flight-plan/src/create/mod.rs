@@ -31,7 +31,7 @@ pub use thing::{
 };
 pub(crate) use thing::{every_leg, legs_in};
 pub use trial::{RUN_UP_M, is_tried, trial};
-pub use ways::{delete_branch, rename_branch, shift_branch, ways};
+pub use ways::{delete_branch, relocate_branch, rename_branch, shift_branch, ways};
 
 use crate::edit::lists;
 use crate::{FlightPlan, Id};

@@ -94,6 +94,21 @@ pub fn shift_branch(plan: &FlightPlan, fork: &Id, branch: &Id, by: isize) -> Opt
     })
 }
 
+/// A fork with a branch before another one of its own, or at the end. `None`: it is there already, or there is no such branch.
+pub fn relocate_branch(plan: &FlightPlan, fork: &Id, branch: &Id, before: Option<&Id>) -> Option<Edit> {
+    with_branches(plan, fork, |branches| {
+        let from = branches.iter().position(|way| way.id == *branch)?;
+        let moved = branches.remove(from);
+        let to = match before {
+            Some(before) if before == branch => from,
+            Some(before) => branches.iter().position(|way| way.id == *before)?,
+            None => branches.len(),
+        };
+        branches.insert(to, moved);
+        (to != from).then_some(())
+    })
+}
+
 /// Takes a branch and the legs that are flown on it alone out. `None`: it is the only one.
 pub fn delete_branch(plan: &FlightPlan, fork: &Id, branch: &Id) -> Option<Edit> {
     let (list, index) = list_of(plan, fork)?;
@@ -204,5 +219,13 @@ mod tests {
         let moved = apply(shift_branch(&before, &"f".into(), &"look".into(), -1));
         assert_eq!(moved.any_leg(&"f".into()).unwrap().as_fork().unwrap().branches[0].id.as_str(), "look");
         assert_eq!(shift_branch(&before, &"f".into(), &"look".into(), 1), None);
+        let relocated = |branch: &str, to: Option<&str>| {
+            relocate_branch(&before, &"f".into(), &branch.into(), to.map(Id::new).as_ref())
+        };
+        assert_eq!(apply(relocated("look", Some("on"))), moved);
+        assert_eq!(apply(relocated("on", None)), moved);
+        for (branch, to) in [("on", Some("look")), ("look", None), ("look", Some("look")), ("none", None)] {
+            assert_eq!(relocated(branch, to), None, "{branch} {to:?}");
+        }
     }
 }
