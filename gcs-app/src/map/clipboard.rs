@@ -21,7 +21,15 @@ type Read = Result<Vec<Feature>, String>;
 
 /// Drawings that are being read, each on a thread of its own, in the order in which they were pasted.
 #[derive(Debug, Default)]
-pub struct Pastes(VecDeque<Task<Read>>);
+pub struct Pastes(VecDeque<Paste>);
+
+/// A drawing on its way.
+#[derive(Debug)]
+struct Paste {
+    read: Task<Read>,
+    /// Behind what was selected when it was pasted, or why it can't be put anywhere.
+    aim: Result<Aim, String>,
+}
 
 impl Pastes {
     /// One is being read.
@@ -31,19 +39,21 @@ impl Pastes {
 
     fn begin(&mut self, format: Format, text: String, canvas: &Canvas<'_>) {
         let read = move || drawings::read(format, &text);
-        self.0.push_back(Task::begin(canvas.scene.layers.wake(), read));
+        let read = Task::begin(canvas.scene.layers.wake(), read);
+        self.0.push_back(Paste { read, aim: aim(canvas) });
     }
 
     /// Puts what was read into the plan.
     fn take(&mut self, canvas: &Canvas<'_>, queue: &mut Queue) {
         let Some(first) = self.0.front() else { return };
-        let read = match first.take() {
+        let read = match first.read.take() {
             Taken::NotYet => return,
             Taken::Done(read) => read,
             Taken::Failed => Err("The drawing could not be read: open it as a file.".into()),
         };
-        self.0.pop_front();
-        paste_drawing(read, canvas, queue);
+        if let Some(Paste { aim, .. }) = self.0.pop_front() {
+            paste_drawing(read, aim, canvas, queue);
+        }
     }
 }
 
@@ -123,14 +133,14 @@ fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
 }
 
 /// A drawing becomes legs where it was drawn, or answers the guide.
-fn paste_drawing(drawing: Read, canvas: &Canvas<'_>, queue: &mut Queue) {
+fn paste_drawing(drawing: Read, aim: Result<Aim, String>, canvas: &Canvas<'_>, queue: &mut Queue) {
     let scene = canvas.scene;
     let plan = scene.document.plan();
     if start::is_wanted(scene) {
         let answered = drawing.and_then(|features| drawings::answer(&features, &scene.view.guide));
         return queue.view(answered.map_or_else(ViewCommand::Notice, ViewCommand::Guide));
     }
-    match aim(canvas) {
+    match aim {
         Ok(Aim::Spot(at)) => {
             let approach = new_leg::approach(canvas, &Aim::Spot(at.clone()));
             put(drawing.and_then(|features| drawings::legs(&features, at, approach, plan)), queue);

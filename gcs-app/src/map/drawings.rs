@@ -9,7 +9,8 @@ use flight_plan::clipboard::{MAX_BYTES, Pasted};
 use flight_plan::create::{self, Approach, Drawn, LegChoice};
 use flight_plan::template::Extent;
 use flight_plan::{
-    Area, Edit, Fix, FlightPlan, Leg, LegKind, Place, Scan, Spot, Thing, Value, Zone, ZoneKind, ZoneShape,
+    Area, Edit, Fix, FlightPlan, Leg, LegKind, Pattern, Place, Scan, Spacing, Spot, Thing, Value, Zone,
+    ZoneKind, ZoneShape,
 };
 use geometry::LatLon;
 use interchange::{Areas, Feature, Format, Shape};
@@ -186,11 +187,13 @@ pub fn legs(
     let mut plan = plan.clone();
     let (mut legs, mut edits) = (Vec::new(), Vec::new());
     for feature in features {
+        has_places(feature)?;
         let (choice, drawn) = drawn(&feature.shape);
         let leg = new_leg::leg(choice, &drawn, &Aim::Spot(at.clone()), approach.take(), &plan);
         let mut leg =
             leg.ok_or_else(|| format!("Nothing can be made of {}: draw it larger.", feature.place))?;
         feature.name.trim().clone_into(&mut leg.name);
+        keep_to_line(&mut leg);
         cut_holes(&mut leg, &feature.shape);
         let next = Spot::After(leg.id.clone());
         legs.push(leg.id.clone());
@@ -201,6 +204,24 @@ pub fn legs(
     Ok(Pasted { legs, things: Vec::new(), edit: Edit::All(edits) })
 }
 
+/// As many places as its shape needs: those that can't be read have been left out. The sentence says why it can't be drawn.
+fn has_places(feature: &Feature) -> Result<(), String> {
+    let on_earth =
+        |vertices: &[interchange::Vertex]| vertices.iter().filter(|v| v.position.is_valid()).count();
+    let (has, all, needs) = match &feature.shape {
+        Shape::Point(vertex) => (usize::from(vertex.position.is_valid()), 1, 1),
+        Shape::Line(line) => (on_earth(line), line.len(), 2),
+        Shape::Area { outer, .. } => (outer.iter().filter(|at| at.is_valid()).count(), outer.len(), 3),
+    };
+    if has >= needs && has == all {
+        return Ok(());
+    }
+    Err(format!(
+        "{}: {has} of its coordinates can be read, and it needs {needs} or more, all of them on Earth: mend them (latitudes from -90 to 90, longitudes from -180 to 180) in the program that they come from.",
+        feature.place
+    ))
+}
+
 fn drawn(shape: &Shape) -> (LegChoice, Drawn) {
     let place = |at: LatLon| Place::Position(Value::Constant(at));
     match shape {
@@ -209,6 +230,15 @@ fn drawn(shape: &Shape) -> (LegChoice, Drawn) {
             (LegChoice::Corridor, Drawn::Line(line.iter().map(|vertex| place(vertex.position)).collect()))
         }
         Shape::Area { outer, .. } => (LegChoice::Scan, Drawn::Area(outer.clone())),
+    }
+}
+
+/// One track along a line that was drawn elsewhere: it is what is to be looked at. Who wants more makes the corridor wider.
+fn keep_to_line(leg: &mut Leg) {
+    if let LegKind::Pattern(Pattern::Corridor { width_m, spacing: Spacing::Metres(apart_m), .. }) =
+        &mut leg.kind
+    {
+        width_m.clone_from(apart_m);
     }
 }
 

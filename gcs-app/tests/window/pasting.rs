@@ -164,12 +164,18 @@ fn pasted_coordinates_are_a_waypoint() {
 #[test]
 fn what_cannot_be_pasted_is_refused_in_words() {
     let mut window = window();
+    let line = |coordinates: &str| {
+        format!(
+            "<kml><Placemark><LineString><coordinates>{coordinates}</coordinates></LineString></Placemark></kml>"
+        )
+    };
     for (text, why) in [
         ("x".repeat(50 << 20), "50 MB"),
         ("hello".into(), "neither legs nor a place"),
         ("<html/>".into(), "no flight plan"),
         ("<kml/>".into(), "no point, line or area"),
         ("<kml>".into(), "That KML can't be pasted"),
+        (line("abc,def 9.9,46.5"), "line 1: 1 of its coordinates can be read"),
         (format!("<kml>{}</kml>", " ".repeat(5 << 20)), "more than 4 MB"),
     ] {
         window.paste(&text);

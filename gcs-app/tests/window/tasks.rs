@@ -9,7 +9,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_exec::Command;
-use flight_plan::{Cause, FlightPlan, Id, LegKind, Pattern, compile};
+use flight_plan::{Cause, FlightPlan, Id, LegKind, Pattern, Spacing, compile};
 use gcs_app::assets;
 use gcs_app::link::{Call, Reply};
 
@@ -103,8 +103,12 @@ fn corridor_along_a_pasted_kml_line() {
     let plan = window.plan();
     let made = plan.leg(&window.selected().as_str().into()).unwrap();
     assert_eq!(made.leg.name, "The road");
-    let LegKind::Pattern(Pattern::Corridor { route, .. }) = &made.leg.kind else { panic!("no corridor") };
-    assert_eq!(route.len(), 3);
+    let LegKind::Pattern(Pattern::Corridor { route, width_m, spacing: Spacing::Metres(apart_m) }) =
+        &made.leg.kind
+    else {
+        panic!("no corridor")
+    };
+    assert_eq!((route.len(), width_m), (3, apart_m), "one track, along the line");
     window.fill_in(Role::SpinButton, "Width", "200");
     assert!(window.gestures <= 5, "{} gestures", window.gestures);
     flies(&mut window);

@@ -194,7 +194,7 @@ fn document(text: &str) -> Result<FlightPlan, String> {
         ));
     }
     if !text.trim_start().starts_with('<') {
-        return Err("That is neither legs nor a place: copy legs, or coordinates as 36.54, -84.23.".into());
+        return Err("That is neither legs nor a place nor a drawing: copy legs, coordinates as 36.54, -84.23, or KML, GeoJSON or GPX.".into());
     }
     let reading = read(text);
     match reading.problems.iter().find(|problem| Problem::is_error(problem)) {
