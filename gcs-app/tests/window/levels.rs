@@ -2,6 +2,7 @@
 
 use super::{SQUARE, Window};
 use egui::vec2;
+use egui_kittest::kittest::Queryable;
 use flight_plan::{Altitude, AltitudeReference, Value, transform};
 
 fn altitude(window: &Window, leg: &str) -> Option<Altitude> {
@@ -48,4 +49,15 @@ fn altitude_that_is_a_formula_is_not_dragged() {
     window.drag(mark, vec2(0.0, -25.0));
     assert_eq!(window.plan(), before);
     assert!(window.app().view().notice.as_ref().is_some_and(|why| why.contains("formula")));
+}
+
+/// At the size that the window opens with.
+#[test]
+fn what_an_altitude_counts_from_can_be_read() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.click("TF side1");
+    let choice = window.harness.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Above").rect();
+    assert!(choice.width() > 70.0 && choice.right() < 1280.0, "{choice}");
+    assert!(window.paints("home"));
 }

@@ -41,18 +41,23 @@ pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     }
 }
 
+/// Room for the longest word for what it is measured from, which has a row of its own where that is not there; and for the
+/// button that leaves it out. Screen points.
+const REFERENCE_WIDTH: f32 = 88.0;
+const REMOVE_WIDTH: f32 = 24.0;
+
 fn own(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, reference: &Property) {
-    let below = field::row_with_help(ui, one.label, one.help, |ui| {
+    let (below, has_room) = field::row_with_help(ui, one.label, one.help, |ui| {
         let below = value::field(ui, page, metres);
-        if below.is_none() {
+        // a formula takes the whole row
+        let has_room = below.is_none() && ui.available_width() >= REFERENCE_WIDTH + REMOVE_WIDTH;
+        if has_room {
             measured_from(ui, page, one, metres, reference);
         }
-        below
+        (below, has_room)
     });
-    let is_formula = below.is_some();
     value::finish(ui, page, metres, below);
-    if is_formula {
-        // a formula takes the whole row
+    if !has_room {
         field::row_with_help(ui, "", "", |ui| measured_from(ui, page, one, metres, reference));
     }
     remark(ui, page, metres, reference);
@@ -61,7 +66,7 @@ fn own(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, ref
 /// The choice of what it is measured from, and leaving it out.
 fn measured_from(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, reference: &Property) {
     let chosen = ui.scope(|ui| {
-        ui.set_max_width(ui.available_width() - 24.0);
+        ui.set_max_width(ui.available_width() - REMOVE_WIDTH);
         value::chosen(ui, page, reference)
     });
     if let Some(word) = chosen.inner.flatten() {
