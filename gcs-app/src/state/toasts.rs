@@ -46,6 +46,11 @@ impl Toasts {
         self.log.add(now_s, level, WINDOW, text);
     }
 
+    /// What these say is over: they go at once.
+    pub fn withdraw(&mut self, is_over: impl Fn(&str) -> bool) {
+        self.list.retain(|toast| !is_over(&toast.text));
+    }
+
     /// One is being read: it stays.
     pub fn keep(&mut self, id: u64, now_s: f64) {
         for toast in self.list.iter_mut().filter(|toast| toast.id == id) {
@@ -115,6 +120,15 @@ mod tests {
         assert_eq!(texts(&toasts), ["a"]);
         toasts.dismiss(1);
         assert!(texts(&toasts).is_empty());
+    }
+
+    #[test]
+    fn what_is_over_is_not_said_any_more() {
+        let mut toasts = Toasts::default();
+        toasts.add(0.0, Level::Caution, "a: lost");
+        toasts.add(0.0, Level::Caution, "b: lost");
+        toasts.withdraw(|text| text.starts_with("a: "));
+        assert_eq!((texts(&toasts), toasts.log().len()), (vec!["b: lost"], 2));
     }
 
     #[test]
