@@ -30,6 +30,10 @@ pub struct Document {
     id: u64,
     /// Its changes were not wanted any more when another took its place.
     is_discarded: bool,
+    /// Another document was saved in its file.
+    is_superseded: bool,
+    /// Its edits by then, if it had no changes of its own: without more of them nobody misses it.
+    superseded_at: Option<u64>,
 }
 
 impl Default for Document {
@@ -60,6 +64,8 @@ impl Document {
             edits: 0,
             id: 0,
             is_discarded: false,
+            is_superseded: false,
+            superseded_at: None,
         };
         document.changed();
         document.id = document.version;
@@ -128,11 +134,15 @@ impl Document {
     }
     /// It differs from its file, and nobody said that it need not be kept.
     pub fn would_be_missed(&self) -> bool {
-        self.is_dirty() && !self.is_discarded
+        self.is_dirty() && !self.is_discarded && self.superseded_at != Some(self.edits)
     }
     /// Its changes are not wanted any more, or wanted again. Whoever edits it wants them.
     pub fn set_discarded(&mut self, is_discarded: bool) {
         self.is_discarded = is_discarded;
+    }
+    /// Another document was saved in its file: written over it, that would be lost.
+    pub fn is_superseded(&self) -> bool {
+        self.is_superseded
     }
     /// Its file holds what could not be read: written over it, that would be lost.
     pub fn is_partial(&self) -> bool {
@@ -226,13 +236,22 @@ impl Document {
     /// A version of it was written to `path`, which is its file now, in these words.
     pub fn saved(&mut self, version: u64, path: PathBuf, text: Arc<str>, stamp: Option<Stamp>) {
         (self.path, self.text, self.stamp) = (Some(path), Some(text), stamp);
-        self.is_partial = false;
+        (self.is_partial, self.is_superseded, self.superseded_at) = (false, false, None);
         if version == self.version {
             self.history.mark_saved();
         } else {
             // what is shown now may be what the file had before
             self.history.mark_unsaved();
         }
+    }
+
+    /// Another document was saved in its file, which is in this state now.
+    pub fn superseded(&mut self, stamp: Option<Stamp>) {
+        if !self.is_dirty() {
+            self.superseded_at = Some(self.edits);
+        }
+        (self.is_superseded, self.stamp) = (true, stamp);
+        self.history.mark_unsaved();
     }
 
     /// Its file no longer has it.

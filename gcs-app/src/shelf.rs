@@ -1,6 +1,7 @@
 //! Documents that gave way to others. Undo and redo reach them for as long as the window lives.
 
 use crate::document::Document;
+use std::path::Path;
 
 /// Documents on either side hold so much together, bytes; then the oldest without unsaved changes are forgotten.
 const MOST_BYTES: usize = 512 << 20;
@@ -93,6 +94,15 @@ impl Shelf {
         true
     }
 
+    /// A document was saved: others of the same file are not in it any more, and no other program did that.
+    pub fn saved(&mut self, shown: &mut Document, id: u64) {
+        let Some(saved) = self.find(shown, id) else { return };
+        let (Some(path), stamp) = (saved.path().map(Path::to_owned), saved.stamp()) else { return };
+        let all = std::iter::once(shown).chain(&mut self.before).chain(&mut self.after);
+        let others = all.filter(|other| other.id() != id && other.path() == Some(path.as_path()));
+        others.for_each(|other| other.superseded(stamp));
+    }
+
     /// A document by its number, wherever it is.
     pub fn find<'d>(&'d mut self, shown: &'d mut Document, id: u64) -> Option<&'d mut Document> {
         let kept = self.before.iter_mut().chain(&mut self.after);
@@ -180,6 +190,29 @@ mod tests {
         assert_eq!(forth.count(), 3);
         assert_eq!(shown.plan().name, "c");
         assert_eq!(names(shelf.unsaved(&shown)), ["c", "b", "a, edited"]);
+    }
+
+    #[test]
+    fn a_document_whose_file_another_one_was_saved_in_is_missed_only_when_it_was_edited() {
+        let (mut shelf, mut shown) = (Shelf::default(), named("old", false));
+        shelf.open(&mut shown, named("new", false));
+        shown.replace(FlightPlan { name: "newer".into(), ..FlightPlan::default() });
+        let (id, version) = (shown.id(), shown.version());
+        shown.saved(version, "/a.xml".into(), "".into(), None);
+        shelf.saved(&mut shown, id);
+        assert!(names(shelf.unsaved(&shown)).is_empty() && !shown.is_superseded());
+        while shelf.can_undo(&shown) {
+            shelf.undo(&mut shown);
+        }
+        assert!(shown.plan().name == "old" && shown.is_dirty() && shown.is_superseded());
+        shelf.redo(&mut shown);
+        shelf.redo(&mut shown);
+        assert!(shown.plan().name == "newer" && names(shelf.unsaved(&shown)).is_empty());
+        shelf.undo(&mut shown);
+        shelf.undo(&mut shown);
+        shown.replace(FlightPlan { name: "old, edited".into(), ..FlightPlan::default() });
+        shelf.open(&mut shown, named("other", false));
+        assert_eq!(names(shelf.unsaved(&shown)), ["new", "old, edited"]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The document and its files: opening, saving, asking where, and what was never saved.
 
 use super::App;
+use super::file_name::file_name;
 use crate::command::Replacement;
 use crate::document::Document;
 use crate::export::Exported;
@@ -77,7 +78,11 @@ impl App {
             FileEvent::Saved { path, text, document, version, stamp } => {
                 self.saving.remove(&document);
                 self.recent.add(&path);
-                self.toasts.add(now_s, Level::Info, format!("Saved {}", path.display()));
+                let name = path.display().to_string();
+                self.toasts.withdraw(|said| said.starts_with(&name));
+                self.toasts.add(now_s, Level::Info, format!("Saved {name}"));
+                // why it could not be saved before
+                self.view.notice = None;
                 self.saved(document, version, path, text, stamp);
             }
             FileEvent::NotSaved { document, why } => self.not_saved(document, why),
@@ -104,6 +109,7 @@ impl App {
             self.view.notice = Some(why);
         }
         saved.saved(version, path, text, stamp);
+        self.shelf.saved(&mut self.document, document);
     }
 
     fn not_saved(&mut self, document: u64, why: Option<String>) {
@@ -184,7 +190,7 @@ impl App {
 
     pub(super) fn ask_export(&mut self) {
         if let Some(exported) = &self.view.exported {
-            self.files.ask_export(suggested_name(&exported.name, exported.format.name()), exported.clone());
+            self.files.ask_export(file_name(&exported.name, exported.format.name()), exported.clone());
         }
     }
 
@@ -244,6 +250,7 @@ impl App {
     }
 
     pub(super) fn keep_mine(&mut self) {
+        self.view.notice = None;
         let stamp = self.view.changed_outside.take();
         self.document.set_stamp(stamp);
         self.document.differs_from_file();
@@ -258,9 +265,9 @@ impl App {
         match self.document.path() {
             // a held key asks again and again
             _ if self.is_saving() => {}
-            Some(path) if self.document.is_partial() && self.document.is_dirty() => {
-                let why = "could not be read whole, and what is missing here would be lost in it. Save under another name, or replace it all the same.";
-                self.view.notice = Some(format!("{} {why}", path.display()));
+            Some(path) if let Some(why) = would_be_lost(&self.document) => {
+                let what_to_do = "Save under another name, or replace it all the same.";
+                self.view.notice = Some(format!("{} {why}. {what_to_do}", path.display()));
                 self.ask_save();
             }
             Some(path) => {
@@ -335,7 +342,7 @@ impl App {
     fn suggested_name(&self) -> String {
         let name = self.document.path().and_then(Path::file_name);
         name.map_or_else(
-            || suggested_name(&self.document.plan().name, "xml"),
+            || file_name(&self.document.plan().name, "xml"),
             |name| name.to_string_lossy().into_owned(),
         )
     }
@@ -346,9 +353,13 @@ impl App {
         self.saving.remove(&self.document.id());
         let beside = self.document.path().and_then(Path::parent).map(Path::to_owned);
         let folder = beside.filter(|f| !f.as_os_str().is_empty()).or_else(std::env::home_dir);
+        if purpose == Purpose::Open {
+            // what was said before is of something else
+            self.view.notice = None;
+        }
         let name = match (purpose, &self.view.exported) {
             (Purpose::Open, _) => String::new(),
-            (Purpose::Export(format), Some(exported)) => suggested_name(&exported.name, format.name()),
+            (Purpose::Export(format), Some(exported)) => file_name(&exported.name, format.name()),
             (Purpose::Save | Purpose::Export(_), _) => self.suggested_name(),
         };
         let folder = folder.unwrap_or_else(|| ".".into());
@@ -377,6 +388,16 @@ impl App {
     }
 }
 
+/// What would be lost if the document were written to its file.
+fn would_be_lost(document: &Document) -> Option<&'static str> {
+    match (document.is_partial(), document.is_superseded()) {
+        _ if !document.is_dirty() => None,
+        (true, _) => Some("could not be read whole, and what is missing here would be lost in it"),
+        (_, true) => Some("has another plan that was saved from this window since, and that would be lost"),
+        (false, false) => None,
+    }
+}
+
 /// The document for its own file, as the window knows that.
 fn known(document: &Document) -> Writing {
     Writing {
@@ -390,29 +411,4 @@ fn known(document: &Document) -> Writing {
 
 fn over_if(over: bool) -> Over {
     if over { Over::Anything } else { Over::Nothing }
-}
-
-/// The plan's name as the name of a file; letters that folders and shells read otherwise become dashes.
-fn suggested_name(plan: &str, extension: &str) -> String {
-    let plain = |c: char| if c.is_alphanumeric() || " -_.()".contains(c) { c } else { '-' };
-    let name: String = plan.trim().chars().take(60).map(plain).collect();
-    let name = name.trim_matches(['.', '-', ' ']);
-    format!("{}.{extension}", if name.is_empty() { "plan" } else { name })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_plans_name_becomes_the_name_of_a_file() {
-        for (plan, file) in [
-            ("Fire watch", "Fire watch.xml"),
-            ("", "plan.xml"),
-            ("../a/b", "a-b.xml"),
-            (" Überflug: 7 Türme? ", "Überflug- 7 Türme.xml"),
-        ] {
-            assert_eq!(suggested_name(plan, "xml"), file);
-        }
-    }
 }

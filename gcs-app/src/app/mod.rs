@@ -1,6 +1,7 @@
 //! The window. `logic` drains what the workers found out, `ui` draws and then carries out what was
 //! asked for. Nothing here waits for file, network or computation.
 
+mod file_name;
 mod filing;
 mod focus;
 mod ground;

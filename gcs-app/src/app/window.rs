@@ -105,7 +105,7 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
         app.connect(&endpoint, &vehicle.as_str().into(), creation.egui_ctx.input(|i| i.time));
     }
     if let Some(path) = options.file {
-        app.files.open(path);
+        app.files.open(std::path::absolute(&path).unwrap_or(path));
     }
     app.shade_ground(&creation.egui_ctx);
     let folder = eframe::storage_dir("legwork");

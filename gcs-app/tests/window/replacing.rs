@@ -5,6 +5,7 @@ use super::filing::{edit, name, open, until_listed, window, window_on};
 use super::interchange::{fixture, until_imported};
 use super::{SQUARE, Window};
 use egui::{Key, vec2};
+use gcs_app::files::Stamp;
 
 #[test]
 fn what_was_discarded_is_not_asked_about_again() {
@@ -59,6 +60,34 @@ fn a_saved_plan_that_was_undone_and_redone_is_saved() {
         window.press_ctrl(key);
     }
     assert_eq!(window.app().document().path(), Some(second.as_path()));
+    window.press_ctrl(Key::Q);
+    assert!(window.app().is_leaving() && !window.shows("unsaved changes"));
+}
+
+#[test]
+fn a_file_that_only_this_window_has_saved_was_changed_by_no_other_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plan.xml");
+    let mut window = window_on(&path, SQUARE);
+    let first = window.app().document().id();
+    open(&mut window, &path);
+    window.until("opened again", |app| app.document().id() != first);
+    edit(&mut window);
+    window.press_ctrl(Key::S);
+    window.until("saved", |app| !app.document().is_dirty());
+    let saved = std::fs::read_to_string(&path).unwrap();
+    window.press_ctrl(Key::Z);
+    window.press_ctrl(Key::Z);
+    let document = window.app().document();
+    assert!(document.id() == first && document.is_dirty());
+    assert_eq!(document.stamp(), Stamp::of(&path), "nobody else wrote it");
+    window.press_ctrl(Key::S);
+    until_listed(&mut window);
+    assert!(window.shows("saved from this window since"));
+    window.press(Key::Escape);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), saved);
+    window.press_ctrl(Key::Y);
+    window.press_ctrl(Key::Y);
     window.press_ctrl(Key::Q);
     assert!(window.app().is_leaving() && !window.shows("unsaved changes"));
 }
