@@ -316,3 +316,15 @@ fn a_path_that_ends_at_an_error_grows_when_that_is_mended() {
     let forecast = &window.app().analysis().forecast;
     assert!(!forecast.is_beginning && forecast.length_m() > short_m);
 }
+
+#[test]
+fn what_stands_below_an_alarm_stays_in_its_place_when_it_is_raised() {
+    let mut window = opened(SQUARE);
+    let at = |window: &Window| window.harness.get_by_role_and_label(Role::Slider, "Wind speed").rect().min;
+    let before = at(&window);
+    for cause in [Cause::Engine, Cause::Operator] {
+        choose(&mut window, cause_name(cause));
+        window.until("the way out", |app| app.analysis().diversion().is_some());
+        assert_eq!(at(&window), before, "{cause:?}");
+    }
+}

@@ -5,7 +5,7 @@ use crate::command::{PreviewCommand, Queue};
 use crate::panels::{Scene, group_title};
 use crate::theme;
 use crate::units;
-use egui::{RichText, Ui};
+use egui::{RichText, Ui, vec2};
 use flight_exec::rehearse::Reach;
 use flight_plan::Cause;
 
@@ -48,11 +48,22 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if ui.checkbox(&mut covered, "Coverage of the whole path").on_hover_text(hover).changed() {
         queue.preview(PreviewCommand::Coverage(covered));
     }
-    if let Some(known) = scene.analysis.coverage().filter(|c| scene.view.coverage && !c.is_complete()) {
-        ui.add(egui::ProgressBar::new(known.progress() as f32).desired_height(6.0));
+    match scene.analysis.coverage().filter(|c| scene.view.coverage && !c.is_complete()) {
+        Some(known) => {
+            ui.add(egui::ProgressBar::new(known.progress() as f32).desired_height(BAR_HEIGHT));
+        }
+        None => _ = ui.allocate_space(vec2(1.0, BAR_HEIGHT)),
     }
-    outcome(ui, scene);
+    ui.scope(|ui| {
+        ui.set_min_height(OUTCOME_HEIGHT);
+        outcome(ui, scene);
+    });
 }
+
+/// Of the coverage's progress, screen points.
+const BAR_HEIGHT: f32 = 6.0;
+/// Room for what there usually is to say of an alarm, so that what stands below stays under the pointer when one is raised.
+const OUTCOME_HEIGHT: f32 = 100.0;
 
 fn alarm(ui: &mut Ui, cause: Cause, scene: &Scene<'_>, queue: &mut Queue) {
     let (raised, name) = (scene.view.alarm == Some(cause), cause_name(cause));
