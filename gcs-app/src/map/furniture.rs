@@ -28,7 +28,7 @@ pub const NARROW: f32 = 600.0;
 /// From one tool to the next, screen points.
 const TOOL: f32 = 36.0;
 /// From the legend's upper edge to the map's lower one, screen points.
-const LEGEND: f32 = 116.0;
+const LEGEND: f32 = 148.0;
 /// Height of the line that names the map's sources, screen points.
 const SOURCES: f32 = 16.0;
 /// Length of the scale bar with its label, screen points.
@@ -97,7 +97,7 @@ fn scale(painter: &Painter, view: &View, map: Rect, units: Units, p: &Palette) {
 type Line = fn(&Painter, Pos2, Pos2, &Palette);
 
 /// Line styles and what they mean.
-const LINES: [(&str, Line); 5] = [
+const LINES: [(&str, Line); 7] = [
     ("planned", |painter, a, b, p| {
         painter.line_segment([a, b], Stroke::new(2.0, p.accent));
     }),
@@ -113,9 +113,15 @@ const LINES: [(&str, Line); 5] = [
     ("glide", |painter, a, b, p| {
         painter.extend(Shape::dashed_line(&[a, b], Stroke::new(2.2, p.text), 8.0, 5.0));
     }),
+    ("other way out", |painter, a, b, p| {
+        painter.extend(Shape::dashed_line(&[a, b], Stroke::new(1.2, p.weak), 8.0, 5.0));
+    }),
+    ("branch", |painter, a, b, p| {
+        painter.extend(Shape::dashed_line(&[a, b], Stroke::new(1.4, p.accent), 8.0, 5.0));
+    }),
 ];
 /// Size of what they take, screen points.
-const LINES_SIZE: Vec2 = vec2(92.0, 16.0 * LINES.len() as f32);
+const LINES_SIZE: Vec2 = vec2(112.0, 16.0 * LINES.len() as f32);
 
 fn legend(painter: &Painter, map: Rect, p: &Palette) {
     let origin = map.left_bottom() + vec2(12.0, -30.0 - LINES_SIZE.y);
@@ -191,7 +197,9 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
         shown |= column.min_rect();
     }
     tour::mark(ui.ctx(), tour::TOOLS, shown);
-    let Some(status) = tools.status(scene) else { return };
+    let Some(status) = tools.status(scene) else {
+        return ui.data_mut(|data| data.remove::<Rect>(said_by_tool()));
+    };
     // beside the card for a new mission, where that lies on the map
     let card = if start::is_wanted(scene) && start::is_on(map) { start::WIDTH + 36.0 } else { 0.0 };
     let beside = Rect::from_min_max(
@@ -206,6 +214,17 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
             ui.horizontal_wrapped(|ui| tools.options(ui, scene));
         }
     });
+    ui.data_mut(|data| data.insert_temp(said_by_tool(), chip.min_rect()));
+}
+
+fn said_by_tool() -> egui::Id {
+    egui::Id::unique("what the tool in use says")
+}
+
+/// What is left of the map below what the tool in use says.
+pub fn below_tool(ctx: &egui::Context, map: Rect) -> Rect {
+    let said = ctx.data(|data| data.get_temp::<Rect>(said_by_tool())).filter(|said| map.intersects(*said));
+    said.map_or(map, |said| map.with_min_y(said.bottom()))
 }
 
 /// So many tools are in a column: there is a second one where the map is too low for one.

@@ -62,7 +62,8 @@ pub fn selection_of(problem: &Problem, scene: &Scene<'_>) -> Option<crate::comma
 
 fn failure(painter: &Painter, at: Pos2, why: &str, p: &Palette) {
     cross(painter, at, p.warning, p);
-    text::on_plate(painter, at + vec2(12.0, -8.0), &shortened(why), 11.5, p);
+    // below the name of what is there
+    text::on_plate(painter, at + vec2(12.0, 10.0), &shortened(why), 11.5, p);
 }
 
 fn cross(painter: &Painter, at: Pos2, colour: Color32, p: &Palette) {

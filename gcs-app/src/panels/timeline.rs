@@ -7,7 +7,7 @@ use crate::theme::{self, Palette};
 use crate::units;
 use egui::{Align2, FontId, Key, Painter, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
-/// In a row that is narrower, a sign has to do, screen points.
+/// In a row that is narrower, half of a name has to do, screen points.
 const NARROW: f32 = 420.0;
 /// How many times as fast as the flight the cursor may run.
 pub const SPEEDS: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0, 200.0];
@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
     speed(ui, scene, queue);
     let hover = "What if: other winds, values and branches, and alarms at the cursor";
-    let text = if ui.max_rect().width() < NARROW { "?" } else { "What if" };
+    let text = if ui.max_rect().width() < NARROW { "If…" } else { "What if" };
     let opens = ui.button(text);
     opens.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "What if"));
     if opens.on_hover_text(hover).clicked() {
