@@ -226,6 +226,8 @@ pub enum ViewCommand {
     EndStory,
     /// The demo is to be flown once more, from the beginning, in a new window.
     TellAgain,
+    /// Asks what is to become of the changes that the last window left behind, or puts the question aside.
+    AskRecovery(bool),
     /// This step of the tour, from 0; `None` ends it.
     Tour(Option<usize>),
     /// A message is being read: it stays.

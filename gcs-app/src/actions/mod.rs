@@ -48,6 +48,8 @@ pub enum Group {
     GoTo,
     /// Help.
     Help,
+    /// The end.
+    Quit,
 }
 
 impl Group {
@@ -68,6 +70,7 @@ impl Group {
             Self::Flight => "Flight",
             Self::GoTo => "Go to",
             Self::Help => "Help",
+            Self::Quit => "End",
         }
     }
 }

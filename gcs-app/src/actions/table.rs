@@ -101,6 +101,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::File, "save", "Save", &[ctrl(Key::S)], |_| document(DocumentCommand::Save)),
     entry(Group::File, "save-as", "Save as…", &[ctrl_shift(Key::S)], |_| document(DocumentCommand::AskSaveAs)),
     entry(Group::File, "import", "Import…", &[], |_| document(DocumentCommand::Replace(Replacement::AskImport))),
+    entry(Group::File, "recover", "Recover unsaved changes…", &[], recover),
     entry(Group::Export, "export-plan", "Export as QGC plan…", &[], |s| export(s, Format::Plan)),
     entry(Group::Export, "export-waypoints", "Export as WPL waypoints…", &[], |s| export(s, Format::Waypoints)),
     entry(Group::Export, "export-kml", "Export as KML…", &[], |s| export(s, Format::Kml)),
@@ -109,7 +110,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Export, "export-gpx", "Export as GPX…", &[], |s| export(s, Format::Gpx)),
     entry(Group::Export, "export-csv", "Export as CSV…", &[], |s| export(s, Format::Csv)),
     entry(Group::File, "take-aboard", "Take the plan aboard", &[], take_aboard),
-    entry(Group::File, "quit", "Quit", &[ctrl(Key::Q)], |_| document(DocumentCommand::Replace(Replacement::Quit))),
+    entry(Group::Quit, "quit", "Quit", &[ctrl(Key::Q)], |_| document(DocumentCommand::Replace(Replacement::Quit))),
 
     entry(Group::Edit, "undo", "Undo", &[ctrl(Key::Z)], undo),
     entry(Group::Edit, "redo", "Redo", &[ctrl_shift(Key::Z), ctrl(Key::Y)], redo),
@@ -195,6 +196,13 @@ fn document(command: DocumentCommand) -> Asked {
 
 fn view(command: ViewCommand) -> Asked {
     Ok(Command::View(command))
+}
+
+fn recover(scene: &Scene<'_>) -> Asked {
+    match scene.left_behind {
+        Some(_) => view(ViewCommand::AskRecovery(true)),
+        None => Err("The last window left nothing behind".into()),
+    }
 }
 
 fn preview(command: PreviewCommand) -> Asked {

@@ -4,6 +4,7 @@
 use super::{App, Now, path_aboard};
 use crate::command::{DocumentCommand, LinkCommand, Queue, ViewCommand};
 use crate::dock::Content;
+use crate::map::furniture::below_tool;
 use crate::panels::{
     Elevations, Scene, bar, browse, changed, consider, decision, emergency, field, flight, interchange, maps,
     push, recover, start, story, toasts, tour, unsaved,
@@ -77,8 +78,10 @@ impl App {
                 });
             }
             over_map(ui, floor, &scene, queue);
-            if let Some(found) = scene.left_behind {
-                floating(ui, "recover", floor, Align2::CENTER_CENTER, |ui| recover::show(ui, found, queue));
+            if let Some(found) = scene.left_behind.filter(|_| !scene.view.recovers_later) {
+                let may_close = !scene.is_asking();
+                let ask = |ui: &mut Ui| recover::show(ui, found, may_close, queue);
+                floating(ui, "recover", floor, Align2::CENTER_CENTER, ask);
             }
             notice(ui, floor, &scene, queue);
             toasts::show(ui, floor, &scene, queue);
@@ -154,7 +157,7 @@ fn announcements(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 fn notice(ui: &Ui, map: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(text) = &scene.view.notice else { return };
     let side = if decision::open(scene).is_some() { Align2::CENTER_BOTTOM } else { Align2::CENTER_TOP };
-    floating(ui, "notice", map, side, |ui| {
+    floating(ui, "notice", below_tool(ui.ctx(), map), side, |ui| {
         ui.set_max_width(NOTICE);
         ui.horizontal(|ui| {
             if field::small_button(ui, "✖", "Close this message") {

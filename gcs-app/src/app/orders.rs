@@ -260,6 +260,7 @@ impl App {
             ViewCommand::OpenReport(path) => self.files.show(path),
             ViewCommand::EndStory => self.story = None,
             ViewCommand::TellAgain => self.tell_again(),
+            ViewCommand::AskRecovery(asked) => self.view.recovers_later = !asked,
             ViewCommand::Tour(step) => self.view.tour = step,
             ViewCommand::KeepToast(id) => self.toasts.keep(id, now_s),
             ViewCommand::DismissToast(id) => self.toasts.dismiss(id),

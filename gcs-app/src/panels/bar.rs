@@ -78,6 +78,8 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue)
             section(ui, &actions, &[Group::Theme], queue);
             ui.separator();
             section(ui, &actions, &[Group::Help], queue);
+            ui.separator();
+            section(ui, &actions, &[Group::Quit], queue);
         });
     });
     tour::mark(ui.ctx(), tour::MENU, menu.response.rect);

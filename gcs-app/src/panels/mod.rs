@@ -209,6 +209,8 @@ pub struct ViewState {
     pub guide: Guide,
     /// What would replace a plan with unsaved changes, until the operator has decided.
     pub unsaved: Option<Replacement>,
+    /// What the last window left behind is not asked about now.
+    pub recovers_later: bool,
     /// The state of the document's file after another program has changed it, until the operator has decided.
     pub changed_outside: Option<Stamp>,
     /// The step of the tour that is shown, from 0.

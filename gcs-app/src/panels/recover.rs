@@ -1,17 +1,30 @@
 //! The question after a crash: the work that was not saved, or a clean start.
 
 use super::primary_button;
-use crate::command::{DocumentCommand, Queue};
+use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::recovery::LeftBehind;
 use crate::{theme, units};
-use egui::Ui;
+use egui::{Key, Label, RichText, ScrollArea, Ui};
+
+/// Of the list of plans, screen points.
+const LIST_HEIGHT: f32 = 120.0;
 
 /// Draws it. It hides nothing that a flight is led with: a window may have crashed in the middle of one.
-pub fn show(ui: &mut Ui, found: &LeftBehind, queue: &mut Queue) {
+/// `may_close`: Escape is for it.
+pub fn show(ui: &mut Ui, found: &LeftBehind, may_close: bool, queue: &mut Queue) {
     ui.set_width(380.0);
     ui.strong("The last window ended without saving");
     let age = units::duration(found.age.as_secs_f64());
-    ui.label(format!("It had changes of {}. They were kept {age} ago.", files(found)));
+    ui.label(format!("It had changes that were kept {age} ago, of"));
+    ScrollArea::vertical().id_salt("left behind").max_height(LIST_HEIGHT).show(ui, |ui| {
+        for document in &found.documents {
+            let name = document.path.as_ref().map(|path| path.display().to_string());
+            let name = name.unwrap_or_else(|| "a plan without a file".into());
+            ui.add(Label::new(format!("• {name}")).truncate()).on_hover_text(name);
+        }
+    });
+    let weak = theme::of(ui).weak;
+    ui.label(RichText::new("You may go on meanwhile: they are kept until you decide.").color(weak));
     ui.add_space(8.0);
     ui.horizontal(|ui| {
         let recover = ui.add(primary_button("Recover the changes", theme::of(ui)));
@@ -27,15 +40,9 @@ pub fn show(ui: &mut Ui, found: &LeftBehind, queue: &mut Queue) {
         if ui.button("Delete them").clicked() {
             queue.document(DocumentCommand::ForgetLeftBehind);
         }
+        let later = ui.button("Later").on_hover_text("Asked again from the menu, and by the next window");
+        if later.clicked() || (may_close && ui.input(|i| i.key_pressed(Key::Escape))) {
+            queue.view(ViewCommand::AskRecovery(false));
+        }
     });
-}
-
-fn files(found: &LeftBehind) -> String {
-    let path = found.documents.first().and_then(|document| document.path.as_ref());
-    let first = path.map_or_else(|| "a plan without a file".into(), |path| path.display().to_string());
-    match found.documents.len() {
-        0 | 1 => first,
-        2 => format!("{first} and of another plan"),
-        number => format!("{first} and of {} other plans", number - 1),
-    }
 }

@@ -90,3 +90,20 @@ fn the_question_hides_no_command_and_return_recovers() {
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Hold)));
     assert!(window.shows("ended without saving"));
 }
+
+#[test]
+fn the_question_can_wait_for_the_menu_or_the_next_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let lost = edit_and_kill(folder.path());
+    let mut window = window_in(folder.path(), "");
+    window.press(egui::Key::Escape);
+    assert!(!window.shows("ended without saving"));
+    window.click("Legwork");
+    window.click("Recover unsaved changes…");
+    window.click("Later");
+    assert!(!window.shows("ended without saving"));
+    drop(window);
+    let mut next = window_in(folder.path(), "");
+    next.click("Recover the changes");
+    assert_eq!(next.plan(), lost);
+}
