@@ -8,7 +8,7 @@ use egui_tiles::{Container, Tile, TileId};
 /// Of what a window is wider than the nominal one the sides get so much.
 const GROWS_BY: f32 = 0.5;
 /// They become so many times as wide at most.
-const MOST: f32 = 1.6;
+pub const MOST: f32 = 1.6;
 
 /// Widens what is beside the map with the window, so long as the operator has changed nothing. `before`: how many times as wide
 /// it was made before; gives how many times as wide it is now, and `None` once the layout is the operator's own.

@@ -21,6 +21,9 @@ pub struct Stored {
     version: u32,
     /// Panels that the operator has hidden.
     pub hidden: BTreeSet<String>,
+    /// How many times as wide the sides of the default layout are, as long as the operator has changed nothing.
+    #[serde(default)]
+    pub grown: Option<f32>,
     root: Node,
 }
 
@@ -61,14 +64,19 @@ impl Stored {
             part(RIGHT, column(right)),
         ]);
         let hidden = panels.iter().filter(|panel| !panel.is_shown_at_first());
-        Self { version: VERSION, hidden: hidden.map(|panel| panel.id().to_owned()).collect(), root }
+        Self {
+            version: VERSION,
+            hidden: hidden.map(|panel| panel.id().to_owned()).collect(),
+            grown: Some(1.0),
+            root,
+        }
     }
 
     /// As it is now.
-    pub fn of(tree: &PanelTree, hidden: &BTreeSet<PanelId>) -> Option<Self> {
+    pub fn of(tree: &PanelTree, hidden: &BTreeSet<PanelId>, grown: Option<f32>) -> Option<Self> {
         let root = node(&tree.tiles, tree.root()?)?;
         let hidden = hidden.iter().map(|id| (*id).to_owned()).collect();
-        Some(Self { version: VERSION, hidden, root })
+        Some(Self { version: VERSION, hidden, grown, root })
     }
 
     /// The tree of tiles, if every known panel is in it once, nothing else is, and all lengths make sense.
@@ -168,7 +176,7 @@ mod tests {
     fn a_layout_survives_being_stored() {
         let stored = Stored::default_of(&panels::all());
         let tree = stored.tree(&known()).expect("the default layout is sound");
-        assert_eq!(Stored::of(&tree, &BTreeSet::from([panels::what_if::ID])), Some(stored));
+        assert_eq!(Stored::of(&tree, &BTreeSet::from([panels::what_if::ID]), Some(1.0)), Some(stored));
     }
 
     #[test]

@@ -59,7 +59,7 @@ impl Dock {
         };
         // a test shows that it is sound
         let sound = Self::of(&Stored::default_of(panels), panels);
-        sound.map_or_else(empty, |dock| Self { grown: Some(1.0), ..dock })
+        sound.unwrap_or_else(empty)
     }
 
     fn of(stored: &Stored, panels: &[Box<dyn Panel>]) -> Option<Self> {
@@ -67,12 +67,14 @@ impl Dock {
         let known: Vec<PanelId> = std::iter::once(MAP).chain(ids()).collect();
         let hidden = ids().filter(|id| stored.hidden.contains(*id)).collect();
         let tree = stored.tree(&known)?;
-        Some(Self { tree, hidden, wanted: Default::default(), grown: None, stops: Vec::new() })
+        // what is no factor of ours is nobody's
+        let grown = stored.grown.filter(|grown| (1.0..=grow::MOST).contains(grown));
+        Some(Self { tree, hidden, wanted: Default::default(), grown, stops: Vec::new() })
     }
 
     /// Stores the layout for the next run.
     pub fn save(&self, storage: &mut dyn eframe::Storage) {
-        if let Some(stored) = Stored::of(&self.tree, &self.hidden) {
+        if let Some(stored) = Stored::of(&self.tree, &self.hidden, self.grown) {
             eframe::set_value(storage, STORAGE_KEY, &stored);
         }
     }

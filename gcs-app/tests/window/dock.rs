@@ -270,6 +270,18 @@ fn the_layout_is_remembered() {
 }
 
 #[test]
+fn the_default_layout_goes_on_growing_with_the_window_from_run_to_run() {
+    let side = |window: &Window| rect(window, "Hide Plan").right();
+    let (small, mut wide) = (side(&opened(SIZES[1])), opened(vec2(1920.0, 1080.0)));
+    assert!(side(&wide) > small + 20.0, "{small}");
+    let memory = Memory::of(&mut wide);
+    let storage: &'static Memory = Box::leak(Box::new(memory));
+    let mut next = Window::open_with(SQUARE, SIZES[1], Some(storage));
+    next.steps(3);
+    assert!((side(&next) - small).abs() < 3.0, "{} {small}", side(&next));
+}
+
+#[test]
 fn a_panel_is_dragged_by_its_title() {
     let mut window = opened(SIZES[1]);
     let from = rect(&window, "Hide Problems");
