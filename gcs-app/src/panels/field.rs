@@ -225,9 +225,19 @@ pub fn text_or_hint(ui: &mut Ui, name: &str, current: &str, hint: &str) -> Optio
     text_of_width(ui, name, current, hint, width)
 }
 
+/// What is being typed into the field of a text that is drawn next.
+pub fn draft(ui: &Ui, name: &str) -> Option<String> {
+    let id = text_id(ui, name);
+    ui.data(|d| d.get_temp(id))
+}
+
+fn text_id(ui: &Ui, name: &str) -> Id {
+    ui.auto_id_with(("field", name))
+}
+
 /// The same, so many screen points wide.
 pub fn text_of_width(ui: &mut Ui, name: &str, current: &str, hint: &str, width: f32) -> Option<String> {
-    let id = ui.auto_id_with(("field", name));
+    let id = text_id(ui, name);
     let mut draft = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| current.to_owned());
     let edit = egui::TextEdit::singleline(&mut draft).id(id).hint_text(hint);
     let edit = edit.desired_width(width);

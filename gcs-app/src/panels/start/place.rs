@@ -8,7 +8,7 @@ use crate::guide::{Guide, Named, Search};
 use crate::panels::field;
 use crate::theme;
 use crate::units::{self, Units};
-use egui::{Button, Label, RichText, Ui};
+use egui::{Button, Id, Label, Rect, RichText, Ui};
 use geometry::LatLon;
 
 /// So many places are offered.
@@ -27,9 +27,15 @@ pub fn ask(
     let place = at.map(units::position).unwrap_or_default();
     let shown = search.map_or(place.as_str(), |search| search.typed.as_str());
     let mut found = None;
-    if let Some(typed) = field::row(ui, name, |ui| field::text(ui, name, shown)) {
+    let (draft, typed) =
+        field::row(ui, name, |ui| (field::draft(ui, name), field::text_or_hint(ui, name, shown, HINT)));
+    let suggested = draft.as_deref().map_or_else(Vec::new, |draft| suggested(ui, draft, u));
+    let is_typing = draft.is_some() && typed.is_none();
+    if let Some(typed) = typed {
         guide.search = None;
-        match read(&typed, u) {
+        // a press on what is offered leaves the field, too
+        let is_chosen = !suggested.is_empty() && is_pressed(ui, name);
+        match if is_chosen { Err((suggested.clone(), String::new())) } else { read(&typed, u) } {
             Ok(at) => found = Some(at),
             Err((named, why)) => {
                 if named.is_empty() {
@@ -40,14 +46,57 @@ pub fn ask(
         }
     }
     let search = guide.search.as_ref().filter(|search| search.field == name);
-    if let Some(chosen) = search.and_then(|search| ui.scope(|ui| choose(ui, &search.named)).inner) {
-        guide.search = None;
+    let named = if is_typing { &suggested[..] } else { search.map_or(&[][..], |search| &search.named[..]) };
+    let offers = ui.scope(|ui| {
+        let chosen = choose(ui, named);
+        if is_typing && !named.is_empty() {
+            ui.label(RichText::new("Enter takes what is typed").size(11.0).color(theme::of(ui).weak));
+        }
+        chosen
+    });
+    ui.data_mut(|data| data.insert_temp(offers_id(name), offers.response.rect));
+    if let Some(chosen) = offers.inner {
         found = Some(chosen);
     }
     if found.is_some() {
         guide.search = None;
     }
     found
+}
+
+/// In the field, as long as nothing else is.
+const HINT: &str = "town, airport, or 46.5, 9.9";
+
+fn offers_id(name: &str) -> Id {
+    Id::unique("places offered for").with(name)
+}
+
+/// The pointer is pressed on what was offered in the last frame.
+fn is_pressed(ui: &Ui, name: &str) -> bool {
+    let offers = ui.data(|data| data.get_temp::<Rect>(offers_id(name)));
+    let at = ui.input(|input| input.pointer.press_origin());
+    offers.zip(at).is_some_and(|(offers, at)| offers.contains(at))
+}
+
+/// What the beginning of a name may mean; looked for once for each text.
+fn suggested(ui: &Ui, draft: &str, u: Units) -> Vec<Named> {
+    let id = Id::unique("places that begin so");
+    if let Some((_, known)) =
+        ui.data(|data| data.get_temp::<(String, Vec<Named>)>(id)).filter(|(of, _)| of == draft)
+    {
+        return known;
+    }
+    let found = beginning_with(draft, u);
+    ui.data_mut(|data| data.insert_temp(id, (draft.to_owned(), found.clone())));
+    found
+}
+
+fn beginning_with(draft: &str, u: Units) -> Vec<Named> {
+    if coordinates::read(draft, &Known::default()).is_ok() {
+        return Vec::new();
+    }
+    assets::places()
+        .map_or_else(|_| Vec::new(), |world| offered(&world::like(draft, world, OFFERED), world, u))
 }
 
 fn choose(ui: &mut Ui, named: &[Named]) -> Option<LatLon> {
@@ -121,6 +170,15 @@ mod tests {
         );
         let places: std::collections::BTreeSet<_> = named.iter().map(|place| &place.region).collect();
         assert!(places.len() > 1, "they can be told apart: {named:?}");
+    }
+
+    #[test]
+    fn places_are_offered_while_a_name_is_typed() {
+        let offered = |draft: &str| beginning_with(draft, Units::Si);
+        assert!(offered("innsb").iter().any(|place| place.name.contains("Innsbruck")));
+        for draft in ["", "i", "47.1, 8.2"] {
+            assert!(offered(draft).is_empty(), "{draft}");
+        }
     }
 
     #[test]
