@@ -9,6 +9,7 @@ use crate::export::Exported;
 use crate::files::{Choices, Imported, Lines};
 use crate::map::drawings;
 use crate::{formats, theme};
+use egui::style::ScrollStyle;
 use egui::{Id, Key, Label, Modal, RichText, ScrollArea, Ui};
 use flight_plan::FlightPlan;
 use interchange::{Areas, Note};
@@ -163,7 +164,7 @@ fn lines(ui: &mut Ui, imported: &Imported, queue: &mut Queue) {
 fn export(ui: &mut Ui, exported: &Exported, queue: &mut Queue) {
     ui.strong(format!("Export “{}” as {}", exported.name, formats::label(exported.format)));
     ui.label(format!(
-        "{}, as they are flown in calm air when nobody decides otherwise.",
+        "{}, as they are flown in calm air when nobody decides otherwise. Altitudes are above mean sea level there.",
         number(exported.waypoints, "waypoint")
     ));
     notes(ui, "Not in the file, or not as in the plan", &exported.notes);
@@ -186,6 +187,8 @@ fn notes(ui: &mut Ui, title: &str, notes: &[Note]) {
     }
     super::group_title(ui, &format!("{title} ({})", notes.len()));
     ui.separator();
+    // that there is more is seen before the pointer is there
+    ui.spacing_mut().scroll = ScrollStyle::solid();
     let area = ScrollArea::vertical().auto_shrink([false, true]).max_height(LIST_HEIGHT);
     if notes.len() <= MOST_WRAPPED {
         area.show(ui, |ui| notes.iter().for_each(|note| drop(ui.add(Label::new(text(note)).wrap()))));

@@ -119,7 +119,12 @@ fn present(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &st
             let source = value.trim_start_matches('=').trim();
             return Some(formula::field(ui, page, &name, source, used));
         }
-        Kind::Identifier | Kind::Text | Kind::Names | Kind::Instant | Kind::Positions => {
+        Kind::Positions => {
+            if let Some(new) = field::text(ui, &name, &short(value)) {
+                page.set(property, Some(new));
+            }
+        }
+        Kind::Identifier | Kind::Text | Kind::Names | Kind::Instant => {
             if let Some(new) = field::text(ui, &name, value) {
                 let optional = property.without.is_some() && new.trim().is_empty();
                 page.set(property, (!optional).then_some(new));
@@ -128,6 +133,20 @@ fn present(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &st
     }
     None
 }
+
+/// Positions to a centimetre: more digits only hide the others.
+fn short(positions: &str) -> String {
+    let number = |word: &str| {
+        let has_more = word.split_once('.').is_some_and(|(_, decimals)| decimals.len() > DECIMALS);
+        let degrees = word.parse::<f64>().ok().filter(|_| has_more);
+        degrees.map_or_else(|| word.to_owned(), |degrees| format!("{degrees:.DECIMALS$}"))
+    };
+    let position = |text: &str| text.split_whitespace().map(number).collect::<Vec<_>>().join(" ");
+    positions.split(',').map(position).collect::<Vec<_>>().join(", ")
+}
+
+/// Of a degree that is shown.
+const DECIMALS: usize = 7;
 
 /// A choice among words: the one that was chosen now; `None` in it leaves the property out.
 pub fn chosen(ui: &mut Ui, page: &Page<'_, '_>, property: &Property) -> Option<Option<String>> {
