@@ -8,6 +8,10 @@ use std::time::Duration;
 /// Altitudes and ground are watched so often, seconds.
 const LOOK_OUT_S: f64 = 0.25;
 
+/// What is said of a vehicle that falls silent, and when it is heard again.
+const SILENT: &str = "nothing is heard any more. It flies on by its plan";
+const HEARD: &str = "is heard again";
+
 impl App {
     /// Offers the tour of the window, once.
     pub fn offer_tour(&mut self) {
@@ -28,6 +32,12 @@ impl App {
         if self.has_unsaved() {
             let why = "Save or undo your changes first: the demo begins anew in another window.";
             self.view.notice = Some(why.into());
+        } else if self.vehicles.flying().count() > 1 {
+            let names: Vec<&str> = self.vehicles.flying().map(|name| name.as_str()).collect();
+            self.view.notice = Some(format!(
+                "{} are in the air: disconnect whoever is not of the demo first, it begins anew in another window.",
+                names.join(", ")
+            ));
         } else if let Some((story, _)) = &self.story {
             story.want_again();
             self.leaving = true;
@@ -54,10 +64,11 @@ impl App {
         if now_s - self.looked_s >= LOOK_OUT_S {
             self.looked_s = now_s;
             for (name, is_silent) in self.vehicles.look(self.layers.ground().as_ref(), now_s) {
-                let (level, text) = match is_silent {
-                    true => (Level::Caution, "nothing is heard any more. It flies on by its plan"),
-                    false => (Level::Info, "is heard again"),
+                let (level, text, over) = match is_silent {
+                    true => (Level::Caution, SILENT, HEARD),
+                    false => (Level::Info, HEARD, SILENT),
                 };
+                self.toasts.withdraw(|said| *said == format!("{name}: {over}"));
                 self.toasts.add(now_s, level, format!("{name}: {text}"));
             }
         }

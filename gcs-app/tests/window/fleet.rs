@@ -7,6 +7,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::{Command, Phase};
 use gcs_app::link::{Call, LinkEvent, LinkId, LinkState, Loss, Order, PlainValue, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Outcome};
+use gcs_app::story::{End, Story};
 use std::sync::Arc;
 use usal::contract::{AutopilotLink, AutopilotLinks, Recording, Stamped};
 
@@ -285,4 +286,17 @@ fn messages_of_a_stranger_are_counted_and_told() {
 pub fn tab(window: &mut Window, name: &str) {
     window.harness.get_all_by_label(name).next().unwrap().click();
     window.steps(3);
+}
+
+#[test]
+fn a_demo_is_not_told_again_while_another_vehicle_is_in_the_air() {
+    let mut window = two();
+    connected(&mut window, "uav2", TWO, 900.0);
+    let story = Story::default();
+    window.harness.state_mut().listen_to(story.clone());
+    story.end("The demo has failed", End { good: false, report: None });
+    window.steps(5);
+    window.click("Try again");
+    assert!(!story.is_wanted_again() && !window.app().is_leaving());
+    assert!(window.shows("uav1, uav2 are in the air"));
 }
