@@ -66,6 +66,9 @@ pub struct Args {
     /// Simulated seconds per second; 0: as fast as possible. [default: 20 with a window, else 0]
     #[arg(long, value_name = "FACTOR", value_parser = speed)]
     pub speed: Option<f64>,
+    /// Begin with the light theme.
+    #[arg(long, conflicts_with = "headless")]
+    pub light: bool,
     /// Write a picture of the window (PNG) and close it.
     #[arg(long, value_name = "FILE", conflicts_with = "headless")]
     pub screenshot: Option<PathBuf>,
@@ -154,6 +157,7 @@ fn open_window(args: &Args, document: Document, endpoint: &Receiver<String>, wat
         document: Some(document),
         connect: Some((VEHICLE.to_owned(), endpoint)),
         story: Some(watcher.story.clone()),
+        theme: args.light.then_some(eframe::egui::Theme::Light),
         screenshot: args.screenshot.clone().map(|file| app::Screenshot::new(file, args.after)),
         ..app::Options::default()
     };
@@ -319,6 +323,7 @@ mod tests {
             wind: Wind::default(),
             autopilot: sim::Personality::default(),
             speed: None,
+            light: false,
             screenshot: None,
             after: 0.0,
         };

@@ -184,6 +184,7 @@ mod tests {
             wind: Wind::from_direction(270.0, 5.0),
             autopilot: sim::Personality::default(),
             speed: None,
+            light: false,
             screenshot: None,
             after: 0.0,
         };
