@@ -135,7 +135,10 @@ impl GatewaySession {
             // whoever asked for that did not mean to take the aircraft from the pilot
             self.unwant(GatewayRequest::Resume);
         }
-        self.state = Some(state);
+        if self.state.replace(state) == Some(GatewayState::Off) && state != GatewayState::Off {
+            // it knows now what the aircraft does
+            self.not_before = None;
+        }
         // neither is given up as long as it makes sense
         self.unwant(if is_down(state) { GatewayRequest::Safe } else { GatewayRequest::Launch });
         let settling = self.joined && self.joined_at.is_some_and(|at| now < at + SETTLING);
@@ -166,9 +169,11 @@ impl GatewaySession {
         }
     }
 
-    /// Whether to join now; if so, it is under way. Its state has to be known before.
+    /// Whether to join now; if so, it is under way. Its state has to be known before. One that does not hear the autopilot lets
+    /// nobody join: it is asked to say so only if something is wanted of it, or if it is joined anew and may have heard it since.
     pub fn should_join(&mut self, now: Time) -> bool {
-        let known = self.state.is_some();
+        let is_off = self.state == Some(GatewayState::Off) && self.gateway.is_none();
+        let known = self.state.is_some() && (!is_off || self.wanted.is_some());
         let due = known && !self.joined && !self.joining && self.not_before.is_none_or(|t| now >= t);
         self.joining |= due;
         due
@@ -329,6 +334,21 @@ mod tests {
             Some(&GatewayRequest::Hold),
             "on the ground nobody waits for it"
         );
+    }
+
+    #[test]
+    fn one_that_hears_no_autopilot_is_joined_once_it_does_or_when_something_is_wanted() {
+        let mut session = GatewaySession::default();
+        session.state(Duration::ZERO, GatewayState::Off);
+        assert!(!session.should_join(Duration::ZERO));
+        session.want(GatewayRequest::Launch);
+        assert!(session.should_join(Duration::ZERO), "it says why not");
+        let refused =
+            JoinAnswer { accepted: false, reason: "not heard".into(), ..answer(Some("a1")).unwrap() };
+        session.joined(Duration::ZERO, Some(refused)).unwrap_err();
+        assert!(!session.should_join(Duration::ZERO));
+        session.state(Duration::ZERO, GatewayState::Nav);
+        assert!(session.should_join(Duration::ZERO), "without another second of waiting");
     }
 
     #[test]

@@ -119,6 +119,11 @@ impl Control {
         self.speed_mps
     }
 
+    /// The list of an aircraft that was met in flight is being read.
+    pub fn is_reading(&self) -> bool {
+        self.adopt.is_some()
+    }
+
     /// A change of mode is on its way.
     pub fn mode_pending(&self) -> bool {
         !self.confirmed

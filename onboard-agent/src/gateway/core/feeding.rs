@@ -1,14 +1,18 @@
 //! The FP Manager joins and feeds waypoints.
 
-use super::Gateway;
 use super::batch;
 use super::io::{Intent, Output};
 use super::states::{Trigger, is_safe};
+use super::{Gateway, NOT_HEARD};
 use crate::gateway::order::Time;
 use flight_exec::review::plausibility::{self, Context};
 use usal::Instance;
 use usal::contract::{Feed, FeedAnswer, GatewayState, Join, JoinAnswer, Token, Waypoint};
 use wire::Convert;
+
+/// Why nobody joins an aircraft that was met in flight before it is known what it flies.
+const BEING_READ: &str =
+    "The aircraft flies, or may, and what it has aboard is not read yet: try again in a moment.";
 
 impl Gateway {
     /// The FP Manager presents itself. In Safe mode, it gets the aircraft back if it flies the plan of the flight or an
@@ -44,6 +48,7 @@ impl Gateway {
 
     fn may_join(&self, join: &Join) -> Result<(), String> {
         self.is_real()?;
+        self.knows_what_is_aboard()?;
         match self.state {
             GatewayState::Manual => Err("The pilot flies; join again when he gives back control.".into()),
             GatewayState::SafeApproach | GatewayState::SafeLand => {
@@ -54,6 +59,18 @@ impl Gateway {
                 Err("Only the request `recover` ends this Safe mode.".into())
             }
             GatewayState::SafeHold | GatewayState::SafeReturn => self.knows_the_flight(join),
+            _ => Ok(()),
+        }
+    }
+
+    /// What is taken before the list of an aircraft that flies was read would be lost when that is taken over; and whether it
+    /// flies is only known once it is heard.
+    fn knows_what_is_aboard(&self) -> Result<(), String> {
+        match self.state {
+            _ if self.control.is_reading() => Err(BEING_READ.into()),
+            GatewayState::Off if self.telemetry.last_received.is_none() => Err(NOT_HEARD.into()),
+            GatewayState::Off if self.telemetry.armed => Err(BEING_READ.into()),
+            GatewayState::Off => Err(NOT_HEARD.into()),
             _ => Ok(()),
         }
     }
@@ -134,6 +151,7 @@ impl Gateway {
     }
 
     fn takes_waypoints(&self, now: Time) -> Result<(), String> {
+        self.knows_what_is_aboard()?;
         match self.state {
             GatewayState::SafeHold if self.is_only_dry(now) => Ok(()),
             s if is_safe(s) => Err("Safe mode flies; join first.".into()),

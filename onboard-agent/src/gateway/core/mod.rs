@@ -42,6 +42,9 @@ const OFF_AFTER: Duration = Duration::from_secs(10);
 const COME_DOWN_AFTER: Duration = Duration::from_secs(3600);
 /// Why an aircraft that was met in flight is somebody else's.
 const NOT_OURS: &str = "met in flight: nothing that it has aboard is ours";
+/// Why nothing can be begun while the state is `Off`.
+const NOT_HEARD: &str = "The autopilot is not heard; check its link.";
+
 /// The gateway. See the module's text.
 pub struct Gateway {
     settings: Settings,

@@ -3,7 +3,7 @@
 use super::*;
 use crate::gateway::order::{Fix, Target};
 use crate::gateway::tests::fp_manager;
-use usal::contract::{Air, Feed, GatewayRequest, Gps, Join};
+use usal::contract::{Air, Feed, FeedAnswer, GatewayRequest, Gps, Join, JoinAnswer};
 
 /// A core, and what came out of it.
 struct Core {
@@ -15,7 +15,11 @@ struct Core {
 
 impl Core {
     fn new() -> Self {
-        let gateway = Gateway::new(crate::gateway::tests::flights::settings(), None);
+        Self::started_anew(None)
+    }
+
+    fn started_anew(restored: Option<Snapshot>) -> Self {
+        let gateway = Gateway::new(crate::gateway::tests::flights::settings(), restored);
         Self { gateway, now: Time::ZERO, out: vec![], beats: 0 }
     }
 
@@ -48,6 +52,22 @@ impl Core {
             _ => None,
         };
         self.out.iter().filter_map(order).collect()
+    }
+
+    /// What is answered to this.
+    fn answer(&mut self, input: Input) -> Answer {
+        self.step(input);
+        let answer = |output: &Output| match output {
+            Output::Answer(_, answer) => Some(answer.clone()),
+            _ => None,
+        };
+        self.out.iter().rev().find_map(answer).expect("each is answered")
+    }
+
+    fn join(&mut self) -> JoinAnswer {
+        let join = Join { plan: Some("plan".into()), earlier: vec![], last_token: Token(10) };
+        let Answer::Join(answer) = self.answer(Input::Join(1, join, fp_manager())) else { panic!() };
+        answer
     }
 
     fn was_ordered(&self, wanted: &Order) -> bool {
@@ -230,6 +250,34 @@ fn an_aircraft_whose_list_cannot_be_read_is_in_somebody_elses_hands() {
     }
     core.run(1, &flying(25.0, 25.0));
     assert!(core.raised("not-in-command"));
+}
+
+/// What was taken before would be lost when the flight is taken over.
+#[test]
+fn nobody_joins_or_feeds_before_it_is_known_what_the_aircraft_flies() {
+    let mut core = Core::started_anew(Some(Core::in_nav().gateway.snapshot()));
+    let next =
+        || Feed { cancel_after: None, waypoints: crate::gateway::tests::flights::zigzag(10, 1, 300.0) };
+    for heard in [false, true] {
+        let answer = core.join();
+        assert!(!answer.accepted && answer.reason.contains("not heard") != heard, "{answer:?}");
+        let fed = core.answer(Input::Feed(2, next(), fp_manager()));
+        assert!(matches!(fed, Answer::Feed(FeedAnswer::NotNow(_))), "{fed:?}");
+        core.run(1, &flying(25.0, 25.0));
+        assert_eq!(core.gateway.state(), GatewayState::Off);
+    }
+    let (adopt, order) =
+        core.orders().into_iter().rfind(|(_, order)| matches!(order, Order::Adopt(_))).unwrap();
+    let Order::Adopt(known) = order else { unreachable!() };
+    core.step(Input::Report(Report::Adopted(adopt, Some(known.len()))));
+    core.step(Input::Report(Report::Course(course(true))));
+    let answer = core.join();
+    let has = (answer.accepted, answer.current, answer.last, answer.highest);
+    assert_eq!(has, (true, Some(Token(1)), Some(Token(10)), Token(10)), "{answer:?}");
+    let mut feed = next();
+    feed.waypoints[0].token = Token(11);
+    assert_eq!(core.answer(Input::Feed(2, feed, fp_manager())), Answer::Feed(FeedAnswer::Accepted));
+    assert_eq!(core.gateway.navigation().last, Some(Token(11)));
 }
 
 /// That none of its waypoints is known is no reason to leave it to nobody: Safe mode sees to it, until the FP Manager is back.
