@@ -188,13 +188,27 @@ impl Gateway {
                 bad.id
             ));
         }
-        let in_use = is_flying(self.state) || self.telemetry.armed;
-        let in_reach = || self.situation().is_some_and(|here| choose(&runways, &self.safe, &here).is_some());
-        if in_use && !in_reach() {
-            return Err("Safe mode needs a runway within reach from here, and the list has none: add one, or change the list on the ground.".into());
+        if runways == self.runways {
+            return Ok(());
+        }
+        if is_flying(self.state) || self.telemetry.armed {
+            self.is_in_reach(&runways)?;
         }
         self.runways = runways;
         out.push(Output::Save);
+        Ok(())
+    }
+
+    /// One of these can be flown to from here.
+    fn is_in_reach(&self, runways: &[SafeRunway]) -> Result<(), String> {
+        let Some(here) = self.situation() else {
+            return Err("Without a position it is not known whether a runway of the list is within reach: \
+                        try again when there is one."
+                .into());
+        };
+        if choose(runways, &self.safe, &here).is_none() {
+            return Err("Safe mode needs a runway within reach from here, and the list has none: add one, or change the list on the ground.".into());
+        }
         Ok(())
     }
 

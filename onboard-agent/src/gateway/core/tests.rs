@@ -280,6 +280,22 @@ fn nobody_joins_or_feeds_before_it_is_known_what_the_aircraft_flies() {
     assert_eq!(core.gateway.navigation().last, Some(Token(11)));
 }
 
+#[test]
+fn a_position_that_is_not_known_yet_is_no_runway_out_of_reach() {
+    let set = |runways| Input::Request(4, GatewayRequest::SetRunways { runways });
+    let home = crate::gateway::tests::flights::runway_at(LatLon::new(36.3190, -84.1730));
+    let mut core = Core::in_nav();
+    assert_eq!(core.answer(set(vec![home.clone()])), Answer::Request(Ok(())));
+    let mut core = Core::started_anew(Some(core.gateway.snapshot()));
+    core.run(1, &flying(25.0, 25.0)[..2]);
+    assert_eq!(core.answer(set(vec![home.clone()])), Answer::Request(Ok(())), "they are stored");
+    let other = SafeRunway { id: "R23".into(), ..home };
+    let Answer::Request(Err(why)) = core.answer(set(vec![other.clone()])) else { panic!() };
+    assert!(why.contains("Without a position"), "{why}");
+    core.run(1, &flying(25.0, 25.0));
+    assert_eq!(core.answer(set(vec![other])), Answer::Request(Ok(())));
+}
+
 /// That none of its waypoints is known is no reason to leave it to nobody: Safe mode sees to it, until the FP Manager is back.
 #[test]
 fn an_aircraft_whose_list_is_ours_after_all_is_taken_back() {
