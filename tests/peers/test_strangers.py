@@ -59,7 +59,7 @@ def test_events_in_the_gateways_name_start_no_emergency_and_move_no_plan_on(agen
     assert "does not count" in told[0]["reason"]
     for _ in range(10):
         put(agent, "gateway/event/events", {**stamped, "value": {"event": "progress", "current": None, "taken": 9999}})
-    until(lambda: [e for e in seen if e.get("reason", "").endswith("since the join: 10)")], 20, "and counted")
+    until(lambda: [e for e in seen if e.get("reason", "").endswith("since the join: at least 10)")], 20, "and counted")
     until(lambda: entered(seen, "land"), 240, "the plan is flown on")
     assert not [e for e in seen if e["event"] == "emergency-started"]
     assert all(entered(seen, leg) for leg in ["side2", "side3", "side4"]), "no leg was passed over"

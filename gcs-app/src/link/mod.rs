@@ -2,7 +2,6 @@
 //! own owns the sessions; the window talks to it through two channels and never waits for either.
 
 mod outlet;
-mod senders;
 mod session;
 mod subscriptions;
 

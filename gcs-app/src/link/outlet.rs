@@ -1,13 +1,11 @@
 //! The way of a link's messages to the window: what of them counts, and what becomes of those for which there is no room.
 
-use super::senders::Senders;
 use super::{LinkEvent, LinkId, LinkMessage, Loss, Telemetry, Wake};
 use crate::state::VehicleName;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Instant;
 use tokio::sync::mpsc;
-use usal::Gate;
+use usal::{Gate, Senders};
 
 /// Where a link's messages go.
 #[derive(Clone)]
@@ -39,8 +37,7 @@ impl Outlet {
 
     /// Lets in what comes from the session that is this service.
     pub(super) fn gate(&self, service: &'static str) -> Gate {
-        let senders = self.senders.clone();
-        Arc::new(move |from| senders.counts(service, from, Instant::now()))
+        self.senders.gate(service)
     }
 
     /// Tells what others sent in the name of the vehicle's services.

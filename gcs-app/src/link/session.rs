@@ -2,7 +2,6 @@
 //! Each link is a task of its own, so that a vehicle that can't be reached holds up no other.
 
 use super::outlet::Outlet;
-use super::senders::Senders;
 use super::{
     Call, Endpoint, LinkEvent, LinkId, LinkState, Loss, Numbered, Order, Reply, Telemetry, Wake,
     subscriptions,
@@ -15,7 +14,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
 use usal::contract::{Empty, Foresee, OPERATOR, OTHER_VERSION, Stamped};
 use usal::topics::{Events, FP_MANAGER, GATEWAY, Variable, fp_manager, gateway};
-use usal::{CallError, Occurrence, Presence, Session, Start};
+use usal::{CallError, Occurrence, Presence, Senders, Session, Start};
 use wire::Convert;
 
 /// A command is answered within this time, or the operator learns that it was not.

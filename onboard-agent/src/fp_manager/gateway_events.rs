@@ -1,7 +1,6 @@
 //! Pure: what is received from the gateway, and what its alarms lead to.
 
 use super::alarms;
-use super::gateway_session::Hearing;
 use super::manager::{Effect, Manager};
 use flight_exec::{Command, Event, Input, Token};
 use service::Time;
@@ -31,25 +30,11 @@ pub enum Report {
 /// Who asks for what an alarm of the gateway leads to.
 const GATEWAY: &str = "gateway";
 
-/// A stranger's report is told as the first since the join, the tenth, the hundredth, …: as it goes on, and never as a flood.
-fn tell_of_stranger(count: u64, from: Option<Instance>, report: &Report, out: &mut Vec<Effect>) {
-    if count.checked_ilog10().is_none_or(|digits| 10_u64.pow(digits) != count) {
-        return;
-    }
-    tracing::warn!(?from, ?report, count, "another program than the gateway that we joined reports as it");
-    let reason = format!(
-        "another program than the gateway that was joined reports as it; it does not count: find it and stop it \
-         (reports ignored since the join: {count})"
-    );
-    out.push(Effect::Event(Event::NotGranted { request: "report".into(), reason }));
-}
-
 impl Manager {
     /// Something comes from a gateway; only the one that we joined counts.
     pub fn report(&mut self, now: Time, from: Option<Instance>, report: Report, out: &mut Vec<Effect>) {
-        match self.gateway_session.hears(now, from) {
-            Hearing::Ours => {}
-            Hearing::Stranger { count } => return tell_of_stranger(count, from, &report, out),
+        if !self.gateway_session.hears(now, from) {
+            return self.strangers(1, out);
         }
         match report {
             Report::Position(position) => self.aircraft().position(position),
@@ -60,6 +45,18 @@ impl Manager {
             Report::Navigation(navigation) => self.navigation(now, &navigation, out),
             Report::Event(event) => self.gateway_event(now, event, out),
         }
+    }
+
+    /// So many reports came from others than the gateway that we joined; they do not count. That is told as it goes on, and never
+    /// as a flood.
+    pub fn strangers(&mut self, count: u64, out: &mut Vec<Effect>) {
+        let Some(at_least) = self.gateway_session.strangers(count) else { return };
+        tracing::warn!(at_least, "another program than the gateway that we joined reports as it");
+        let reason = format!(
+            "another program than the gateway that was joined reports as it; it does not count: find it and stop it \
+             (reports ignored since the join: at least {at_least})"
+        );
+        out.push(Effect::Event(Event::NotGranted { request: "report".into(), reason }));
     }
 
     /// The gateway's buffer and place, as it publishes them.

@@ -37,18 +37,6 @@ pub struct GatewaySession {
     strange: u64,
 }
 
-/// Whose report something is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hearing {
-    /// Of the gateway that we joined, or may join.
-    Ours,
-    /// Of somebody else.
-    Stranger {
-        /// So many have come since we joined, this one too.
-        count: u64,
-    },
-}
-
 /// Something wanted of the gateway and not granted yet.
 #[derive(Debug)]
 struct Pending {
@@ -151,14 +139,28 @@ impl GatewaySession {
         }
     }
 
-    /// Something is reported by a session.
-    pub fn hears(&mut self, now: Time, from: Option<Instance>) -> Hearing {
-        if self.gateway.is_none() || from == self.gateway {
+    /// The gateway that answered our last join, if it said which session it is.
+    pub fn gateway(&self) -> Option<Instance> {
+        self.gateway
+    }
+
+    /// Something is reported by a session: whether it counts, as that of the gateway that we joined, or may join.
+    pub fn hears(&mut self, now: Time, from: Option<Instance>) -> bool {
+        let ours = self.gateway.is_none() || from == self.gateway;
+        if ours {
             self.heard = Some(now);
-            return Hearing::Ours;
         }
-        self.strange += 1;
-        Hearing::Stranger { count: self.strange }
+        ours
+    }
+
+    /// So many reports of others came. When that is to be told, how many there were at least since the join: one, ten, a
+    /// hundred, …
+    pub fn strangers(&mut self, count: u64) -> Option<u64> {
+        let before = self.strange;
+        self.strange = before.saturating_add(count);
+        let digits =
+            self.strange.checked_ilog10().filter(|digits| before.checked_ilog10() != Some(*digits))?;
+        Some(10_u64.pow(digits))
     }
 
     /// Time has passed: a gateway that is not heard any more may have been followed by another one, which has to be joined.
@@ -381,27 +383,28 @@ mod tests {
         let [ours, other]: [Instance; 2] = ["a1", "b2"].map(|text| text.parse().unwrap());
         let mut session = GatewaySession::default();
         let now = Duration::from_secs;
-        assert_eq!(session.hears(now(0), Some(other)), Hearing::Ours, "nobody was joined yet");
+        assert!(session.hears(now(0), Some(other)), "nobody was joined yet");
         session.joined(now(0), answer(Some("a1"))).unwrap();
-        assert_eq!(session.hears(now(1), Some(ours)), Hearing::Ours);
-        assert_eq!(session.hears(now(1), Some(other)), Hearing::Stranger { count: 1 });
-        assert_eq!(session.hears(now(1), None), Hearing::Stranger { count: 2 });
+        assert!(session.hears(now(1), Some(ours)));
+        assert!(!session.hears(now(1), Some(other)) && !session.hears(now(1), None));
         session.tick(now(3));
         assert!(session.is_joined());
         session.tick(now(5));
         assert!(!session.is_joined(), "whatever others say, ours is silent: join anew");
-        assert_eq!(
-            session.hears(now(5), Some(other)),
-            Hearing::Stranger { count: 3 },
-            "nor do they count until then"
-        );
+        assert!(!session.hears(now(5), Some(other)), "nor do they count until then");
         session.joined(now(5), answer(None)).unwrap();
-        assert_eq!(
-            session.hears(now(6), Some(other)),
-            Hearing::Ours,
-            "an older gateway doesn't say who it is"
-        );
+        assert!(session.hears(now(6), Some(other)), "an older gateway doesn't say who it is");
         session.joined(now(7), answer(Some("a1"))).unwrap();
-        assert_eq!(session.hears(now(8), None), Hearing::Stranger { count: 1 }, "each join counts anew");
+        assert!(!session.hears(now(8), None));
+    }
+
+    #[test]
+    fn strangers_are_told_at_the_first_the_tenth_and_the_hundredth_report_and_anew_after_a_join() {
+        let mut session = GatewaySession::default();
+        session.joined(Duration::ZERO, answer(Some("a1"))).unwrap();
+        let told = [1, 1, 7, 5, 3, 2000].map(|count| session.strangers(count));
+        assert_eq!(told, [Some(1), None, None, Some(10), None, Some(1000)]);
+        session.joined(Duration::ZERO, answer(Some("a1"))).unwrap();
+        assert_eq!(session.strangers(20), Some(10));
     }
 }

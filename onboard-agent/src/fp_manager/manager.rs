@@ -18,6 +18,7 @@ use flight_plan::{Id, Problem, Program};
 use service::Time;
 use std::collections::VecDeque;
 use std::sync::Arc;
+use usal::Instance;
 use usal::contract::{Feed, FeedAnswer, GatewayRequest, Join};
 use wire::Convert;
 
@@ -110,6 +111,11 @@ impl Manager {
     /// The gateway takes our waypoints.
     pub fn is_joined(&self) -> bool {
         self.gateway_session.is_joined()
+    }
+
+    /// The session of the gateway that answered the last join, if it said so.
+    pub fn gateway(&self) -> Option<Instance> {
+        self.gateway_session.gateway()
     }
 
     /// The wind as it is measured (calm, as long as nothing is known), and the time of day.

@@ -36,6 +36,8 @@ pub enum Input {
     Ended,
     /// Of a gateway, and whose it is.
     Report(Option<Instance>, Report),
+    /// So many reports in the name of the gateway came from others than the one that we joined.
+    Strangers(u64),
     /// The gateway is there, or there again.
     GatewayAppeared,
     /// So many events of the gateway were lost.
@@ -128,6 +130,7 @@ impl Service for FpManager {
             Occurrence::Event { from, event, .. } => Input::Report(from, Report::Event(event.value)),
             Occurrence::Gap { missed } => Input::EventsLost(missed),
         });
+        wiring.strangers(|_, count| Input::Strangers(count));
         wiring.serve(fp_manager::COMMAND, Input::Command);
         wiring.serve(fp_manager::PROPOSE, Input::Propose);
         wiring.serve(fp_manager::FORESEE, Input::Foresee);
@@ -209,10 +212,14 @@ impl FpManager {
                 out.push(Output::PollJournal);
             }
             Input::Report(from, report) => manager.report(now, from, report, &mut effects),
+            Input::Strangers(count) => manager.strangers(count, &mut effects),
             Input::GatewayAppeared => manager.gateway_appeared(now, &mut effects),
             Input::EventsLost(missed) => manager.events_lost(now, missed, &mut effects),
             Input::Fed(answer) => manager.fed(now, logged(answer, "feed"), &mut effects),
-            Input::Joined(answer) => manager.joined(now, logged(answer, "join"), &mut effects),
+            Input::Joined(answer) => {
+                manager.joined(now, logged(answer, "join"), &mut effects);
+                out.hear_only(GATEWAY, manager.gateway());
+            }
             Input::Requested(request, answer) => {
                 let answer = answer.map(drop).map_err(|error| error.to_string());
                 manager.requested(now, &request, answer, &mut effects);

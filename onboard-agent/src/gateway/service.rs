@@ -8,7 +8,7 @@ use autopilot_link::{Event, Outbox};
 use service::{Board, Request, Service, Time, Wiring};
 use std::time::Duration;
 use usal::contract::{Empty, Feed, FeedAnswer, GatewayRequest, Heartbeat, Join, JoinAnswer, Refusal};
-use usal::topics::{fp_manager, gateway};
+use usal::topics::{FP_MANAGER, fp_manager, gateway};
 use usal::{Instance, Spec, spec};
 
 /// A simulator that asks for no step for so long is spoken to, and missed after the second time.
@@ -33,6 +33,8 @@ pub enum Input {
     Request(Request<GatewayRequest, Empty>),
     /// The FP Manager's sign of life, and whose it is.
     Heartbeat(Heartbeat, Option<Instance>),
+    /// So many messages in the name of the FP Manager came from others than the one that joined.
+    Strangers(u64),
     /// Whether what is kept comes to the disk.
     Kept(bool),
     /// Whether somebody floods the port.
@@ -67,6 +69,7 @@ impl Service for FcsGateway {
         wiring.follow(fp_manager::HEARTBEAT, |received| {
             Input::Heartbeat(received.stamped.value.clone(), received.from)
         });
+        wiring.strangers(|_, count| Input::Strangers(count));
         wiring.serve(gateway::JOIN, Input::Join);
         wiring.serve(gateway::FEED, Input::Feed);
         wiring.serve(gateway::REQUEST, Input::Request);
@@ -89,6 +92,7 @@ impl Service for FcsGateway {
             Input::Heartbeat(Heartbeat { count, plan }, from) => {
                 self.station.input(now, CoreInput::Heartbeat { count, plan, from });
             }
+            Input::Strangers(count) => self.station.input(now, CoreInput::Strangers(count)),
             Input::Kept(stored) => self.station.input(now, CoreInput::Stored(stored)),
             Input::Flooded(flooded) => self.station.input(now, CoreInput::Flooded(flooded)),
             Input::Waiting(late) => self.wait(late),
@@ -144,6 +148,7 @@ impl FcsGateway {
             }
             _ => Err(unanswered()),
         };
+        out.hear_only(FP_MANAGER, self.station.gateway().fp_manager());
         out.answer(reply, answer);
     }
 

@@ -10,7 +10,7 @@ use std::pin::Pin;
 use std::time::Duration;
 use usal::contract::{Refusal, Stamped};
 use usal::topics::{Events, Invocation};
-use usal::{CallError, EventPublisher, Session, Untyped};
+use usal::{CallError, EventPublisher, Instance, Session, Untyped};
 
 /// Something that ends in an input.
 pub(crate) type Work<I> = Pin<Box<dyn Future<Output = I> + Send>>;
@@ -55,6 +55,7 @@ pub struct Out<I, O = Never> {
     pub(crate) answers: Vec<Box<dyn FnOnce() + Send>>,
     pub(crate) wait_for_disk: bool,
     pub(crate) leads_to: Option<Time>,
+    pub(crate) hears: Vec<(&'static str, Option<Instance>)>,
     pub(crate) failed: Option<anyhow::Error>,
 }
 
@@ -72,6 +73,7 @@ impl<I: Send + 'static, O> Out<I, O> {
             answers: Vec::new(),
             wait_for_disk: false,
             leads_to: None,
+            hears: Vec::new(),
             failed: None,
         }
     }
@@ -101,6 +103,12 @@ impl<I: Send + 'static, O> Out<I, O> {
     pub fn emitted<E: Clone + 'static>(&self, events: Events<Stamped<E>>) -> Vec<E> {
         let of = self.events.iter().filter(|emission| emission.name == events.name);
         of.filter_map(|e| e.event.downcast_ref::<Stamped<E>>()).map(|s| s.value.clone()).collect()
+    }
+
+    /// From now on, of what is followed or listened to of a service, only what comes from this session counts: it can't be
+    /// hidden by what others say in its name. `None`: whatever comes.
+    pub fn hear_only(&mut self, service: &'static str, session: Option<Instance>) {
+        self.hears.push((service, session));
     }
 
     /// Answers a request.

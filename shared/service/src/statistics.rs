@@ -12,6 +12,8 @@ pub(crate) struct Statistics {
     pub(crate) steps: u64,
     pub(crate) events: u64,
     pub(crate) answers: u64,
+    /// Messages in the name of services that it follows, of others than those that it hears.
+    pub(crate) strange: u64,
     /// The longest that a step and what it led to took, wall-clock.
     pub(crate) longest: Duration,
     told: Instant,
@@ -19,7 +21,7 @@ pub(crate) struct Statistics {
 
 impl Default for Statistics {
     fn default() -> Self {
-        Self { steps: 0, events: 0, answers: 0, longest: Duration::ZERO, told: Instant::now() }
+        Self { steps: 0, events: 0, answers: 0, strange: 0, longest: Duration::ZERO, told: Instant::now() }
     }
 }
 
@@ -39,9 +41,19 @@ impl Statistics {
     /// With what went wrong on the network; each of that is a warning of its own, but they are limited.
     pub(crate) fn tell(&mut self, service: &str, health: HealthCount) {
         self.told = Instant::now();
-        let Self { steps, events, answers, longest, .. } = self;
+        let Self { steps, events, answers, strange, longest, .. } = self;
         let HealthCount { undecodable, overflowed, unsent } = health;
         let longest_ms = longest.as_millis();
-        tracing::debug!(steps, events, answers, longest_ms, undecodable, overflowed, unsent, "{service}");
+        tracing::debug!(
+            steps,
+            events,
+            answers,
+            strange,
+            longest_ms,
+            undecodable,
+            overflowed,
+            unsent,
+            "{service}"
+        );
     }
 }

@@ -6,12 +6,12 @@ use serde::de::DeserializeOwned;
 use std::sync::Arc;
 use std::time::Duration;
 use usal::topics::{Events, Invocation, Variable};
-use usal::{Kind, Occurrence, Presence, Received, Session, SessionError, Start};
+use usal::{Kind, Occurrence, Presence, Received, Senders, Session, SessionError, Start};
 
 /// Gives the next input, if one is there.
 pub(crate) type Port<I> = Box<dyn FnMut() -> Option<I> + Send>;
 /// Makes a port on a session.
-type Open<I> = Box<dyn FnOnce(&Session) -> Result<Port<I>, SessionError> + Send>;
+type Open<I> = Box<dyn FnOnce(&Session, &Arc<Senders>) -> Result<Port<I>, SessionError> + Send>;
 
 /// Something of a service that another one follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +39,7 @@ pub struct Wiring<I> {
     pub(crate) kept: Option<Box<dyn Fn(bool) -> I + Send>>,
     pub(crate) waiting: Option<Box<dyn Fn(Duration) -> I + Send>>,
     pub(crate) stepped: Option<Box<dyn Fn(Time) -> I + Send>>,
+    pub(crate) strangers: Option<Box<dyn Fn(&'static str, u64) -> I + Send>>,
 }
 
 impl<I> Default for Wiring<I> {
@@ -54,6 +55,7 @@ impl<I> Default for Wiring<I> {
             kept: None,
             waiting: None,
             stepped: None,
+            strangers: None,
         }
     }
 }
@@ -69,13 +71,14 @@ impl<I: 'static> Wiring<I> {
         A: Serialize + Send + 'static,
     {
         self.served.push(invocation.name);
-        self.prompt.push(Box::new(move |session| {
+        self.prompt.push(Box::new(move |session, _| {
             let mut server = session.serve(invocation)?;
             Ok(Box::new(move || server.try_recv().map(|incoming| input(incoming.into()))))
         }));
     }
 
-    /// Listens to a stream of events: each comes once, in order, and what is lost comes as a gap.
+    /// Listens to a stream of events: each comes once, in order, and what is lost comes as a gap. Of whom it hears:
+    /// [`crate::Out::hear_only`].
     pub fn listen<E>(
         &mut self,
         events: Events<E>,
@@ -85,27 +88,32 @@ impl<I: 'static> Wiring<I> {
         E: DeserializeOwned + Send + 'static,
     {
         self.follows.push(Topic { service: events.service, kind: Kind::Event, name: events.name });
-        self.prompt.push(Box::new(move |session| {
-            let mut subscriber = session.listen(events, start)?;
+        self.prompt.push(Box::new(move |session, senders| {
+            let mut subscriber = session.listen_from(events, start, senders.gate(events.service))?;
             Ok(Box::new(move || subscriber.try_recv().map(&input)))
         }));
     }
 
-    /// Follows a variable: its latest value, at most once a beat.
+    /// Follows a variable: its latest value, at most once a beat. Of whom it hears: [`crate::Out::hear_only`].
     pub fn follow<T>(&mut self, variable: Variable<T>, input: impl Fn(Arc<Received<T>>) -> I + Send + 'static)
     where
         T: DeserializeOwned + Send + Sync + 'static,
     {
         self.follows.push(Topic { service: variable.service, kind: Kind::Variable, name: variable.name });
-        self.sampled.push(Box::new(move |session| {
-            let mut subscriber = session.follow(variable)?;
+        self.sampled.push(Box::new(move |session, senders| {
+            let mut subscriber = session.follow_from(variable, senders.gate(variable.service))?;
             Ok(Box::new(move || subscriber.take_new().map(&input)))
         }));
     }
 
+    /// So many messages in the name of a service came from others than the one that it hears, since the last beat.
+    pub fn strangers(&mut self, input: impl Fn(&'static str, u64) -> I + Send + 'static) {
+        self.strangers = Some(Box::new(input));
+    }
+
     /// A service has appeared, or appeared again.
     pub fn appeared(&mut self, service: &'static str, input: impl Fn() -> I + Send + 'static) {
-        self.sampled.push(Box::new(move |session| {
+        self.sampled.push(Box::new(move |session, _| {
             let presence = session.presence()?;
             let mut there = false;
             Ok(Box::new(move || appeared(&presence, service, &mut there).then(&input)))
@@ -168,9 +176,12 @@ impl<I> Ports<I> {
         wiring: &mut Wiring<I>,
         describe: Port<I>,
         session: &Session,
+        senders: &Arc<Senders>,
     ) -> Result<Self, SessionError> {
+        // until it says whom it hears
+        wiring.follows.iter().for_each(|topic| senders.is_known(topic.service, None));
         let open = |ports: &mut Vec<Open<I>>| -> Result<Vec<Port<I>>, SessionError> {
-            std::mem::take(ports).into_iter().map(|open| open(session)).collect()
+            std::mem::take(ports).into_iter().map(|open| open(session, senders)).collect()
         };
         // variables first: who is asked something knows what there is to be known
         let sampled = open(&mut wiring.sampled)?;

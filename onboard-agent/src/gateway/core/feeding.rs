@@ -28,7 +28,7 @@ impl Gateway {
             return self.join_answer(false, "Join as a session that names itself.".into());
         };
         if self.fp_manager.is_another(Some(from)) && self.fp_manager.lives(now) {
-            self.fp_manager.heard_another(now);
+            self.fp_manager.heard_others(now, 1);
             return self.join_answer(false, "Another FP Manager has joined, and lives.".into());
         }
         if let Err(reason) = self.may_join(&join) {
@@ -133,7 +133,7 @@ impl Gateway {
         out: &mut Vec<Output>,
     ) -> FeedAnswer {
         if self.fp_manager.is_another(from) {
-            self.fp_manager.heard_another(now);
+            self.fp_manager.heard_others(now, 1);
             return FeedAnswer::NotNow("Another FP Manager has joined: join first.".into());
         }
         if let Err(why) = self.takes_waypoints(now) {

@@ -46,6 +46,8 @@ pub enum Input {
         /// Who sends it, if that is said.
         from: Option<Instance>,
     },
+    /// So many messages came in the name of the FP Manager, from others than the one that joined.
+    Strangers(u64),
     /// The FP Manager presents itself; who it is, if that is said.
     Join(u64, Join, Option<Instance>),
     /// The FP Manager sends waypoints.

@@ -117,6 +117,7 @@ impl Gateway {
             Input::Stored(stored) => self.not_stored = !stored,
             Input::Flooded(flooded) => self.flooded = flooded,
             Input::Heartbeat { count, plan, from } => self.fp_manager.heartbeat(now, count, plan, from),
+            Input::Strangers(count) => self.fp_manager.heard_others(now, count),
             Input::Join(request, join, from) => {
                 let answer = self.join(now, join, from, out);
                 out.push(Output::Answer(request, Answer::Join(answer)));

@@ -31,7 +31,7 @@ pub struct FpManager {
     /// The one that sends heartbeats is the one that joined.
     joined: bool,
     /// The session of the one that joined last: the heartbeats and waypoints of others do not count.
-    instance: Option<Instance>,
+    pub instance: Option<Instance>,
     /// When another one was heard last.
     other_heard: Option<Time>,
     /// How many of its messages were ignored since the join.
@@ -47,7 +47,7 @@ impl FpManager {
     /// takes a join. And what a process says that did not join is not what is being flown.
     pub fn heartbeat(&mut self, now: Time, beats: u64, plan: Option<String>, from: Option<Instance>) {
         if self.is_another(from) {
-            return self.heard_another(now);
+            return self.heard_others(now, 1);
         }
         self.last_received = Some(now);
         self.joined &= beats >= self.beats;
@@ -62,10 +62,10 @@ impl FpManager {
         self.instance.is_some() && from != self.instance
     }
 
-    /// Another one speaks in its name.
-    pub fn heard_another(&mut self, now: Time) {
+    /// Others speak in its name, so many times.
+    pub fn heard_others(&mut self, now: Time, count: u64) {
         self.other_heard = Some(now);
-        self.others = self.others.saturating_add(1);
+        self.others = self.others.saturating_add(count);
     }
 
     /// The one that joined was heard just now.

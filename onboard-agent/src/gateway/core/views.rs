@@ -5,6 +5,7 @@ use super::telemetry::Telemetry;
 use super::{Gateway, seconds};
 use crate::gateway::order::Time;
 use geometry::{LatLon, LocalFrame};
+use usal::Instance;
 use usal::contract::{GatewayState, GatewayStatus, Navigation, Token};
 
 /// Low-water mark of the buffer.
@@ -18,6 +19,11 @@ impl Gateway {
     /// What it is doing.
     pub fn state(&self) -> GatewayState {
         self.state
+    }
+
+    /// The session of the FP Manager that joined last, if one has.
+    pub fn fp_manager(&self) -> Option<Instance> {
+        self.fp_manager.instance
     }
 
     /// The autopilot's latest values.

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use std::time::Instant;
 use tokio::sync::Notify;
 use tokio::task::{JoinHandle, JoinSet};
-use usal::{Announcement, EventPublisher, Session, Untyped};
+use usal::{Announcement, EventPublisher, Senders, Session, Untyped};
 
 /// After so many inputs from the network, the clock is looked at.
 const INPUTS_MAX: usize = 256;
@@ -33,6 +33,8 @@ pub struct Runtime<S: Service, A> {
     notify: Arc<Notify>,
     wiring: Wiring<S::Input>,
     ports: Ports<S::Input>,
+    /// Whom it hears of those who speak as a service.
+    senders: Arc<Senders>,
     board: Board,
     emitters: BTreeMap<&'static str, EventPublisher<Untyped>>,
     folder: Folder,
@@ -159,6 +161,12 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
     async fn sample(&mut self) {
         for input in self.ports.sampled() {
             self.step(input).await;
+        }
+        for (service, count) in self.senders.take_strange() {
+            self.statistics.strange += count;
+            if let Some(input) = self.wiring.strangers.as_ref().map(|strangers| strangers(service, count)) {
+                self.step(input).await;
+            }
         }
     }
 

@@ -34,7 +34,8 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
         let emitted = spec.says.iter().filter(|said| said.kind == Kind::Event);
         let emitters = emitted.map(|said| Ok((said.name, session.emitter_untyped(spec.name, said.name)?)));
         let emitters = emitters.collect::<Result<_, SessionError>>()?;
-        let ports = Ports::open(&mut wiring, describe(&spec, session)?, session)?;
+        let senders = Arc::default();
+        let ports = Ports::open(&mut wiring, describe(&spec, session)?, session, &senders)?;
         // who sees it can ask
         let announcement = session.announce(spec.name)?;
         // who is waited for hears all that is said at a tick
@@ -50,6 +51,7 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
             notify,
             wiring,
             ports,
+            senders,
             board,
             emitters,
             folder,

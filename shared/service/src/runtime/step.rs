@@ -20,6 +20,9 @@ impl<S: Service, A: Adapter<S>> Runtime<S, A> {
 
     async fn carry_out(&mut self, mut out: Out<S::Input, S::Output>) {
         let leaves = out.leaves();
+        for (service, session) in std::mem::take(&mut out.hears) {
+            self.senders.is_known(service, session);
+        }
         if !out.own.is_empty() {
             let outputs = std::mem::take(&mut out.own);
             self.adapter.perform(self.clock.now(), outputs, leaves, &mut self.tasks).await;

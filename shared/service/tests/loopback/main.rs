@@ -9,7 +9,7 @@ use service::*;
 use std::future::Future;
 use std::time::Duration;
 use usal::contract::{Air, Empty, Refusal, Stamped};
-use usal::topics::{Events, Invocation, Variable, describe, gateway};
+use usal::topics::{Events, GATEWAY, Invocation, Variable, describe, gateway};
 use usal::{CallError, Conductor, Occurrence, Rate, Raw, Said, Session, Spec, Start};
 
 /// Longer than anything takes on a slow machine.
@@ -40,7 +40,7 @@ const ADDED: Events<Stamped<Sum>> = Events::new("adder", "added");
 const ADD: Invocation<Add, Sum> = Invocation::new("adder", "add");
 const PONDER: Invocation<Empty, Sum> = Invocation::new("adder", "ponder");
 
-/// Adds up airspeeds and what it is asked to.
+/// Adds up airspeeds and what it is asked to, and a thousand for each message of a stranger.
 struct Adder {
     now: Sum,
     waiting: Vec<Reply<Sum>>,
@@ -49,6 +49,7 @@ struct Adder {
 enum Input {
     Tick,
     Air(f64),
+    Strangers(u64),
     Add(Request<Add, Sum>),
     Ponder(Request<Empty, Sum>),
     Pondered(Result<f64, String>),
@@ -86,6 +87,7 @@ impl Service for Adder {
 
     fn wire(wiring: &mut Wiring<Input>) {
         wiring.follow(gateway::AIR, |received| Input::Air(received.stamped.value.airspeed_mps));
+        wiring.strangers(|_, count| Input::Strangers(count));
         wiring.serve(ADD, Input::Add);
         wiring.serve(PONDER, Input::Ponder);
         wiring.tick(|| Input::Tick);
@@ -95,7 +97,10 @@ impl Service for Adder {
         match input {
             Input::Tick => self.now.ticks += 1,
             Input::Air(airspeed_mps) => drop(self.add(airspeed_mps, out)),
-            Input::Add(Request { request, reply, .. }) => {
+            Input::Strangers(count) => drop(self.add(1000.0 * count as f64, out)),
+            Input::Add(Request { request, reply, instance, .. }) => {
+                // whoever asks is the one that it hears
+                out.hear_only(GATEWAY, instance);
                 let answer = self.add(request.addend, out);
                 out.answer_when_kept(reply, answer);
             }
@@ -134,7 +139,7 @@ struct Net {
 impl Net {
     async fn open(config: impl FnOnce(Config) -> Config) -> Self {
         let endpoint = free_endpoint();
-        let hub = Session::open(usal::Config::hub("uav1", &endpoint)).await.unwrap();
+        let hub = Session::open(usal::Config::hub("uav1", &endpoint).named("hub")).await.unwrap();
         let config = config(Config::client("uav1", &endpoint));
         let (trigger, shutdown) = shutdown();
         let task = tokio::spawn(run_alone(config, Adder::new(), shutdown));
@@ -194,28 +199,30 @@ async fn whoever_insists_ends_it_although_it_is_needed() {
     within(net.task).await.unwrap().unwrap();
 }
 
+async fn adder_takes_part(conductor: &Conductor) {
+    let joins = async {
+        while conductor.participants() != ["adder"] {
+            tokio::time::sleep(Duration::from_millis(1)).await;
+        }
+    };
+    within(joins).await;
+}
+
+fn measured(airspeed_mps: f64) -> Air {
+    let (wind_east_mps, wind_north_mps) = (0.0, 0.0);
+    Air { airspeed_mps, wind_east_mps, wind_north_mps, pressure_hpa: 1000.0, temperature_c: 15.0 }
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn time_of_a_lockstep_is_followed_beat_by_beat() {
     let net = Net::open(|config| Config { timing: Timing::Follows, ..config }).await;
     let mut conductor = Conductor::new(&net.hub).unwrap().patience(DEADLINE);
     let air = net.hub.publish(gateway::AIR).unwrap();
     let mut sum = net.client.follow(SUM).unwrap();
-    within(async {
-        while conductor.participants() != ["adder"] {
-            tokio::time::sleep(Duration::from_millis(1)).await;
-        }
-    })
-    .await;
+    adder_takes_part(&conductor).await;
     for n in 1..=10_u32 {
         let time_s = f64::from(n);
-        let measured = Air {
-            airspeed_mps: time_s,
-            wind_east_mps: 0.0,
-            wind_north_mps: 0.0,
-            pressure_hpa: 1000.0,
-            temperature_c: 15.0,
-        };
-        air.set(time_s, 1.0, &measured);
+        air.set(time_s, 1.0, &measured(time_s));
         assert!(within(conductor.tick(time_s)).await.is_empty());
     }
     // what was said before a tick has been heard at it, and what came of it was shown at it
@@ -229,6 +236,33 @@ async fn time_of_a_lockstep_is_followed_beat_by_beat() {
     })
     .await;
     assert_eq!(last, Stamped { time_s: 10.0, validity_s: 2.0, value: Sum { sum: 55.0, ticks: 10 } });
+    net.end().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_flood_of_a_strangers_values_hides_no_true_one() {
+    let net = Net::open(|config| Config { timing: Timing::Follows, ..config }).await;
+    let mut conductor = Conductor::new(&net.hub).unwrap().patience(DEADLINE);
+    let (air, strange) = (net.hub.publish(gateway::AIR).unwrap(), net.client.publish(gateway::AIR).unwrap());
+    let sum = net.client.follow(SUM).unwrap();
+    adder_takes_part(&conductor).await;
+    within(net.hub.call(ADD, &Add { addend: 1.0 }, DEADLINE)).await.unwrap();
+    let mut time_s = 0.0;
+    let counted = async {
+        // until the tenth was taken in, and a stranger was counted
+        let taken =
+            |seen: &usal::Received<Sum>| seen.stamped.time_s > 10.0 && seen.stamped.value.sum > 1000.0;
+        while !sum.latest().is_some_and(|seen| taken(&seen)) {
+            time_s += 1.0;
+            let value = if time_s <= 10.0 { time_s } else { 0.0 };
+            air.set(time_s, 1.0, &measured(value));
+            (0..5).for_each(|_| strange.set(time_s, 1.0, &measured(0.5)));
+            assert!(conductor.tick(time_s).await.is_empty());
+        }
+    };
+    within(counted).await;
+    let sum = sum.latest().unwrap().stamped.value.sum;
+    assert!((sum.rem_euclid(1000.0) - 56.0).abs() < 1e-6, "1 + 55, and the strangers counted: {sum}");
     net.end().await;
 }
 

@@ -57,6 +57,18 @@ fn heartbeats_of_a_stranger_do_not_hide_that_the_fp_manager_is_dead() {
     }
 }
 
+/// The service hears only the one that joined, and says how many messages of others there were.
+#[test]
+fn messages_that_the_service_did_not_let_in_are_told_too() {
+    let mut flight = flying();
+    for _ in 0..10 {
+        flight.station.input(flight.now, Input::Strangers(100));
+        flight.run(0.5);
+    }
+    assert!(raised(&flight) && ignored(&flight) == 1000, "{:?}", told(&flight));
+    assert_eq!(flight.state(), GatewayState::Nav);
+}
+
 #[test]
 fn a_new_process_counts_once_it_has_joined() {
     let mut flight = flying();

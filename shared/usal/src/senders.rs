@@ -1,21 +1,21 @@
-//! Which session speaks as which service of the vehicle: the one that answers when the service is asked to describe itself. What
-//! others say in its name doesn't count, and is counted. It keeps mistakes apart and proves nothing: whoever means harm can take
-//! another's name.
+//! Which session speaks as which service of the vehicle. What others say in its name doesn't count, and is counted. It keeps
+//! mistakes apart and proves nothing: whoever means harm can take another's name.
 //!
-//! A service that is gone may come back as another session, so nobody waits for its description: until then whoever names
+//! For a window it is the session that answers when the service is asked to describe itself; a service knows better whom it has
+//! joined, or who has joined it. A service that is gone may come back as another session, so nobody waits for its description: until then whoever names
 //! himself counts. A plain put names nobody.
 
+use crate::{Gate, Instance};
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
-use usal::Instance;
 
 /// Whoever speaks for a service that was silent for so long may have followed it.
 const SILENT: Duration = Duration::from_secs(2);
 
 /// The services of a vehicle, by name.
 #[derive(Debug, Default)]
-pub(super) struct Senders(Mutex<BTreeMap<&'static str, Sender>>);
+pub struct Senders(Mutex<BTreeMap<&'static str, Sender>>);
 
 /// Who speaks as a service.
 #[derive(Debug, Default)]
@@ -35,7 +35,7 @@ enum Known {
     #[default]
     Nobody,
     Session(Instance),
-    /// An older service doesn't say which session it is.
+    /// An older service doesn't say which session it is, or nobody has been chosen yet.
     Anybody,
 }
 
@@ -74,18 +74,30 @@ impl Sender {
 }
 
 impl Senders {
+    /// Lets in what comes from the session that is this service.
+    pub fn gate(self: &Arc<Self>, service: &'static str) -> Gate {
+        let senders = self.clone();
+        Arc::new(move |from| senders.counts(service, from, Instant::now()))
+    }
+
+    /// It is known without a description who speaks as a service: this session and no other; `None`: whoever does.
+    pub fn is_known(&self, service: &'static str, session: Option<Instance>) {
+        let sender = Sender { known: session.map_or(Known::Anybody, Known::Session), ..Sender::default() };
+        self.lock().insert(service, sender);
+    }
+
     /// Whether a message in the name of a service counts.
-    pub(super) fn counts(&self, service: &'static str, from: Option<Instance>, now: Instant) -> bool {
+    pub fn counts(&self, service: &'static str, from: Option<Instance>, now: Instant) -> bool {
         self.lock().entry(service).or_default().counts(from, now)
     }
 
     /// A service was described, by a session that says which it is or doesn't.
-    pub(super) fn described(&self, service: &'static str, by: Option<Instance>, now: Instant) {
+    pub fn described(&self, service: &'static str, by: Option<Instance>, now: Instant) {
         self.lock().entry(service).or_default().described(by, now);
     }
 
     /// These are there; who comes back may be another session.
-    pub(super) fn alive(&self, services: &BTreeSet<String>) {
+    pub fn alive(&self, services: &BTreeSet<String>) {
         let mut senders = self.lock();
         let gone = senders.iter_mut().filter(|(service, _)| !services.contains(**service));
         gone.for_each(|(_, sender)| sender.gone());
@@ -93,7 +105,7 @@ impl Senders {
 
     /// Whether somebody speaks for a service that is silent itself: it should be asked again who it is. Said once, until somebody
     /// does so again.
-    pub(super) fn take_doubt(&self, now: Instant) -> bool {
+    pub fn take_doubt(&self, now: Instant) -> bool {
         let mut is_doubtful = false;
         for sender in self.lock().values_mut().filter(|sender| sender.is_contested && sender.is_silent(now)) {
             (sender.is_contested, is_doubtful) = (false, true);
@@ -102,7 +114,7 @@ impl Senders {
     }
 
     /// How many messages of others came since this was asked last, by service.
-    pub(super) fn take_strange(&self) -> Vec<(&'static str, u64)> {
+    pub fn take_strange(&self) -> Vec<(&'static str, u64)> {
         let mut senders = self.lock();
         let counted =
             senders.iter_mut().map(|(service, sender)| (*service, std::mem::take(&mut sender.strange)));
@@ -167,6 +179,20 @@ mod tests {
         assert!(senders.take_doubt(later), "it was silent, and somebody speaks in its name");
         senders.described(SERVICE, instance("b2"), later);
         assert!(senders.counts(SERVICE, instance("b2"), later) && !senders.take_doubt(later + SILENT));
+    }
+
+    #[test]
+    fn who_is_known_without_a_description_counts_alone() {
+        let (senders, now) = (Arc::new(Senders::default()), Instant::now());
+        let gate = senders.gate(SERVICE);
+        senders.is_known(SERVICE, None);
+        assert!(gate(None) && gate(instance("a1")) && gate(instance("b2")), "nobody was chosen yet");
+        senders.is_known(SERVICE, instance("a1"));
+        assert!(gate(instance("a1")) && !gate(instance("b2")) && !gate(None));
+        assert_eq!(senders.take_strange(), [(SERVICE, 2)]);
+        senders.is_known(SERVICE, instance("b2"));
+        assert!(!gate(instance("a1")) && gate(instance("b2")));
+        assert_eq!(senders.counts(SERVICE, None, now), gate(None));
     }
 
     #[test]
