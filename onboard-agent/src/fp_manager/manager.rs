@@ -113,6 +113,11 @@ impl Manager {
         self.gateway_session.is_joined()
     }
 
+    /// The gateway is to be asked to fly the plan on, and has not agreed yet.
+    pub fn wants_resume(&self) -> bool {
+        self.gateway_session.wanted() == Some(&GatewayRequest::Resume)
+    }
+
     /// The session of the gateway that answered the last join, if it said so.
     pub fn gateway(&self) -> Option<Instance> {
         self.gateway_session.gateway()

@@ -18,6 +18,7 @@ mod plan_history;
 mod proposals;
 mod publish;
 mod restart;
+mod resuming;
 mod runways;
 mod service;
 mod shell;

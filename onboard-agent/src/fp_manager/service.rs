@@ -11,6 +11,7 @@ use super::proposals::{
     Asked as Proposed, Conclusion, ProposalReview, Reviewed, Situation, good_for_now, reviewed,
 };
 use super::publish;
+use super::resuming::Resuming;
 use flight_exec::{Command, Event, Refusal};
 use flight_plan::{Problem, Program};
 use serde::de::DeserializeOwned;
@@ -108,6 +109,7 @@ pub struct FpManager {
     command_review: CommandReview,
     background_review: BackgroundReview,
     foreseeing: Foreseeing,
+    resuming: Resuming,
     heartbeats: u64,
 }
 
@@ -184,6 +186,7 @@ impl FpManager {
             command_review: CommandReview::default(),
             background_review: BackgroundReview::default(),
             foreseeing: Foreseeing::default(),
+            resuming: Resuming::default(),
             heartbeats: 0,
         }
     }
@@ -209,6 +212,7 @@ impl FpManager {
         match input {
             Input::Tick => {
                 manager.tick(now, &mut effects);
+                self.resuming.tick(now, manager.wants_resume(), out);
                 out.push(Output::PollJournal);
             }
             Input::Report(from, report) => manager.report(now, from, report, &mut effects),
@@ -222,6 +226,9 @@ impl FpManager {
             }
             Input::Requested(request, answer) => {
                 let answer = answer.map(drop).map_err(|error| error.to_string());
+                if request == GatewayRequest::Resume {
+                    self.resuming.answered(&answer, out);
+                }
                 manager.requested(now, &request, answer, &mut effects);
             }
             _ => {}
@@ -279,6 +286,9 @@ impl FpManager {
 
     fn give(&mut self, now: Time, asked: Asked, out: &mut Out) {
         let answer = self.command(now, asked.command.clone(), &asked.by, asked.id.as_deref(), out);
+        if answer.is_ok() && asked.command == Command::Resume && self.manager.wants_resume() {
+            return self.resuming.wait(now, asked, out);
+        }
         asked.answer(answer, out);
     }
 

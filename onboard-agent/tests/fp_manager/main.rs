@@ -230,6 +230,28 @@ async fn hold_and_resume_reach_the_gateway_in_order() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn who_resumes_is_answered_as_the_gateway_answers() {
+    let mut flight = Flight::new(None).await;
+    flight.load(SQUARE).await;
+    flight.start().await;
+    flight.step_until(|g| g.flown.len() >= 2).await;
+    flight.command(Command::Hold).await.unwrap();
+    flight.step_until(|g| g.state == GatewayState::Hold).await;
+    flight.gateway.refuse_resume = Some("not while the test says so".into());
+    match flight.command(Command::Resume).await {
+        Err(CallError::Refused(refusal)) => {
+            assert_eq!(refusal.code, "not-granted");
+            assert!(refusal.reason.contains("not while the test says so"), "{refusal}");
+        }
+        other => panic!("{other:?}"),
+    }
+    assert_eq!(flight.gateway.state, GatewayState::Hold);
+    flight.gateway.refuse_resume = None;
+    flight.command(Command::Resume).await.unwrap();
+    assert_ne!(flight.gateway.state, GatewayState::Hold, "it has agreed");
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn alarm_with_a_cause_flies_the_emergency_plan() {
     let mut flight = Flight::new(None).await;
     flight.load(SQUARE).await;

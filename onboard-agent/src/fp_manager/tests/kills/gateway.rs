@@ -16,6 +16,8 @@ pub struct Gateway {
     pub refuse_leg: Option<Id>,
     /// Launches are refused with this.
     pub refuse_launch: Option<String>,
+    /// To fly on is refused with this.
+    pub refuse_resume: Option<String>,
     /// Safe mode is refused so often, as below the height where a take-off may be interrupted.
     pub refuse_safe: usize,
     /// What happened and was not reported yet.
@@ -43,6 +45,7 @@ impl Gateway {
             runways: Vec::new(),
             refuse_leg: None,
             refuse_launch: None,
+            refuse_resume: None,
             refuse_safe: 0,
             events: VecDeque::new(),
             buffer: VecDeque::new(),
@@ -111,6 +114,9 @@ impl Gateway {
         match request {
             GatewayRequest::Launch if self.refuse_launch.is_some() => {
                 return Err(self.refuse_launch.clone().unwrap_or_default());
+            }
+            GatewayRequest::Resume if self.refuse_resume.is_some() => {
+                return Err(self.refuse_resume.clone().unwrap_or_default());
             }
             GatewayRequest::Launch if self.state != GatewayState::Stop => return Err("it flies".into()),
             GatewayRequest::Launch | GatewayRequest::Resume => {
