@@ -57,7 +57,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "stdio",
         ],
     ),
-    ("system-tests", &["geometry", "usal"]),
+    ("system-tests", &["geometry", "usal", "autopilot-link", "sim"]),
     ("pictures", &[]),
     (
         "fuzz-targets",
@@ -78,7 +78,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
 const ONLY_IN: &[(&str, &[&str])] = &[
     ("zenoh", &["usal"]),
     ("zenoh-ext", &["usal"]),
-    ("mavlink", &["autopilot-link", "onboard-agent", "sim"]),
+    ("mavlink", &["autopilot-link", "onboard-agent", "sim", "system-tests"]),
     ("egui", &["gcs-app", "pictures"]),
     ("eframe", &["gcs-app"]),
     ("walkers", &["gcs-app"]),
@@ -261,7 +261,7 @@ fn only_the_demo_sees_agent_and_simulator() {
 }
 
 /// Where an autopilot's protocol may be spoken. The bench plays an autopilot; the tests of several links look at what each of
-/// them carries.
+/// them carries; flight tests tell somebody else's simulation what goes wrong.
 const SPEAK_MAVLINK: &[&str] = &[
     "onboard-agent/src/gateway/driver/",
     "onboard-agent/src/gateway/tests/flights/two_links.rs",
@@ -269,6 +269,7 @@ const SPEAK_MAVLINK: &[&str] = &[
     "onboard-agent/benches/frame_to_subscriber.rs",
     "shared/autopilot-link/",
     "shared/sim/",
+    "tests/src/rig/world/",
     "tests/tests/architecture.rs",
 ];
 

@@ -11,7 +11,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the place and the size of the scan change while it is flown; a size out of bounds",
         expected: "it sweeps there; the bad value is refused; the loop ends when its condition holds",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(variable_moves_the_sweep(rig)),
     },
     Scenario {
@@ -19,7 +18,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "a broken plan, then one with a leg ahead moved",
         expected: "the broken one is refused; the other is flown from the present place on",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(plan_update_in_flight(rig)),
     },
     Scenario {
@@ -27,7 +25,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "nobody decides at an intersection",
         expected: "it is asked, and its default is flown at the deadline",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(decision_by_default(rig)),
     },
     Scenario {
@@ -35,7 +32,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the operator decides before the intersection",
         expected: "the branch is flown",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(decision_by_operator(rig)),
     },
     Scenario {
@@ -43,7 +39,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the operator holds on a leg, and goes on after a minute",
         expected: "it circles, and goes on from the same place",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(hold_and_resume(rig)),
     },
 ];

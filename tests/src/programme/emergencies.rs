@@ -11,7 +11,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "an emergency on a leg that has a plan of its own",
         expected: "that plan is flown, to its landing",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(ordered(rig, "far", Cause::Link, "near-home-df")),
     },
     Scenario {
@@ -19,7 +18,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "an emergency on a stage that has a plan of its own",
         expected: "that plan is flown, to its landing",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(ordered(rig, "sweep", Cause::Energy, "field-df")),
     },
     Scenario {
@@ -27,7 +25,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "an emergency where neither leg nor stage has a plan",
         expected: "the plan of the whole flight plan is flown, to its landing",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(ordered(rig, "round", Cause::Operator, "home-df")),
     },
     Scenario {
@@ -35,7 +32,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the engine stops",
         expected: "alarm, and at once the plan for the cause engine",
         simulator: &[],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(engine_lost(rig, &["engine-out", "engine-suspected"])),
     },
     Scenario {
@@ -43,7 +39,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the engine stops, and nothing tells its speed",
         expected: "it is suspected by its sinking; the plan for the cause engine",
         simulator: &["--fault", "no-rpm"],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(engine_lost(rig, &["engine-suspected"])),
     },
     Scenario {
@@ -51,7 +46,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the battery falls below its reserve",
         expected: "alarm, and the plan for the cause energy, to its landing",
         simulator: &[],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(battery_low(rig)),
     },
     Scenario {
@@ -59,7 +53,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "no GPS for half a minute",
         expected: "alarm while it lasts, and a landing",
         simulator: &[],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(gps_lost(rig)),
     },
 ];

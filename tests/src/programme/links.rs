@@ -10,7 +10,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the autopilot is not heard for 1 s",
         expected: "the mission is flown as if nothing had been",
         simulator: &[],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(unnoticed(rig, 1.0)),
     },
     Scenario {
@@ -18,7 +17,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the autopilot is not heard for 5 s",
         expected: "alarm; the mission goes on by the list aboard",
         simulator: &[],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(gone_on_with(rig, 5.0)),
     },
     Scenario {
@@ -26,7 +24,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the autopilot is not heard for 30 s",
         expected: "alarm; the mission goes on by the list aboard",
         simulator: &[],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(gone_on_with(rig, 30.0)),
     },
     Scenario {
@@ -34,7 +31,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the autopilot is not heard for 5 min, longer than its list lasts",
         expected: "alarm; it waits by its own means, then lands on the runway",
         simulator: &[],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(come_home(rig, 300.0)),
     },
 ];

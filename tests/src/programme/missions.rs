@@ -9,7 +9,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "nothing, at 5 m/s of wind",
         expected: "three sweeps of the loop, landing on the runway",
         simulator: &["--wind", "270,5"],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(whole(rig)),
     },
     Scenario {
@@ -17,7 +16,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "12 m/s of wind",
         expected: "three sweeps of the loop, landing on the runway",
         simulator: &["--wind", "250,12"],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(whole(rig)),
     },
     Scenario {
@@ -34,7 +32,6 @@ pub const SCENARIOS: &[Scenario] = &[
             "--seed",
             "7",
         ],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(whole(rig)),
     },
 ];

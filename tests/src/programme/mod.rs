@@ -28,10 +28,8 @@ pub struct Scenario {
     pub happens: &'static str,
     /// What must come of it.
     pub expected: &'static str,
-    /// Arguments of the simulator.
-    simulator: &'static [&'static str],
-    /// It needs nothing of the autopilot but that it flies; else the simulated world has to be disturbed.
-    pub is_for_any_autopilot: bool,
+    /// The conditions, as arguments of our simulator.
+    pub simulator: &'static [&'static str],
     fly: for<'a> fn(&'a mut Rig) -> Rest<'a>,
 }
 

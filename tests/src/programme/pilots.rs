@@ -11,7 +11,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the pilot's switch goes to a mode of his own, and half a minute later back",
         expected: "alarm, nobody claims to fly the plan; then the mission from the same place",
         simulator: &[],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(pilot_gives_back(rig)),
     },
     Scenario {
@@ -19,7 +18,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the autopilot returns by itself, as by a failsafe; the operator resumes",
         expected: "alarm, the autopilot's return is left alone; resume takes the mission up again",
         simulator: &[],
-        is_for_any_autopilot: false,
         fly: |rig| Box::pin(operator_takes_back(rig)),
     },
 ];

@@ -11,7 +11,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the FP Manager is killed in its second sweep, and comes back",
         expected: "Safe hold within its time, then the mission from the same place; no pass lost or doubled",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(fp_manager_killed(rig)),
     },
     Scenario {
@@ -19,7 +18,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the FP Manager is killed, and never comes back",
         expected: "Safe hold, Safe return, and a landing by the gateway alone",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(fp_manager_gone_for_good(rig)),
     },
     Scenario {
@@ -27,7 +25,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the gateway is killed, and comes back",
         expected: "the FP Manager joins it again, and the mission goes on",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(gateway_killed(rig)),
     },
     Scenario {
@@ -35,7 +32,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "gateway and FP Manager are killed, as by a restart of their machine",
         expected: "both find their place again, and the mission goes on",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(agent_restarted(rig)),
     },
     Scenario {
@@ -43,7 +39,6 @@ pub const SCENARIOS: &[Scenario] = &[
         happens: "the ground station leaves without a word, and comes back",
         expected: "the mission is flown as if nothing had been",
         simulator: &[],
-        is_for_any_autopilot: true,
         fly: |rig| Box::pin(ground_station_gone(rig)),
     },
 ];

@@ -2,6 +2,7 @@
 
 use super::Pace;
 use super::processes::VEHICLE;
+use std::time::{Duration, Instant};
 use usal::{
     Config, EventSubscriber, Participant, Presence, Session, Start, VariableSubscriber,
     contract::{
@@ -11,10 +12,13 @@ use usal::{
     topics::{fp_manager, gateway, storage},
 };
 
+/// With an autopilot that knows nothing of us, the flight is looked at this often.
+const LOOK: Duration = Duration::from_millis(50);
+
 /// The test's side of the contract.
 pub struct Ground {
     pub session: Session,
-    pub clock: Option<Participant>,
+    pub clock: Clock,
     pub plan_events: EventSubscriber<FpManagerEvent>,
     pub gateway_events: EventSubscriber<TimedGatewayEvent>,
     pub status: VariableSubscriber<PlanStatus>,
@@ -24,6 +28,13 @@ pub struct Ground {
     pub attitude: VariableSubscriber<Attitude>,
     pub recording: VariableSubscriber<Recording>,
     pub presence: Presence,
+}
+
+/// What tells the time.
+pub enum Clock {
+    Lockstep(Participant),
+    /// The machine's, counted from then: the autopilot may not be heard.
+    Free(Instant, tokio::time::Interval),
 }
 
 impl Ground {
@@ -40,8 +51,8 @@ impl Ground {
             recording: session.follow(storage::RECORDING)?,
             presence: session.presence()?,
             clock: match pace {
-                Pace::Lockstep => Some(Participant::join(&session, "test")?),
-                Pace::Free => None,
+                Pace::Lockstep => Clock::Lockstep(Participant::join(&session, "test")?),
+                Pace::Free(since) => Clock::Free(since, tokio::time::interval(LOOK)),
             },
             session,
         })
@@ -50,8 +61,18 @@ impl Ground {
     /// Waits until time has gone on, and gives it; in lockstep with the tick to be acknowledged.
     pub async fn next(&mut self) -> Option<(f64, Option<ClockTick>)> {
         match &mut self.clock {
-            Some(clock) => clock.next().await.map(|tick| (tick.time_s, Some(tick))),
-            None => self.position.changed().await.map(|position| (position.stamped.time_s, None)),
+            Clock::Lockstep(clock) => clock.next().await.map(|tick| (tick.time_s, Some(tick))),
+            Clock::Free(since, look) => {
+                look.tick().await;
+                Some((since.elapsed().as_secs_f64(), None))
+            }
+        }
+    }
+
+    /// The work for this instant is done.
+    pub fn acknowledge(&self, tick: ClockTick) {
+        if let Clock::Lockstep(clock) = &self.clock {
+            clock.acknowledge(tick);
         }
     }
 }

@@ -3,6 +3,7 @@
 mod ground;
 mod processes;
 mod seen;
+mod world;
 
 use crate::binaries::Program;
 use crate::logs::Logs;
@@ -12,7 +13,10 @@ use geometry::LatLon;
 use ground::Ground;
 use processes::Places;
 pub use seen::Seen;
-use std::{path::Path, time::Duration};
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
 use usal::{
     Occurrence,
     contract::{
@@ -21,6 +25,7 @@ use usal::{
     },
     topics::{self, fp_manager},
 };
+use world::World;
 
 /// Where the simulator stands.
 pub const FIELD: Field =
@@ -30,10 +35,8 @@ const CALL: Duration = Duration::from_secs(20);
 /// Wall-clock time in which a part of the system must do something.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Simulator, gateway, FP Manager, and the test as a ground station and clock participant.
+/// A simulated world, gateway, FP Manager, and the test as a ground station and clock participant.
 pub struct Rig {
-    /// The simulator, unless the autopilot is somebody else's.
-    pub simulator: Option<Program>,
     /// The gateway's process.
     pub gateway: Program,
     /// The FP Manager's process.
@@ -44,6 +47,7 @@ pub struct Rig {
     pub seen: Seen,
     /// Where it flies.
     pub field: Field,
+    world: World,
     places: Places,
     ground: Option<Ground>,
 }
@@ -53,8 +57,8 @@ pub struct Rig {
 pub enum Pace {
     /// Tick by tick, when the test says so.
     Lockstep,
-    /// By itself: an autopilot that knows nothing of us.
-    Free,
+    /// By itself, counted from then: an autopilot that knows nothing of us.
+    Free(Instant),
 }
 
 impl Rig {
@@ -69,14 +73,18 @@ impl Rig {
         let logs = Logs::new()?;
         let simulator = Program::start("legwork-sim", &arguments, &logs, "simulator")?;
         let said = simulator.wait_for("listening on tcp ").with_context(|| logs.ends())?;
-        Self::assemble(Some(simulator), &format!("tcp:{said}"), Pace::Lockstep, logs).await
+        Self::assemble(World::Ours(simulator), &format!("tcp:{said}"), Pace::Lockstep, logs).await
     }
 
-    /// Starts the agent on somebody else's autopilot (`tcp:HOST:PORT`, …), around the place where it stands.
-    pub async fn attach(autopilot: &str) -> anyhow::Result<Self> {
-        let mut rig = Self::assemble(None, autopilot, Pace::Free, Logs::new()?).await?;
-        rig.until("a position on the ground", 120.0, |rig, _| {
-            rig.attitude().is_some() && rig.position().is_some_and(|p| p.on_ground)
+    /// Starts the agent on somebody else's autopilot (`tcp:HOST:PORT`, …) in a simulation of its own, around the place where it
+    /// stands. `conditions`: of its world, as arguments of our simulator.
+    pub async fn attach(autopilot: &str, conditions: &[&str]) -> anyhow::Result<Self> {
+        let (world, address) = World::theirs(autopilot, conditions).await?;
+        let mut rig = Self::assemble(world, &address, Pace::Free(Instant::now()), Logs::new()?).await?;
+        rig.until("a position on the ground, in the world that was asked for", 120.0, |rig, _| {
+            rig.attitude().is_some()
+                && rig.position().is_some_and(|p| p.on_ground)
+                && rig.world.is_as_asked().is_ok_and(|is| is)
         })
         .await?;
         let (position, attitude) = (rig.position().context("position")?, rig.attitude().context("attitude")?);
@@ -88,18 +96,13 @@ impl Rig {
         Ok(rig)
     }
 
-    async fn assemble(
-        simulator: Option<Program>,
-        autopilot: &str,
-        pace: Pace,
-        logs: Logs,
-    ) -> anyhow::Result<Self> {
+    async fn assemble(world: World, autopilot: &str, pace: Pace, logs: Logs) -> anyhow::Result<Self> {
         let places = Places::new(autopilot, pace, logs)?;
         let gateway = places.start_gateway()?;
         let fp_manager = places.start_fp_manager()?;
         let ground = Ground::open(&places.endpoint, pace).await.with_context(|| places.logs.ends())?;
         Ok(Self {
-            simulator,
+            world,
             gateway,
             fp_manager,
             storage: None,
@@ -157,6 +160,7 @@ impl Rig {
         let mut ends_at = None;
         loop {
             let ground = self.ground.as_mut().context("no ground station")?;
+            self.world.is_as_asked()?;
             let next = tokio::time::timeout(PATIENCE, ground.next()).await;
             let Some((time_s, tick)) =
                 next.with_context(|| format!("time stands still; waiting for: {what}"))?
@@ -167,8 +171,8 @@ impl Rig {
             self.drain();
             let done = holds(self, &self.seen);
             let late = time_s > *ends_at.get_or_insert(time_s + limit_s);
-            if let (Some(clock), Some(tick)) = (&self.ground()?.clock, tick) {
-                clock.acknowledge(tick);
+            if let Some(tick) = tick {
+                self.ground()?.acknowledge(tick);
             }
             if done {
                 return Ok(());
@@ -228,9 +232,9 @@ impl Rig {
     /// Does something to the simulated world, in the words of the simulator's standard input.
     ///
     /// # Errors
-    /// The autopilot is somebody else's: its world is not ours to change.
+    /// They can't be understood, or nobody is there any more who does it.
     pub fn disturb(&mut self, line: &str) -> anyhow::Result<()> {
-        self.simulator.as_mut().context("only a simulated world can be disturbed")?.send_line(line)
+        self.world.disturb(line)
     }
 
     /// Waits, without letting time go on, until the flight recorder says so of itself.
