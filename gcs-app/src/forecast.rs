@@ -10,11 +10,13 @@ mod coverage;
 mod left_out;
 mod preview;
 mod reviewer;
+mod told;
 mod worker;
 
 pub use aboard::Aboard;
 pub use coverage::Coverage;
 pub use left_out::LeftOut;
+pub use told::{Clearance, clearance, told};
 pub use worker::{Analysis, Question, Worker};
 
 use flight_exec::rehearse::WhatIf;

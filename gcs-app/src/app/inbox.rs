@@ -9,10 +9,11 @@ use crate::state::{LOOK_AHEAD, READ_ABOARD, VehicleName};
 impl App {
     /// Takes in all that has come since the last frame, and asks for what is wanted next.
     pub(super) fn drain(&mut self, ctx: &egui::Context) {
-        let now_s = ctx.input(|i| i.time);
-        self.drain_links(now_s);
+        let now = Now::read(ctx);
+        let now_s = now.window_s;
+        self.drain_links(now);
         self.drain_worker(ctx);
-        self.view.behind_since_s = match self.scene(Now::read(ctx)).is_behind() {
+        self.view.behind_since_s = match self.scene(now).is_behind() {
             true => self.view.behind_since_s.or(Some(now_s)),
             false => None,
         };
@@ -30,21 +31,23 @@ impl App {
     }
 
     /// What the vehicles say; and what they are asked because of it.
-    fn drain_links(&mut self, now_s: f64) {
+    fn drain_links(&mut self, now: Now) {
+        let now_s = now.window_s;
         // no more than that in a frame: who talks without a break must not stop the drawing
         for _ in 0..=BACKLOG {
             let Some(message) = self.links.message() else { break };
             self.vehicles.receive(message, now_s);
         }
-        self.look_out(now_s);
+        self.vehicles.look_ahead(self.layers.ground().as_ref());
+        self.look_out(now);
         self.adopt_plan_aboard();
         for vehicle in self.vehicles.due_for_plan(now_s) {
             self.call(&vehicle, READ_ABOARD, Call::PlanAboard, now_s);
         }
-        for vehicle in self.vehicles.due_for_landing(now_s) {
+        for vehicle in self.vehicles.due_for_way(now_s) {
             let ticket = self.call(&vehicle, LOOK_AHEAD, Call::Foresee(None), now_s);
             if let (Some(vehicle), Some(ticket)) = (self.vehicles.get_mut(&vehicle), ticket) {
-                vehicle.outlook.asked_when_it_lands(ticket, now_s);
+                vehicle.outlook.asked_which_way(ticket, now_s);
             }
         }
         self.compare_with_aboard();

@@ -1,6 +1,7 @@
 //! What the window tells by itself: messages that go again, the story of a demo, the tour.
 
-use super::{App, REFRESH};
+use super::{App, Now, REFRESH};
+use crate::panels::profile;
 use crate::state::Level;
 use crate::story::Story;
 use std::time::Duration;
@@ -59,8 +60,9 @@ impl App {
         }
     }
 
-    /// Watches altitude and ground, a few times a second.
-    pub(super) fn look_out(&mut self, now_s: f64) {
+    /// Watches altitude, ground and way, a few times a second.
+    pub(super) fn look_out(&mut self, now: Now) {
+        let now_s = now.window_s;
         if now_s - self.looked_s >= LOOK_OUT_S {
             self.looked_s = now_s;
             for (name, is_silent) in self.vehicles.look(self.layers.ground().as_ref(), now_s) {
@@ -70,6 +72,11 @@ impl App {
                 };
                 self.toasts.withdraw(|said| *said == format!("{name}: {over}"));
                 self.toasts.add(now_s, level, format!("{name}: {text}"));
+            }
+            let is_elsewhere = profile::is_elsewhere(&self.scene(now));
+            let shown = self.vehicles.shown_name().cloned();
+            if let Some(vehicle) = shown.and_then(|name| self.vehicles.get_mut(&name)) {
+                vehicle.outlook.is_elsewhere = is_elsewhere;
             }
         }
     }

@@ -59,7 +59,7 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
         Some(Err(why)) => {
             ui.label(RichText::new(format!("⚠ What follows is not known: {why}")).color(p.caution));
         }
-        Some(Ok(foresight)) => follows(ui, foresight, scene),
+        Some(Ok(foresight)) => follows(ui, considered, foresight, scene),
     }
 }
 
@@ -68,8 +68,7 @@ fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
     let p = theme::of(ui);
     let text = effect(considered, scene.vehicle);
     let units = scene.units();
-    let is_clean =
-        matches!(&considered.foresight, Some(Ok(foresight)) if cautions(foresight, units).is_empty());
+    let is_clean = matches!(&considered.foresight, Some(Ok(foresight)) if cautions(considered, foresight, units).is_empty());
     let given = if is_clean {
         ui.add(super::primary_button(&text, p)).clicked()
     } else {
@@ -98,31 +97,33 @@ fn effect(considered: &Considered, vehicle: &Vehicle) -> String {
 }
 
 /// What would follow, in words.
-fn follows(ui: &mut Ui, foresight: &Foresight, scene: &Scene<'_>) {
+fn follows(ui: &mut Ui, considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) {
     let p = theme::of(ui);
     ui.label(RichText::new("╌╌ on the map: the path that would be flown").color(p.text));
     ScrollArea::vertical().id_salt("consider").auto_shrink(false).show(ui, |ui| {
-        for line in cautions(foresight, scene.units()) {
+        for line in cautions(considered, foresight, scene.units()) {
             ui.label(RichText::new(format!("⚠ {line}")).color(p.caution));
         }
-        for line in facts(foresight, scene.vehicle, scene.units()) {
+        for line in facts(considered, foresight, scene) {
             ui.label(line);
         }
     });
 }
 
-fn cautions(foresight: &Foresight, units: Units) -> Vec<String> {
+fn cautions(considered: &Considered, foresight: &Foresight, units: Units) -> Vec<String> {
     let climb = foresight.short_of_altitude_m.map(|short_m| {
         format!("Climb not done: it arrives {} below the leg's altitude", units.altitude().show(short_m))
     });
     let end = foresight.cut_short.clone();
     let unfinished = (end.is_none() && !foresight.landed).then(|| "It does not end on the ground".to_owned());
-    let low = foresight
-        .clearance_m
-        .filter(|m| *m < LOW_M)
-        .map(|m| format!("Only {} above the ground where it is lowest", units.altitude().show(m)));
+    let height = height(considered, foresight);
+    let low = height.filter(|height| height.least_m < LOW_M).map(|height| {
+        let least = units.altitude().show(height.least_m);
+        format!("Only {least} above the ground where it is lowest{}", height.by())
+    });
     climb
         .into_iter()
+        .chain(unknown_ground(height).map(str::to_owned))
         .chain(low)
         .chain(foresight.problems.iter().cloned())
         .chain(end)
@@ -130,7 +131,44 @@ fn cautions(foresight: &Foresight, units: Units) -> Vec<String> {
         .collect()
 }
 
-fn facts(foresight: &Foresight, vehicle: &Vehicle, units: Units) -> Vec<String> {
+/// The height above the ground on the way that would be flown, until the approach.
+#[derive(Clone, Copy)]
+struct Height {
+    least_m: f64,
+    is_whole: bool,
+    /// By the agent's elevations, not by this window's.
+    is_from_aboard: bool,
+}
+
+impl Height {
+    /// `, by this window's elevations`.
+    fn by(self) -> &'static str {
+        if self.is_from_aboard { "" } else { ", by this window's elevations" }
+    }
+}
+
+/// What the agent knows; else what this window knows.
+fn height(considered: &Considered, foresight: &Foresight) -> Option<Height> {
+    let aboard = foresight.clearance_m.map(|least_m| (least_m, true));
+    let here = || considered.clearance.map(|here| (here.least_m, here.is_whole));
+    let (least_m, is_whole) = aboard.or_else(here)?;
+    Some(Height { least_m, is_whole, is_from_aboard: aboard.is_some() })
+}
+
+fn unknown_ground(height: Option<Height>) -> Option<&'static str> {
+    match height {
+        None => {
+            Some("The ground below is known neither aboard nor here: load elevations (Maps), and look again")
+        }
+        Some(height) if !height.is_whole => Some(
+            "The ground below is known for a part of the way only: load more elevations (Maps), and look again",
+        ),
+        Some(_) => None,
+    }
+}
+
+fn facts(considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) -> Vec<String> {
+    let (vehicle, units) = (scene.vehicle, scene.units());
     let next = foresight.next_leg.as_ref().map(|leg| format!("Flies next: {}", vehicle.name_of(leg)));
     let named = foresight.left_out.iter().take(MOST_LEGS).map(|leg| vehicle.name_of(leg));
     let named: Vec<String> = named.collect();
@@ -139,17 +177,15 @@ fn facts(foresight: &Foresight, vehicle: &Vehicle, units: Units) -> Vec<String> 
         Some(more) if more > 0 => format!("Left out: {} and {more} more", named.join(", ")),
         _ => format!("Left out: {}", named.join(", ")),
     };
-    let clearance = foresight.clearance_m.map_or_else(
-        || "Height above the ground: not known".to_owned(),
-        |metres| {
-            format!("Least height above the ground until the approach: {}", units.altitude().show(metres))
-        },
-    );
+    let clearance = height(considered, foresight).map(|height| {
+        let least = units.altitude().show(height.least_m);
+        format!("Least height above the ground until the approach: {least}{}", height.by())
+    });
     let end = format!(
         "Ends in {} after {}, with {:.0} % energy left",
         units::duration(foresight.time_s),
         units.distance().show(foresight.distance_m),
         foresight.battery_left * 100.0
     );
-    next.into_iter().chain([left_out, clearance, end]).collect()
+    next.into_iter().chain([left_out]).chain(clearance).chain([end]).collect()
 }

@@ -1,6 +1,9 @@
 //! Altitude along the path, with the ground below, stages as bands, a cursor on the timeline, and altitudes to be dragged.
 
+mod flown;
 mod levels;
+
+pub use flown::is_elsewhere;
 
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{PreviewCommand, Queue};
@@ -34,7 +37,7 @@ impl Panel for Profile {
         Place::Below
     }
     fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        if where_it_is(scene).is_some() {
+        if flown::on_preview(scene).is_some() || flown::told(scene).is_some() {
             ui.checkbox(&mut self.whole, "Whole flight").on_hover_text("Else from now to landing");
         }
         timeline::show(ui, scene, queue);
@@ -44,27 +47,17 @@ impl Panel for Profile {
     }
 }
 
-/// The point of the path where the aircraft is, while that path is being flown.
-fn where_it_is<'a>(scene: &Scene<'a>) -> Option<&'a Point> {
-    let position = scene.vehicle.position.as_ref().filter(|v| !v.value.on_ground)?;
-    let status = scene.vehicle.status.as_ref()?;
-    scene.forecast().nearest(position.value.position, status.value.place.as_ref()?)
-}
-
 /// The profile; dragging on it moves the cursor, dragging a leg's mark its altitude.
 fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, levels: &mut levels::Levels, queue: &mut Queue) {
     let size = ui.available_size().max(vec2(120.0, 80.0));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-    let forecast = scene.forecast();
-    let from = where_it_is(scene).filter(|_| !whole);
-    let (from_m, from_s) = from.map_or((0.0, 0.0), |point| (point.distance_m, point.time_s));
-    let description = format!(
-        "Vertical profile{}: {} in {}",
-        if from.is_some() { " from now" } else { "" },
-        scene.units().distance().show(forecast.length_m() - from_m),
-        units::duration(forecast.duration_s() - from_s)
-    );
-    response.widget_info(|| egui::WidgetInfo::labeled(Role::Canvas, true, &description));
+    let told = flown::told(scene).filter(|_| !whole);
+    let (forecast, from) = match told {
+        Some((way, here)) => (way, Some(here)),
+        None => (scene.forecast(), flown::on_preview(scene).filter(|_| !whole)),
+    };
+    let description = description(scene, forecast, from, told.is_some());
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, &description));
     let painter = ui.painter_at(rect);
     let p = theme::of(ui);
     if forecast.points.len() < 2 {
@@ -72,23 +65,48 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, levels: &mut levels::Levels
         painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(13.0), p.weak);
         return;
     }
-    let mut axes = Axes::new(rect, forecast, from_s);
+    let mut axes = Axes::new(rect, forecast, from.map_or(0.0, |point| point.time_s));
     if let Some((low_m, high_m)) = levels.held_m() {
         (axes.low_m, axes.high_m) = (low_m, high_m);
+    }
+    if told.is_some() {
+        axes.include_aircraft(scene);
     }
     draw_axes(&painter, &axes, scene, p);
     // what was flown before is left of the plot
     let shown = Rect::everything_right_of(axes.plot.left() - 8.0);
     let painter = painter.with_clip_rect(shown.intersect(rect));
-    draw_stages(ui, &painter, &axes, scene, p);
-    draw_ground(&painter, &axes, forecast, p);
-    draw_path(&painter, &axes, scene, p);
-    draw_cursor(&painter, &axes, scene, p);
+    if told.is_some() {
+        return flown::draw(ui, &painter, &axes, forecast, scene, p);
+    }
+    draw_preview(ui, &painter, &axes, scene, p);
     levels.run(ui, &painter, &axes, scene, queue);
     if let Some(pointer) =
         response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())
     {
         queue.preview(PreviewCommand::Scrub(Some(axes.time_at(pointer))));
+    }
+}
+
+/// `Vertical profile from now: 12.4 km in 8:10`.
+fn description(scene: &Scene<'_>, forecast: &Forecast, from: Option<&Point>, is_told: bool) -> String {
+    let (from_m, from_s) = from.map_or((0.0, 0.0), |point| (point.distance_m, point.time_s));
+    format!(
+        "Vertical profile{}{}: {} in {}",
+        if from.is_some() { " from now" } else { "" },
+        if is_told { ", as it is flown" } else { "" },
+        scene.units().distance().show(forecast.length_m() - from_m),
+        units::duration(forecast.duration_s() - from_s)
+    )
+}
+
+fn draw_preview(ui: &Ui, painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
+    draw_stages(ui, painter, axes, scene, p);
+    draw_ground(painter, axes, scene.forecast(), p);
+    draw_path(painter, axes, scene, p);
+    draw_cursor(painter, axes, scene, p);
+    if scene.vehicle.outlook.is_elsewhere && flown::told(scene).is_none() {
+        flown::warn(ui, painter, axes);
     }
 }
 
@@ -112,6 +130,13 @@ impl Axes {
         let margin = ((high - low) * 0.08).max(20.0);
         let duration_s = (forecast.duration_s() - from_s).max(1.0);
         Self { plot, from_s, duration_s, low_m: low - margin, high_m: high + margin }
+    }
+    /// Has room for the aircraft.
+    fn include_aircraft(&mut self, scene: &Scene<'_>) {
+        if let Some(position) = &scene.vehicle.position {
+            self.low_m = self.low_m.min(position.value.altitude_amsl_m);
+            self.high_m = self.high_m.max(position.value.altitude_amsl_m);
+        }
     }
     fn x(&self, time_s: f64) -> f32 {
         self.plot.left() + ((time_s - self.from_s) / self.duration_s) as f32 * self.plot.width()
@@ -274,7 +299,9 @@ fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     if let (Some(leg), true) = (scene.vehicle.current_leg(), scene.vehicle.is_airborne()) {
         highlighted(leg, p.active);
     }
-    draw_aircraft(painter, axes, scene, p);
+    if let Some(near) = flown::on_preview(scene) {
+        flown::aircraft(painter, axes, near.time_s, scene, p);
+    }
 }
 
 /// The way out after the alarm: it goes on beyond the end of the flight, if need be.
@@ -285,13 +312,6 @@ fn draw_diversion(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette
     for (path, stroke) in [(other, Stroke::new(1.2, p.weak)), (chosen, Stroke::new(2.2, p.text))] {
         painter.extend(Shape::dashed_line(&path, stroke, 8.0, 5.0));
     }
-}
-
-fn draw_aircraft(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
-    let (Some(position), Some(near)) = (&scene.vehicle.position, where_it_is(scene)) else { return };
-    let at = pos2(axes.x(near.time_s), axes.y(position.value.altitude_amsl_m));
-    let shape = [vec2(7.0, 0.0), vec2(-5.0, -5.0), vec2(-5.0, 5.0)].map(|d| at + d);
-    painter.add(Shape::convex_polygon(shape.to_vec(), p.active, Stroke::new(1.5, p.halo)));
 }
 
 fn draw_cursor(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {

@@ -1,8 +1,10 @@
 //! What would follow: of the flight as it is, and of a command that is considered before it is given.
 
 use super::Ticket;
+use crate::forecast::{self, Clearance, Forecast};
 use flight_exec::{Command, Foresight};
 use flight_plan::Id;
+use terrain::Terrain;
 
 /// A command that the operator looks at before giving it.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,20 +15,35 @@ pub struct Considered {
     pub on_leg: Option<Id>,
     /// What would follow it, or why that is not known; `None`: not known yet.
     pub foresight: Option<Result<Box<Foresight>, String>>,
+    /// The least height above this window's ground on that way; `None`: that is known nowhere, or not yet.
+    pub clearance: Option<Clearance>,
+    is_over_ground: bool,
     ticket: Option<Ticket>,
+}
+
+/// The way that the vehicle says it flies.
+#[derive(Debug)]
+struct Way {
+    foresight: Box<Foresight>,
+    /// When it was told, seconds of the aircraft's clock.
+    told_s: f64,
+    /// Over this window's ground, once that was looked at.
+    over_ground: Option<Forecast>,
 }
 
 /// What is known of what is to come.
 #[derive(Debug, Default)]
 pub struct Outlook {
     considered: Option<Considered>,
-    /// When the flight will have landed, seconds of the aircraft's clock: that of a simulation may run faster than the window's.
-    landing_s: Option<f64>,
+    /// By the aircraft's clock: that of a simulation may run faster than the window's.
+    way: Option<Way>,
     asked: Option<(Ticket, f64)>,
+    /// The aircraft flies elsewhere than the preview has it.
+    pub is_elsewhere: bool,
 }
 
-/// While an emergency plan is being flown, the vehicle is asked so often when it will land, seconds.
-const ASK_LANDING_S: f64 = 15.0;
+/// While another way is flown than the preview's, the vehicle is asked for it so often, seconds.
+const ASK_WAY_S: f64 = 15.0;
 
 impl Outlook {
     /// The command that is considered.
@@ -36,12 +53,42 @@ impl Outlook {
 
     /// Seconds of the flight until it has landed; `aircraft_s` is the aircraft's clock.
     pub fn lands_in_s(&self, aircraft_s: f64) -> Option<f64> {
-        self.landing_s.map(|landing_s| (landing_s - aircraft_s).max(0.0))
+        let way = self.way.as_ref().filter(|way| way.foresight.landed)?;
+        Some((way.told_s + way.foresight.time_s - aircraft_s).max(0.0))
+    }
+
+    /// The way that the vehicle said it flies, over this window's ground, and when it said so, seconds of the aircraft's clock.
+    pub fn way(&self) -> Option<(&Forecast, f64)> {
+        let way = self.way.as_ref()?;
+        Some((way.over_ground.as_ref()?, way.told_s))
+    }
+
+    /// Puts what was told over the ground, once.
+    pub(super) fn look(&mut self, terrain: &dyn Terrain) {
+        if let Some(considered) = self.considered.as_mut().filter(|considered| !considered.is_over_ground)
+            && let Some(Ok(foresight)) = &considered.foresight
+        {
+            let path = forecast::told(&foresight.path, terrain);
+            considered.clearance = forecast::clearance(&path, foresight.landed);
+            considered.is_over_ground = true;
+        }
+        if let Some(way) = &mut self.way
+            && way.over_ground.is_none()
+        {
+            way.over_ground = Some(forecast::told(&way.foresight.path, terrain));
+        }
     }
 
     /// A command is considered; nothing is known of it yet.
     pub fn consider(&mut self, command: Command, on_leg: Option<Id>) {
-        self.considered = Some(Considered { command, on_leg, foresight: None, ticket: None });
+        self.considered = Some(Considered {
+            command,
+            on_leg,
+            foresight: None,
+            clearance: None,
+            is_over_ground: false,
+            ticket: None,
+        });
     }
 
     /// It was asked what would follow the command that is considered.
@@ -56,18 +103,18 @@ impl Outlook {
         self.considered = None;
     }
 
-    /// No emergency plan is flown: what was found out of the last one says nothing of the next.
-    pub fn no_emergency(&mut self) {
-        (self.landing_s, self.asked) = (None, None);
+    /// Another way is flown from now on: what was told of the last one says nothing of it.
+    pub fn way_changed(&mut self) {
+        (self.way, self.asked) = (None, None);
     }
 
-    /// Whether it should be asked now when the flight lands.
+    /// Whether it should be asked now which way it flies, and when it lands.
     pub fn is_due(&self, now_s: f64) -> bool {
-        self.asked.is_none_or(|(_, asked_s)| now_s - asked_s > ASK_LANDING_S)
+        self.asked.is_none_or(|(_, asked_s)| now_s - asked_s > ASK_WAY_S)
     }
 
-    /// It was asked when the flight lands.
-    pub fn asked_when_it_lands(&mut self, ticket: Ticket, now_s: f64) {
+    /// It was asked which way it flies.
+    pub fn asked_which_way(&mut self, ticket: Ticket, now_s: f64) {
         self.asked = Some((ticket, now_s));
     }
 
@@ -79,8 +126,8 @@ impl Outlook {
         aircraft_s: Option<f64>,
     ) {
         if self.asked.is_some_and(|(asked, _)| asked == ticket) {
-            let landing = answer.ok().filter(|foresight| foresight.landed);
-            self.landing_s = landing.zip(aircraft_s).map(|(foresight, now_s)| now_s + foresight.time_s);
+            let told = answer.ok().zip(aircraft_s);
+            self.way = told.map(|(foresight, told_s)| Way { foresight, told_s, over_ground: None });
         } else if let Some(considered) = self.considered.as_mut().filter(|c| c.ticket == Some(ticket)) {
             considered.foresight = Some(answer);
         }

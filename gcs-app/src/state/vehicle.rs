@@ -218,8 +218,8 @@ impl Vehicle {
             Telemetry::Navigation(v) => remember!(self.navigation, v, now_s),
             Telemetry::Gateway(v) => remember!(self.gateway, v, now_s),
             Telemetry::Status(v) => {
-                if v.value.emergency.is_none() {
-                    self.outlook.no_emergency();
+                if self.emergency() != v.value.emergency.as_ref() {
+                    self.outlook.way_changed();
                 }
                 remember!(self.status, *v, now_s);
             }
@@ -317,7 +317,9 @@ impl Vehicle {
                 self.proposal = Some(Proposal { report: *report, changes, entry });
             }
             Ok(Reply::Plan(aboard)) => self.aboard = aboard,
-            Ok(Reply::Done | Reply::Foresight(_)) | Err(_) => {}
+            // a command may lead elsewhere
+            Ok(Reply::Done) => self.outlook.way_changed(),
+            Ok(Reply::Foresight(_)) | Err(_) => {}
         }
     }
 
@@ -332,10 +334,15 @@ impl Vehicle {
         should
     }
 
-    /// It flies an emergency plan, and should be asked now when it lands.
-    pub(super) fn should_ask_when_it_lands(&self, now_s: f64) -> bool {
-        let in_emergency = self.status.as_ref().is_some_and(|s| s.value.emergency.is_some());
-        in_emergency && self.outlook.is_due(now_s) && self.open_link().is_some()
+    /// It flies an emergency plan, or otherwise than the preview has it, and should be asked now which way.
+    pub(super) fn should_ask_which_way(&self, now_s: f64) -> bool {
+        let wanted = self.outlook.is_elsewhere || self.emergency().is_some();
+        wanted && self.outlook.is_due(now_s) && self.open_link().is_some()
+    }
+
+    /// The emergency plan that is being flown, or was flown last.
+    pub fn emergency(&self) -> Option<&Id> {
+        self.status.as_ref()?.value.emergency.as_ref()
     }
 
     fn lacks_plan_aboard(&self) -> bool {

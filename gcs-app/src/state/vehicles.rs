@@ -119,9 +119,14 @@ impl Vehicles {
         changed.map(|(name, is_silent)| (name.clone(), is_silent)).collect()
     }
 
-    /// Vehicles in an emergency that should be asked now when they land.
-    pub fn due_for_landing(&self, now_s: f64) -> Vec<VehicleName> {
-        let due = self.by_name.iter().filter(|(_, vehicle)| vehicle.should_ask_when_it_lands(now_s));
+    /// Puts the ways that vehicles have told over the ground.
+    pub fn look_ahead(&mut self, terrain: &dyn Terrain) {
+        self.by_name.values_mut().for_each(|vehicle| vehicle.outlook.look(terrain));
+    }
+
+    /// Vehicles that fly an emergency plan, or otherwise than the preview has it, and should be asked now which way.
+    pub fn due_for_way(&self, now_s: f64) -> Vec<VehicleName> {
+        let due = self.by_name.iter().filter(|(_, vehicle)| vehicle.should_ask_which_way(now_s));
         due.map(|(name, _)| name.clone()).collect()
     }
 

@@ -1,13 +1,15 @@
 //! Commands that lead elsewhere are looked at before they are given.
 
-use super::Window;
-use super::flying::{flying, flying_its_plan};
+use super::flying::{fly_its_plan, flying, flying_its_plan};
 use super::vehicle::{place, status};
+use super::{SQUARE, Window};
 use egui_kittest::kittest::Queryable;
 use flight_exec::{Command, Foresight, PathPoint, Phase};
 use gcs_app::link::{Call, Reply};
 use gcs_app::state::Ticket;
 use geometry::LatLon;
+use std::sync::Arc;
+use terrain::{Flat, Terrain};
 use usal::contract::GatewayState;
 
 pub fn foresight() -> Foresight {
@@ -86,6 +88,42 @@ fn a_climb_that_is_not_done_or_a_low_way_has_to_be_held() {
         assert!(window.shows(text), "{text}");
         assert!(window.shows("Skip side2, fly side3 next (hold)"));
     }
+}
+
+/// What the card of a Go to says where the agent has no elevations, and this window those of some ground.
+fn over(ground: Arc<dyn Terrain>) -> Window {
+    let mut window = Window::open_over(SQUARE, egui::vec2(1280.0, 800.0), None, ground);
+    window.until_analysed();
+    fly_its_plan(&mut window);
+    window.click("⏭ Skip leg");
+    let (ticket, _) = window.asked().unwrap();
+    let unknown = Foresight { clearance_m: None, ..foresight() };
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(unknown))));
+    window
+}
+
+#[test]
+fn where_the_agent_has_no_elevations_the_window_measures_the_height_above_the_ground() {
+    let window = over(Arc::new(Flat(380.0)));
+    assert!(window.shows("until the approach: 120 m, by this window's elevations"));
+    assert!(window.shows("Skip side2, fly side3 next") && !window.shows("fly side3 next (hold)"));
+    let low = over(Arc::new(Flat(480.0)));
+    assert!(low.shows("Only 20 m above the ground where it is lowest, by this window's elevations"));
+    assert!(low.shows("Skip side2, fly side3 next (hold)"));
+}
+
+#[test]
+fn ground_that_nobody_knows_is_a_caution_and_the_command_has_to_be_held() {
+    struct Unknown;
+    impl Terrain for Unknown {
+        fn elevation_m(&self, _: LatLon) -> Option<f64> {
+            None
+        }
+    }
+    let window = over(Arc::new(Unknown));
+    let p = gcs_app::theme::palette(true);
+    assert_eq!(window.colour_of("⚠ The ground below is known neither aboard nor here"), Some(p.caution));
+    assert!(window.shows("Skip side2, fly side3 next (hold)"));
 }
 
 #[test]

@@ -20,6 +20,7 @@ mod finding;
 mod fleet;
 mod flying;
 mod focusing;
+mod following;
 mod gestures;
 mod guarding;
 mod handles;

@@ -1,0 +1,95 @@
+//! Whether the aircraft flies along the preview, and the way that it flies if it does not: from now to the landing, as it was told.
+
+use super::{Axes, draw_band, draw_ground, thinned};
+use crate::forecast::{Forecast, Point};
+use crate::panels::Scene;
+use crate::theme::{self, Palette};
+use egui::{Painter, Pos2, Shape, Stroke, Ui, pos2, vec2};
+use flight_exec::Phase;
+use geometry::LatLon;
+
+/// Farther from the preview it flies another way, metres: on its way to a leg, or where a scan was moved to.
+const FAR_M: f64 = 400.0;
+/// It is about so far along the way that was told, seconds.
+const ABOUT_S: f64 = 60.0;
+
+/// The aircraft flies a plan, but not along the preview: an emergency plan, another branch, the way to a leg.
+pub fn is_elsewhere(scene: &Scene<'_>) -> bool {
+    let flies = matches!(scene.vehicle.phase(), Phase::Flying | Phase::Holding | Phase::AwaitingDecision);
+    flies && scene.vehicle.is_airborne() && scene.vehicle.current_leg().is_some() && !is_along(scene)
+}
+
+/// It is near where the preview has it, and what it has next is in the preview. Where nothing is known of what it has next, the leg
+/// decides.
+fn is_along(scene: &Scene<'_>) -> bool {
+    if scene.vehicle.emergency().is_some() {
+        return false;
+    }
+    let Some(near) = nearest(scene) else { return false };
+    let Some(ahead) = &scene.vehicle.ahead else { return true };
+    let is_previewed =
+        |leg: &str| scene.forecast().passages.iter().any(|passage| passage.leg.as_str() == leg);
+    let is_near = place(scene).is_some_and(|at| at.distance_m(near.position) < FAR_M);
+    is_near && ahead.value.waypoints.iter().all(|waypoint| is_previewed(waypoint.leg.as_str()))
+}
+
+fn place(scene: &Scene<'_>) -> Option<LatLon> {
+    scene.vehicle.position.as_ref().filter(|v| !v.value.on_ground).map(|v| v.value.position)
+}
+
+fn nearest<'a>(scene: &Scene<'a>) -> Option<&'a Point> {
+    let status = scene.vehicle.status.as_ref()?;
+    scene.forecast().nearest(place(scene)?, status.value.place.as_ref()?)
+}
+
+/// The point of the preview where the aircraft is, while it flies along it.
+pub fn on_preview<'a>(scene: &Scene<'a>) -> Option<&'a Point> {
+    nearest(scene).filter(|_| !scene.vehicle.outlook.is_elsewhere)
+}
+
+/// The way that it flies instead, as far as it was told, and the point of it where the aircraft is.
+pub fn told<'a>(scene: &Scene<'a>) -> Option<(&'a Forecast, &'a Point)> {
+    let (way, told_s) = scene.vehicle.outlook.way().filter(|_| scene.vehicle.outlook.is_elsewhere)?;
+    let (at, position) = (place(scene)?, scene.vehicle.position.as_ref()?);
+    let elapsed_s = position.time_s - told_s;
+    let about = way.points.iter().filter(|point| (point.time_s - elapsed_s).abs() < ABOUT_S);
+    let far_m = |point: &&Point| point.position.distance_m(at);
+    let here = about.min_by(|a, b| far_m(a).total_cmp(&far_m(b))).or_else(|| way.at(elapsed_s))?;
+    (way.points.len() > 1).then_some((way, here))
+}
+
+/// What is said of that way above the plot.
+pub fn name(scene: &Scene<'_>) -> String {
+    match scene.vehicle.emergency() {
+        Some(flown) => format!("Emergency: {}, as it is flown", scene.vehicle.name_of(flown)),
+        None => "As it is flown, from now to the landing".into(),
+    }
+}
+
+/// Draws it; legs are not told, so that there are no marks to drag and no cursor.
+pub fn draw(ui: &Ui, painter: &Painter, axes: &Axes, way: &Forecast, scene: &Scene<'_>, p: &Palette) {
+    let (left, right) = (axes.plot.left(), axes.plot.right());
+    draw_band(ui, painter, axes, &name(scene), left, right, p);
+    draw_ground(painter, axes, way, p);
+    let path: Vec<Pos2> = thinned(axes, way).map(|point| axes.place(point)).collect();
+    painter.add(Shape::line(path, Stroke::new(1.8, p.active)));
+    aircraft(painter, axes, axes.from_s, scene, p);
+}
+
+/// The aircraft, at its own altitude.
+pub fn aircraft(painter: &Painter, axes: &Axes, time_s: f64, scene: &Scene<'_>, p: &Palette) {
+    let Some(position) = &scene.vehicle.position else { return };
+    let at = pos2(axes.x(time_s), axes.y(position.value.altitude_amsl_m));
+    let shape = [vec2(7.0, 0.0), vec2(-5.0, -5.0), vec2(-5.0, 5.0)].map(|d| at + d);
+    painter.add(Shape::convex_polygon(shape.to_vec(), p.active, Stroke::new(1.5, p.halo)));
+}
+
+/// That the preview is not what is flown, until the way that is was told.
+pub fn warn(ui: &Ui, painter: &Painter, axes: &Axes) {
+    let text = "The aircraft flies another way: it was asked which";
+    let at = axes.plot.left_top() + vec2(6.0, 4.0);
+    let galley = painter.layout_no_wrap(text.into(), egui::FontId::proportional(11.5), theme::of(ui).caution);
+    let plate = egui::Rect::from_min_size(at, galley.size()).expand(3.0);
+    painter.rect_filled(plate, 3.0, theme::of(ui).card);
+    painter.galley(at, galley, theme::of(ui).caution);
+}

@@ -1,0 +1,100 @@
+//! The profile of a flight shows what is flown: the preview, or the way that the vehicle tells.
+
+use super::Window;
+use super::considering::foresight;
+use super::emergency::in_emergency;
+use super::flying::{flying, flying_its_plan};
+use super::vehicle::position;
+use flight_exec::Command;
+use gcs_app::link::{Call, Reply, Telemetry};
+use gcs_app::state::Ticket;
+use geometry::LatLon;
+use usal::contract::{Action, Ahead, Stamped, Token, Waypoint};
+
+const PREVIEW: &str = "Vertical profile from now: ";
+const TOLD: &str = "Vertical profile from now, as it is flown: ";
+
+fn waypoint(leg: &str, position: LatLon) -> Waypoint {
+    Waypoint {
+        token: Token(7),
+        position,
+        altitude_amsl_m: 500.0,
+        airspeed_mps: 25.0,
+        action: Action::Fly,
+        fly_over: false,
+        on_arc: false,
+        leg: leg.into(),
+        end_of_plan: false,
+    }
+}
+
+impl Window {
+    /// What it has next, on this leg; and it is at this place.
+    fn receive_course(&mut self, leg: &str, at: LatLon) {
+        let Telemetry::Position(mut here) = position(2.0, 500.0, false) else { unreachable!() };
+        here.value.position = at;
+        self.receive(Telemetry::Position(here));
+        let value = Ahead { waypoints: vec![waypoint(leg, at.destination(0.0, 300.0))] };
+        self.receive(Telemetry::Ahead(Stamped { time_s: 2.0, validity_s: 5.0, value }));
+        // it is looked at a few times a second
+        self.steps(20);
+    }
+
+    /// The question which way it flies.
+    fn asked_which_way(&mut self) -> Option<Ticket> {
+        std::iter::from_fn(|| self.asked()).find_map(|(t, call)| (call == Call::Foresee(None)).then_some(t))
+    }
+}
+
+/// Halfway from A to B, on side2.
+fn on_side2() -> LatLon {
+    LatLon::new(36.3241, -84.1567)
+}
+
+#[test]
+fn profile_follows_the_preview_while_the_aircraft_does() {
+    let (mut window, _) = flying();
+    window.receive_course("side3", on_side2());
+    assert!(window.shows(PREVIEW) && window.asked_which_way().is_none());
+}
+
+#[test]
+fn on_the_way_to_a_leg_or_on_another_branch_the_profile_shows_the_way_that_the_vehicle_tells() {
+    let far = on_side2().destination(90.0, 3000.0);
+    for (leg, at) in [("side2", far), ("another branch", on_side2())] {
+        let (mut window, _) = flying();
+        window.receive_course(leg, at);
+        let ticket = window.asked_which_way().unwrap();
+        assert!(!window.shows(PREVIEW), "that is not what is flown");
+        window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+        assert!(window.shows(TOLD), "{leg}");
+        window.click("Whole flight");
+        assert!(window.shows("Vertical profile: "));
+        window.click("Whole flight");
+        window.receive_course("side3", on_side2());
+        assert!(window.shows(PREVIEW), "it is back on the preview");
+    }
+}
+
+#[test]
+fn after_a_command_the_way_is_asked_for_anew_at_once() {
+    let mut window = flying_its_plan();
+    window.receive_course("side2", on_side2().destination(90.0, 3000.0));
+    let ticket = window.asked_which_way().unwrap();
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    window.click("⏸ Hold");
+    let (ticket, call) = window.asked().unwrap();
+    assert_eq!(call, Call::Plan(Command::Hold));
+    window.answer(ticket, Ok(Reply::Done));
+    assert!(window.asked_which_way().is_some() && !window.shows(TOLD), "what was told is of before");
+}
+
+#[test]
+fn profile_of_an_emergency_is_that_of_its_plan() {
+    let mut window = in_emergency();
+    window.steps(60 * 16);
+    window.receive_course("r1", on_side2());
+    let ticket = window.asked_which_way().unwrap();
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    assert!(window.shows(TOLD) && window.shows("Stage Emergency: return, as it is flown"));
+}
