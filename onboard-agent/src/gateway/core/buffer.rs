@@ -14,7 +14,7 @@ pub struct Buffer {
     waypoints: VecDeque<Fed>,
     /// Steered to although it was cancelled, is being left, or was never fed.
     stray: Option<Fed>,
-    /// Place of the waypoint before.
+    /// Where the way to the waypoint steered to begins: at the one before, or where the aircraft was sent elsewhere.
     passed: Option<LatLon>,
     /// The last number that was given.
     numbered: Serial,
@@ -138,13 +138,13 @@ impl Buffer {
         self.stray.as_ref().map(|f| Order::Leave(f.serial))
     }
 
-    /// Takes in what the driver says of the waypoints.
-    pub fn set_course(&mut self, course: Course) {
+    /// Takes in what the driver says of the waypoints; `here`: where the aircraft is, as far as that is known.
+    pub fn set_course(&mut self, course: Course, here: Option<LatLon>) {
         self.course = course;
         match course.target {
             Target::None => self.stray = None,
             Target::Waypoint(serial) => {
-                self.pass_stray(|stray| stray != serial);
+                self.pass_stray(|stray| stray != serial, here);
                 self.pass_before(serial);
             }
             Target::Elsewhere { next, position, altitude_amsl_m } => {
@@ -153,15 +153,16 @@ impl Buffer {
             }
             Target::Unknown { next } => self.pass_before(next),
             Target::End => {
-                self.pass_stray(|_| true);
+                self.pass_stray(|_| true, here);
                 self.pass_before(Serial(u64::MAX));
             }
         }
     }
 
-    fn pass_stray(&mut self, left: impl Fn(Serial) -> bool) {
+    /// It was left, not reached: what follows begins where the aircraft is.
+    fn pass_stray(&mut self, left: impl Fn(Serial) -> bool, here: Option<LatLon>) {
         if let Some(stray) = self.stray.take_if(|f| left(f.serial)) {
-            self.passed = Some(stray.waypoint.position);
+            self.passed = here.or(Some(stray.waypoint.position));
         }
     }
 
@@ -221,7 +222,7 @@ mod tests {
     fn flying() -> Buffer {
         let mut buffer = Buffer::default();
         buffer.feed(None, waypoints(&[11, 12, 13, 14]));
-        buffer.set_course(steering_to(Target::Waypoint(Serial(2))));
+        buffer.set_course(steering_to(Target::Waypoint(Serial(2))), None);
         buffer
     }
 
@@ -254,26 +255,34 @@ mod tests {
         assert_eq!(fed(buffer.feed(Some(Token(0)), waypoints(&[21, 22]))), (0, vec![5, 6]));
         assert_eq!((current(&buffer), tokens(&buffer)), (Some(12), vec![21, 22]));
         assert_eq!(buffer.next().unwrap().token, Token(21));
-        buffer.set_course(steering_to(Target::Waypoint(Serial(5))));
+        buffer.set_course(steering_to(Target::Waypoint(Serial(5))), None);
         assert_eq!((current(&buffer), tokens(&buffer)), (Some(21), vec![21, 22]));
         assert_eq!(buffer.passed(), Some(waypoint(12).position));
         assert_eq!(buffer.next().unwrap().token, Token(22));
     }
 
     #[test]
+    fn way_to_a_waypoint_begins_where_the_aircraft_was_sent_there() {
+        let mut buffer = flying();
+        buffer.feed(Some(Token(0)), waypoints(&[21, 22]));
+        let here = LatLon::new(36.0115, -84.01);
+        buffer.set_course(steering_to(Target::Waypoint(Serial(5))), Some(here));
+        assert_eq!(buffer.passed(), Some(here), "the one that was cancelled was never reached");
+        buffer.set_course(steering_to(Target::Waypoint(Serial(6))), Some(here));
+        assert_eq!(buffer.passed(), Some(waypoint(21).position), "in order, from the one before");
+    }
+
+    #[test]
     fn nothing_is_claimed_while_the_target_is_not_certain_and_everything_is_flown_at_the_end() {
         let mut buffer = flying();
-        buffer.set_course(steering_to(Target::Unknown { next: Serial(3) }));
+        buffer.set_course(steering_to(Target::Unknown { next: Serial(3) }), None);
         assert_eq!((current(&buffer), tokens(&buffer)), (None, vec![13, 14]));
         let place = LatLon::new(36.5, -84.5);
-        buffer.set_course(steering_to(Target::Elsewhere {
-            next: Serial(4),
-            position: place,
-            altitude_amsl_m: 400.0,
-        }));
+        let elsewhere = Target::Elsewhere { next: Serial(4), position: place, altitude_amsl_m: 400.0 };
+        buffer.set_course(steering_to(elsewhere), None);
         assert_eq!((current(&buffer), tokens(&buffer)), (Some(0), vec![14]));
         assert!(!buffer.at_end());
-        buffer.set_course(steering_to(Target::End));
+        buffer.set_course(steering_to(Target::End), None);
         assert!(buffer.at_end() && buffer.is_empty() && current(&buffer).is_none());
         buffer.feed(None, waypoints(&[15]));
         assert!(!buffer.at_end(), "there is something to fly again");
@@ -284,7 +293,7 @@ mod tests {
         let mut buffer = flying();
         assert_eq!(buffer.leave(), Some(Order::Leave(Serial(2))));
         assert_eq!((buffer.leave(), current(&buffer), tokens(&buffer)), (None, Some(12), vec![13, 14]));
-        buffer.set_course(steering_to(Target::Waypoint(Serial(4))));
+        buffer.set_course(steering_to(Target::Waypoint(Serial(4))), None);
         assert_eq!((buffer.leave(), current(&buffer)), (None, Some(14)));
     }
 

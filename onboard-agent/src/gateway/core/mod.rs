@@ -183,7 +183,7 @@ impl Gateway {
 
     fn set_course(&mut self, course: Course) {
         let ends = self.buffer.last().is_some_and(|w| w.end_of_plan);
-        self.buffer.set_course(course);
+        self.buffer.set_course(course, self.place());
         self.ended |= ends && self.buffer.at_end();
     }
 
