@@ -76,7 +76,7 @@ impl App {
             let is_elsewhere = profile::is_elsewhere(&self.scene(now));
             let shown = self.vehicles.shown_name().cloned();
             if let Some(vehicle) = shown.and_then(|name| self.vehicles.get_mut(&name)) {
-                vehicle.outlook.is_elsewhere = is_elsewhere;
+                vehicle.outlook.set_elsewhere(is_elsewhere);
             }
         }
     }

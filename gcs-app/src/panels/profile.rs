@@ -105,7 +105,7 @@ fn draw_preview(ui: &Ui, painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &
     draw_ground(painter, axes, scene.forecast(), p);
     draw_path(painter, axes, scene, p);
     draw_cursor(painter, axes, scene, p);
-    if scene.vehicle.outlook.is_elsewhere && flown::told(scene).is_none() {
+    if scene.vehicle.outlook.is_elsewhere() && flown::told(scene).is_none() {
         flown::warn(ui, painter, axes);
     }
 }

@@ -38,8 +38,7 @@ pub struct Outlook {
     /// By the aircraft's clock: that of a simulation may run faster than the window's.
     way: Option<Way>,
     asked: Option<(Ticket, f64)>,
-    /// The aircraft flies elsewhere than the preview has it.
-    pub is_elsewhere: bool,
+    is_elsewhere: bool,
 }
 
 /// While another way is flown than the preview's, the vehicle is asked for it so often, seconds.
@@ -106,6 +105,19 @@ impl Outlook {
     /// Another way is flown from now on: what was told of the last one says nothing of it.
     pub fn way_changed(&mut self) {
         (self.way, self.asked) = (None, None);
+    }
+
+    /// The aircraft flies elsewhere than the preview has it.
+    pub fn is_elsewhere(&self) -> bool {
+        self.is_elsewhere
+    }
+
+    /// Whether it does was looked at.
+    pub fn set_elsewhere(&mut self, is_elsewhere: bool) {
+        if self.is_elsewhere && !is_elsewhere {
+            self.way_changed();
+        }
+        self.is_elsewhere = is_elsewhere;
     }
 
     /// Whether it should be asked now which way it flies, and when it lands.

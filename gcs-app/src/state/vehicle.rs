@@ -336,7 +336,7 @@ impl Vehicle {
 
     /// It flies an emergency plan, or otherwise than the preview has it, and should be asked now which way.
     pub(super) fn should_ask_which_way(&self, now_s: f64) -> bool {
-        let wanted = self.outlook.is_elsewhere || self.emergency().is_some();
+        let wanted = self.outlook.is_elsewhere() || self.emergency().is_some();
         wanted && self.outlook.is_due(now_s) && self.open_link().is_some()
     }
 

@@ -17,7 +17,7 @@ pub fn in_emergency() -> Window {
 }
 
 /// It was raised on side3 because of the engine; the ticket of the question when it lands.
-fn raised() -> (Window, Ticket) {
+pub fn raised() -> (Window, Ticket) {
     let (mut window, mut value) = flying();
     let plan = Arc::new(flight_plan::read(SQUARE.as_bytes()).plan);
     let hash = Arc::<str>::from("the plan that is aboard");

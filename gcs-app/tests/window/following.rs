@@ -2,7 +2,7 @@
 
 use super::Window;
 use super::considering::foresight;
-use super::emergency::in_emergency;
+use super::emergency::raised;
 use super::flying::{flying, flying_its_plan};
 use super::vehicle::position;
 use flight_exec::Command;
@@ -91,10 +91,7 @@ fn after_a_command_the_way_is_asked_for_anew_at_once() {
 
 #[test]
 fn profile_of_an_emergency_is_that_of_its_plan() {
-    let mut window = in_emergency();
-    window.steps(60 * 16);
-    window.receive_course("r1", on_side2());
-    let ticket = window.asked_which_way().unwrap();
+    let (mut window, ticket) = raised();
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     assert!(window.shows(TOLD) && window.shows("Stage Emergency: return, as it is flown"));
 }

@@ -8,8 +8,8 @@ use egui::{Painter, Pos2, Shape, Stroke, Ui, pos2, vec2};
 use flight_exec::Phase;
 use geometry::LatLon;
 
-/// Farther from the preview it flies another way, metres: on its way to a leg, or where a scan was moved to.
-const FAR_M: f64 = 400.0;
+/// Farther from the preview it flies another way; nearer it is on it again, metres: on its way to a leg, or where a scan was moved to.
+const FAR_M: (f64, f64) = (400.0, 250.0);
 /// It is about so far along the way that was told, seconds.
 const ABOUT_S: f64 = 60.0;
 
@@ -29,7 +29,8 @@ fn is_along(scene: &Scene<'_>) -> bool {
     let Some(ahead) = &scene.vehicle.ahead else { return true };
     let is_previewed =
         |leg: &str| scene.forecast().passages.iter().any(|passage| passage.leg.as_str() == leg);
-    let is_near = place(scene).is_some_and(|at| at.distance_m(near.position) < FAR_M);
+    let most_m = if scene.vehicle.outlook.is_elsewhere() { FAR_M.1 } else { FAR_M.0 };
+    let is_near = place(scene).is_some_and(|at| at.distance_m(near.position) < most_m);
     is_near && ahead.value.waypoints.iter().all(|waypoint| is_previewed(waypoint.leg.as_str()))
 }
 
@@ -44,12 +45,12 @@ fn nearest<'a>(scene: &Scene<'a>) -> Option<&'a Point> {
 
 /// The point of the preview where the aircraft is, while it flies along it.
 pub fn on_preview<'a>(scene: &Scene<'a>) -> Option<&'a Point> {
-    nearest(scene).filter(|_| !scene.vehicle.outlook.is_elsewhere)
+    nearest(scene).filter(|_| !scene.vehicle.outlook.is_elsewhere())
 }
 
 /// The way that it flies instead, as far as it was told, and the point of it where the aircraft is.
 pub fn told<'a>(scene: &Scene<'a>) -> Option<(&'a Forecast, &'a Point)> {
-    let (way, told_s) = scene.vehicle.outlook.way().filter(|_| scene.vehicle.outlook.is_elsewhere)?;
+    let (way, told_s) = scene.vehicle.outlook.way().filter(|_| scene.vehicle.outlook.is_elsewhere())?;
     let (at, position) = (place(scene)?, scene.vehicle.position.as_ref()?);
     let elapsed_s = position.time_s - told_s;
     let about = way.points.iter().filter(|point| (point.time_s - elapsed_s).abs() < ABOUT_S);
