@@ -2,8 +2,8 @@
 
 use super::table::Asked;
 use super::{Action, Group, Kind};
-use crate::command::{Command, FlyCommand, LinkCommand, Selection};
-use crate::panels::{Scene, decision, emergency as banner, flight as panel, link, push};
+use crate::command::{Command, FlyCommand, LinkCommand};
+use crate::panels::{Scene, decision, emergency as banner, flight as panel, leading, link, push};
 use flight_exec::{Command as PlanCommand, Phase};
 use flight_plan::Cause;
 use usal::contract::{GatewayRequest, GatewayState};
@@ -29,15 +29,8 @@ pub fn of(scene: &Scene<'_>) -> Vec<Action> {
             add(Kind::Hold, name, fly(PlanCommand::Emergency { cause: Cause::Operator, plan }));
         }
     }
-    if let Some(Selection::Leg(leg)) = &scene.view.selection
-        && panel::is_flown(scene, leg)
-    {
-        let name = scene.vehicle.name_of(leg);
-        add(Kind::Do, format!("Fly to {name}…"), consider(PlanCommand::GoTo { leg: leg.clone() }));
-        if banner::is_flown(scene) {
-            let command = PlanCommand::ReturnToMain { leg: leg.clone() };
-            add(Kind::Do, format!("Return to the main plan at {name}…"), consider(command));
-        }
+    for (name, command) in leading::all(scene) {
+        add(Kind::Do, name, consider(command));
     }
     let proposal = scene.vehicle.proposal.as_ref().filter(|proposal| proposal.report.entry_needed);
     for leg in proposal.iter().flat_map(|_| push::entries(scene)) {

@@ -44,8 +44,8 @@ pub enum Group {
     Panel,
     /// The vehicle.
     Flight,
-    /// A place of the plan.
-    GoTo,
+    /// A part of the plan.
+    Show,
     /// Help.
     Help,
     /// The end.
@@ -68,7 +68,7 @@ impl Group {
             Self::Tool => "Tool",
             Self::Panel => "Panel",
             Self::Flight => "Flight",
-            Self::GoTo => "Go to",
+            Self::Show => "Show",
             Self::Help => "Help",
             Self::Quit => "End",
         }

@@ -1,4 +1,4 @@
-//! The places of the plan as actions: go to a leg, a stage, a fix.
+//! The parts of the plan as actions: a leg, a stage, a fix is selected and shown. Flying there is another thing: see `flight`.
 
 use super::{Action, Group, Kind};
 use crate::command::{Command, Selection, ViewCommand};
@@ -8,7 +8,7 @@ use crate::document::Document;
 pub fn of(document: &Document) -> Vec<Action> {
     let plan = document.plan();
     let mut actions = Vec::new();
-    let mut add = |kind: &str, selection: Selection| actions.push(go_to(kind, document, selection));
+    let mut add = |kind: &str, selection: Selection| actions.push(show(kind, document, selection));
     for stage in plan.stages.iter().chain(plan.emergency_plans.iter().flat_map(|e| &e.stages)) {
         add("stage", Selection::Stage(stage.id.clone()));
     }
@@ -21,14 +21,14 @@ pub fn of(document: &Document) -> Vec<Action> {
     actions
 }
 
-fn go_to(kind: &str, document: &Document, selection: Selection) -> Action {
+fn show(kind: &str, document: &Document, selection: Selection) -> Action {
     let id = selection.id();
     let name = document.label(id);
     let aside = if name == id.as_str() { String::new() } else { format!(" ({id})") };
     Action {
         id: format!("go-to-{kind}-{id}").into(),
         name: format!("{kind} {name}{aside}").into(),
-        group: Group::GoTo,
+        group: Group::Show,
         kind: Kind::Do,
         keys: Vec::new(),
         while_typing: false,

@@ -7,12 +7,11 @@ use crate::map::path;
 use crate::map::tools::pen::way;
 use crate::panels::tree::menu as tree_menu;
 use crate::panels::what_if::{self, CAUSES, cause_name};
-use crate::panels::{Scene, flight, tree};
+use crate::panels::{Scene, tree};
 use crate::theme;
 use crate::units;
 use egui::containers::menu::menu_style;
 use egui::{Layout, Popup, PopupAnchor, PopupKind, Pos2, RichText, Ui, ViewportCommand};
-use flight_exec::Command;
 use flight_plan::create::{self, Drawn, LegChoice};
 use flight_plan::{Edit, Id, Place, Thing, Value};
 use geometry::LatLon;
@@ -122,12 +121,6 @@ fn with(ui: &mut Ui, scene: &Scene<'_>, thing: &Selection, queue: &mut Queue) {
     let plan = scene.document.plan();
     if !scene.is_selected(thing) && ui.button("Select it").clicked() {
         queue.view(ViewCommand::Select(Some(thing.clone())));
-    }
-    if let Selection::Leg(leg) = thing
-        && flight::is_flown(scene, leg)
-        && ui.button("Go to it…").on_hover_text("Shows what would follow, then asks").clicked()
-    {
-        queue.consider(Command::GoTo { leg: leg.clone() });
     }
     let variable = match thing {
         Selection::Fix(fix) => create::variable_of_fix(plan, fix),

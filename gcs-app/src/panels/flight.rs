@@ -236,12 +236,6 @@ pub fn can_launch(scene: &Scene<'_>) -> bool {
     on_ground && may_start && scene.vehicle.active_hash().is_some()
 }
 
-/// It flies, and its plan has this leg.
-pub fn is_flown(scene: &Scene<'_>, leg: &Id) -> bool {
-    let aboard = scene.vehicle.aboard.as_ref().is_some_and(|aboard| aboard.plan.leg(leg).is_some());
-    aboard && matches!(scene.vehicle.phase(), Phase::Flying | Phase::Holding | Phase::AwaitingDecision)
-}
-
 /// It stands disarmed with a plan that was flown, or was being flown when the vehicle was switched off.
 pub fn can_rewind(scene: &Scene<'_>) -> bool {
     let on_ground = scene.vehicle.position.as_ref().is_some_and(|p| p.value.on_ground);

@@ -17,6 +17,7 @@ pub mod help;
 pub mod in_place;
 pub mod inspector;
 pub mod interchange;
+pub mod leading;
 pub mod link;
 pub mod log;
 pub mod maps;

@@ -218,7 +218,7 @@ fn what_is_selected_elsewhere_is_unfolded_and_brought_into_view() {
     window.click("Main plan");
     window.press(Key::ArrowLeft);
     assert!(!window.shows("T/O Take-off"), "folded");
-    window.ask_for("go to leg look");
+    window.ask_for("show leg look");
     window.press(Key::Enter);
     let selected = window.selected();
     window.steps(3);

@@ -1,5 +1,6 @@
 //! Commands that lead elsewhere are looked at before they are given.
 
+use super::emergency::in_emergency;
 use super::flying::{fly_its_plan, flying, flying_its_plan};
 use super::vehicle::{place, status};
 use super::{SQUARE, Window};
@@ -201,9 +202,33 @@ fn go_to_shows_what_follows_before_it_acts_from_inspector_map_and_palette() {
     window.right_click_at(window.centre("Path of side4"));
     window.harness.get_all_by_label("TF side4").last().unwrap().click();
     window.steps(3);
-    window.click("Go to it…");
+    window.harness.get_all_by_label("Go to this leg…").last().unwrap().click();
+    window.steps(3);
     is_looked_at_first(&mut window, go_to(), "Go to side4");
-    window.ask_for("fly to side4");
+    window.right_click_at(window.centre("TF side4"));
+    window.harness.get_all_by_label("Go to this leg…").last().unwrap().click();
+    window.steps(3);
+    is_looked_at_first(&mut window, go_to(), "Go to side4");
+}
+
+#[test]
+fn go_to_in_the_palette_flies_there_and_show_only_shows() {
+    let mut window = flying_its_plan();
+    window.ask_for("go to side4");
     window.press(egui::Key::Enter);
-    is_looked_at_first(&mut window, go_to(), "Go to side4");
+    is_looked_at_first(&mut window, Command::GoTo { leg: "side4".into() }, "Go to side4");
+    window.ask_for("show leg side3");
+    window.press(egui::Key::Enter);
+    assert!(window.asked().is_none() && window.selected() == "side3");
+}
+
+#[test]
+fn in_an_emergency_one_command_leads_to_a_leg() {
+    let mut window = in_emergency();
+    window.click("TF side4");
+    assert!(!window.shows("Go to this leg…"), "that is not in the plan that is flown");
+    window.click("Return to the main plan here…");
+    let back = Command::ReturnToMain { leg: "side4".into() };
+    let asked = std::iter::from_fn(|| window.asked()).last();
+    assert_eq!(asked.map(|(_, call)| call), Some(Call::Foresee(Some(back))));
 }

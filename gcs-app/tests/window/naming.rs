@@ -32,11 +32,11 @@ fn in_the_palette_with_the_identifier_behind() {
     let mut window = named();
     for sought in ["second side", "side2"] {
         window.ask_for(sought);
-        assert!(window.shows("Go to leg The second side (side2)"), "{sought}");
+        assert!(window.shows("Show leg The second side (side2)"), "{sought}");
         window.press(Key::Escape);
     }
-    window.ask_for("go to fix barn");
-    assert!(window.shows("Go to fix Old barn (A)"));
+    window.ask_for("show fix barn");
+    assert!(window.shows("Show fix Old barn (A)"));
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn a_few_letters_and_enter_do_what_they_find() {
 fn arrows_choose_among_what_was_found_and_places_of_the_plan_are_there() {
     let mut window = Window::open(SQUARE);
     window.until_analysed();
-    window.ask_for("go to leg side");
+    window.ask_for("show leg side");
     for _ in 0..2 {
         window.press(Key::ArrowDown);
     }
@@ -126,7 +126,7 @@ fn f1_opens_the_topic_of_what_is_selected_and_links_lead_on() {
     window.press(Key::F1);
     assert!(window.shows("From an empty map to a flight"));
     window.press(Key::F1);
-    window.ask_for("go to leg side1");
+    window.ask_for("show leg side1");
     window.press(Key::Enter);
     window.press(Key::F1);
     assert_eq!(window.app().view().help.as_deref(), Some("plan-language.md#tf-track-to-fix"));

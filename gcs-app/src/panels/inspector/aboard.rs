@@ -3,7 +3,7 @@
 use crate::command::{FlyCommand, Queue};
 use crate::coordinates;
 use crate::panels::field::{self, Change};
-use crate::panels::{Scene, age_of, emergency, flight, group_title, primary_button, value_with_age};
+use crate::panels::{Scene, age_of, group_title, leading, primary_button, value_with_age};
 use crate::theme;
 use crate::units;
 use egui::{RichText, Ui};
@@ -13,17 +13,7 @@ use wire::Convert;
 
 /// Commands that concern this leg of the plan that is being flown.
 pub fn leg(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) {
-    if !flight::is_flown(scene, id) {
-        return;
-    }
-    ui.horizontal(|ui| {
-        if ui.button("Go to this leg…").clicked() {
-            queue.consider(Command::GoTo { leg: id.clone() });
-        }
-        if emergency::is_flown(scene) && ui.button("Return to the main plan here").clicked() {
-            queue.consider(Command::ReturnToMain { leg: id.clone() });
-        }
-    });
+    leading::button(ui, scene, id, queue);
     if let Some(place) = iteration_of(scene, id) {
         ui.label(
             RichText::new(crate::panels::flight::iteration(&place, scene.vehicle))

@@ -3,7 +3,7 @@
 use super::{Renamed, alternates};
 use crate::command::{BranchId, Command, DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::footprints;
-use crate::panels::{Scene, binding};
+use crate::panels::{Scene, binding, leading};
 use aircraft::Profile;
 use egui::{Button, Ui};
 use flight_plan::create::{self, LegChoice, Shape};
@@ -62,6 +62,11 @@ impl Entry {
 /// The menu of what a row stands for.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
     let plan = scene.document.plan();
+    if let Selection::Leg(leg) = of
+        && leading::button(ui, scene, leg, queue)
+    {
+        ui.close();
+    }
     if let Selection::Runway(runway) = of
         && ui.button("Emergency plan that lands here").clicked()
     {
