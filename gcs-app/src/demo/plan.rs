@@ -6,12 +6,13 @@ use super::mission::{self, Step, When};
 use crate::assets;
 use crate::headless::wind::Air;
 use crate::headless::{Loaded, Source, forecast, wind};
+use crate::panels::ended::destination;
 use crate::report::{Record, Track, assemble, authored, flights};
 use aircraft::{Autopilot, Profile, Wind};
 use anyhow::{Context, bail};
 use flight_exec::Event;
 use flight_exec::rehearse::Preview;
-use flight_plan::{FlightPlan, Program, Runway, StageKind};
+use flight_plan::{FlightPlan, Program, Runway};
 use std::sync::Arc;
 use terrain::Terrain;
 
@@ -60,11 +61,6 @@ fn load(args: &Args) -> anyhow::Result<Loaded> {
         Some(file) => Source { file: file.clone(), ..Source::default() }.load(),
         None => Source::default().surround(assets::FIRE_WATCH.as_bytes()),
     }
-}
-
-fn destination(plan: &FlightPlan) -> Option<&Runway> {
-    let land = plan.stages.iter().rev().find(|s| s.kind == StageKind::Land)?;
-    plan.runway(land.runway.as_ref()?)
 }
 
 /// The wind, and the habits of the autopilot that is simulated.

@@ -196,6 +196,9 @@ pub fn plan_state(scene: &Scene<'_>) -> (&'static str, Standing) {
         }
         return match status.phase {
             Phase::Idle => ("aboard", Standing::Aboard),
+            Phase::Finished if super::ended::otherwise(scene).is_some() => {
+                ("not flown to its end", Standing::Aboard)
+            }
             Phase::Finished => ("flown", Standing::Aboard),
             Phase::Grounded => ("between flights", Standing::Active),
             _ => ("active", Standing::Active),

@@ -57,7 +57,8 @@ fn beside(scene: &Scene<'_>, plan: Option<&EmergencyPlan>) -> String {
     format!(", {off} from runway {}", runway.id)
 }
 
-fn plan_named<'a>(plan: &'a FlightPlan, id: &Id) -> Option<&'a EmergencyPlan> {
+/// The emergency plan of this identifier.
+pub fn plan_named<'a>(plan: &'a FlightPlan, id: &Id) -> Option<&'a EmergencyPlan> {
     plan.emergency_plans.iter().find(|plan| plan.id == *id)
 }
 

@@ -1,6 +1,6 @@
 //! The flight: what the vehicle does now, every value with its age, and the strip of commands.
 
-use super::{Panel, PanelId, Place, Scene, age_of, alarms, emergency, field, pfd, value_with_age};
+use super::{Panel, PanelId, Place, Scene, age_of, alarms, emergency, ended, field, pfd, value_with_age};
 use crate::command::{FlyCommand, Queue};
 use crate::state::{Outcome, Request, Vehicle};
 use crate::theme;
@@ -194,7 +194,9 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if can_rewind(scene) && field::hold_button(ui, "Rewind to the start", p.caution, 0.0) {
         queue.plan(Command::Rewind);
     }
-    if let Some(text) = nothing_to_do(scene) {
+    if let Some(how) = ended::otherwise(scene) {
+        ui.label(RichText::new(format!("⚠ {how}")).color(p.caution));
+    } else if let Some(text) = nothing_to_do(scene) {
         ui.label(RichText::new(text).color(p.weak));
     }
 }

@@ -11,6 +11,7 @@ pub mod changed;
 pub mod consider;
 pub mod decision;
 pub mod emergency;
+pub mod ended;
 pub mod field;
 pub mod flight;
 pub mod help;

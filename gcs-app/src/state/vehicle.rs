@@ -100,6 +100,8 @@ pub struct Vehicle {
     pub unread: VecDeque<String>,
     /// The emergency that was raised last.
     pub raised: Option<Raised>,
+    /// The emergency plan with which the flight ended, instead of the main plan.
+    pub ended_in: Option<Id>,
     /// What was lost of its messages.
     pub losses: Losses,
     /// What others said in its name.
@@ -218,9 +220,7 @@ impl Vehicle {
             Telemetry::Navigation(v) => remember!(self.navigation, v, now_s),
             Telemetry::Gateway(v) => remember!(self.gateway, v, now_s),
             Telemetry::Status(v) => {
-                if self.emergency() != v.value.emergency.as_ref() {
-                    self.outlook.way_changed();
-                }
+                self.follow(&v.value);
                 remember!(self.status, *v, now_s);
             }
             Telemetry::Ahead(v) => remember!(self.ahead, v, now_s),
@@ -234,6 +234,19 @@ impl Vehicle {
             Telemetry::PlainEvent(PlainEvent { service, name, rows }) => {
                 self.plain_events.entry((service, name)).or_default().add(rows, now_s);
             }
+        }
+    }
+
+    /// What a status says that the one before did not.
+    fn follow(&mut self, status: &Status) {
+        if self.emergency() != status.emergency.as_ref() {
+            self.outlook.way_changed();
+        }
+        if status.phase != Phase::Finished {
+            self.ended_in = None;
+        } else if self.phase() != Phase::Finished {
+            // the status of a flight that is over has none any more
+            self.ended_in = self.emergency().cloned();
         }
     }
 

@@ -1,15 +1,16 @@
 //! An emergency plan that is being flown.
 
 use super::considering::foresight;
-use super::flying::flying;
-use super::vehicle::{place, position};
+use super::flying::{flying, flying_its_plan};
+use super::vehicle::{place, position, status};
 use super::{SQUARE, Window};
-use flight_exec::{Branching, Command, Event};
+use flight_exec::{Branching, Command, Event, Phase};
 use flight_plan::Cause;
 use gcs_app::link::{Call, LinkEvent, Numbered, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Ticket};
+use geometry::LatLon;
 use std::sync::Arc;
-use usal::contract::{GatewayState, Stamped};
+use usal::contract::{GatewayState, Position, Stamped};
 
 /// Flying the emergency plan of the square.
 pub fn in_emergency() -> Window {
@@ -75,6 +76,37 @@ fn what_came_down_beside_the_runway_is_said_to_be_on_the_ground_and_offers_nothi
         assert!(!window.shows(gone), "{gone}");
     }
     assert!(window.shows("Rewind to the start"));
+}
+
+#[test]
+fn flight_that_did_not_end_as_planned_says_how_it_ended() {
+    let far = LatLon::new(36.219, -84.173);
+    let home = LatLon::new(36.319, -84.173);
+    let instead = "The plan was not flown to its end: return was flown instead";
+    let otherwise = "not flown to its end";
+    for (emergency, at, text, chip) in [
+        (Some("return"), home, format!("{instead}, landed on R05"), otherwise),
+        (Some("return"), far, format!("{instead}, came down 11.1 km from R05"), otherwise),
+        (None, far, "Landed 11.1 km from R05, where the plan ends".into(), otherwise),
+        (None, home, "The plan was flown".into(), "◆ flown"),
+    ] {
+        let mut window = flying_its_plan();
+        let mut value = status(Phase::Flying);
+        value.plan = window.app().vehicle().active_hash();
+        value.emergency = emergency.map(Into::into);
+        window.receive_status(value.clone());
+        let there = Position { position: at, ..on_ground() };
+        let stamped = Stamped { time_s: 90.0, validity_s: 2.0, value: there };
+        window.receive(Telemetry::Position(stamped));
+        (value.phase, value.emergency) = (Phase::Finished, None);
+        window.receive_status(value);
+        assert!(window.shows(&text) && window.shows(chip), "{text}");
+    }
+}
+
+fn on_ground() -> Position {
+    let Telemetry::Position(here) = position(0.0, 349.0, true) else { unreachable!() };
+    here.value
 }
 
 #[test]

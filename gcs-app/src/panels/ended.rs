@@ -1,0 +1,46 @@
+//! How a flight ended that did not end as its plan has it: by an emergency plan, or far from where the plan lands.
+
+use super::{Scene, emergency};
+use flight_exec::Phase;
+use flight_plan::{FlightPlan, Runway, StageKind};
+use geometry::LatLon;
+
+/// Farther from a runway's ends it does not stand on it, nor beside it, metres.
+const AROUND_M: f64 = 300.0;
+
+/// In words; `None`: as planned, or nothing is known of it.
+pub fn otherwise(scene: &Scene<'_>) -> Option<String> {
+    let vehicle = scene.vehicle;
+    if vehicle.phase() != Phase::Finished {
+        return None;
+    }
+    let plan = vehicle.aboard.as_ref().map(|aboard| aboard.plan.as_ref());
+    let stands = vehicle.position.as_ref().filter(|p| p.value.on_ground).map(|p| p.value.position);
+    if let Some(flown) = &vehicle.ended_in {
+        let home = plan.and_then(|plan| plan.runway(&emergency::plan_named(plan, flown)?.runway));
+        let landed = home.zip(stands).map_or_else(String::new, |(home, at)| landed(scene, home, at));
+        let name = vehicle.name_of(flown);
+        return Some(format!("The plan was not flown to its end: {name} was flown instead{landed}"));
+    }
+    let (end, stands) = (destination(plan?)?, stands?);
+    let off = scene.units().distance().show(stands.distance_m(end.threshold));
+    (!is_on(end, stands)).then(|| format!("Landed {off} from {}, where the plan ends", end.id))
+}
+
+fn landed(scene: &Scene<'_>, runway: &Runway, stands: LatLon) -> String {
+    if is_on(runway, stands) {
+        return format!(", landed on {}", runway.id);
+    }
+    let off = scene.units().distance().show(stands.distance_m(runway.threshold));
+    format!(", came down {off} from {}", runway.id)
+}
+
+fn is_on(runway: &Runway, stands: LatLon) -> bool {
+    stands.distance_m(runway.threshold) < runway.length_m + AROUND_M
+}
+
+/// The runway on which a plan lands at its end.
+pub fn destination(plan: &FlightPlan) -> Option<&Runway> {
+    let land = plan.stages.iter().rev().find(|stage| stage.kind == StageKind::Land)?;
+    plan.runway(land.runway.as_ref()?)
+}
