@@ -1,5 +1,6 @@
 //! The flight itself: the mission logic as one more service, in step with the simulated clock.
 
+use super::by_hand;
 use super::components::{Components, VEHICLE};
 use super::judge::Outcome;
 use super::mission::{Act, Script, Step};
@@ -36,6 +37,11 @@ const TOO_LONG: (f64, f64) = (1.3, 240.0);
 const STANDS_S: f64 = 5.0;
 /// Nobody in the demo orders a hold: one that lasts for so many simulated seconds is a failure.
 const HOLD_WITHIN_S: f64 = 60.0;
+/// Simulated seconds for which a decision is left to who watches, and their pace, × real time: ten seconds on the wall.
+const PATIENCE_S: f64 = 15.0;
+const ASKED_PACE: f64 = 1.5;
+/// What they read meanwhile.
+const ASKED: &str = "The fork asks: decide within 10 s by a button or its key, or the demo decides for you";
 /// Simulated seconds after the plan's end in which the aircraft must have come to rest.
 const REST_WITHIN_S: f64 = 90.0;
 
@@ -47,8 +53,8 @@ pub struct Flight<'a> {
     script: Script,
     /// With its updates.
     plan: FlightPlan,
-    /// Hash of the plan that was committed last.
-    hash: Arc<str>,
+    /// Hashes of the plans that were committed, the last one last.
+    sent: Vec<Arc<str>>,
     /// Why something of the plan was refused last.
     last_refusal: Option<String>,
     /// Events heard of FP Manager and gateway, and those that were lost on the way here.
@@ -126,7 +132,7 @@ impl<'a> Flight<'a> {
             session,
             script,
             plan,
-            hash: Arc::default(),
+            sent: Vec::new(),
             last_refusal: None,
             plan_events: Tally::default(),
             gateway_events: Tally::default(),
@@ -153,9 +159,11 @@ impl<'a> Flight<'a> {
         self.tell("The aircraft takes off and flies the plan");
         let (mut phase, mut since_s) = (Phase::Idle, self.now_s);
         loop {
+            let before_s = self.now_s;
             let tick = self.next_tick(components).await?;
             self.look(components);
             self.react().await?;
+            self.leave_time(self.now_s - before_s).await;
             self.clock.acknowledge(tick);
             let now = self.subscribed.status().map_or(Phase::Idle, |s| s.phase);
             if now != phase {
@@ -216,16 +224,21 @@ impl<'a> Flight<'a> {
 
     /// What became of the flight, as it was recorded and as it is now.
     pub fn ending(&self, mut recorded: Recorded, components: &Components, destination: &Runway) -> Ending {
-        recorded.ends_with(&self.hash);
+        let active = self.subscribed.status().and_then(|status| status.plan);
+        recorded.ends_with(active.as_ref().or(self.sent.last()).map_or("", |hash| hash));
         recorded.lost(self.plan_events.lost, "events of the FP Manager were lost");
         recorded.lost(self.gateway_events.lost, "events of the gateway were lost");
         let truth = components.simulator.truth();
+        let emergency = by_hand::emergency_at_end(&recorded.events).cloned();
+        let landed_by = emergency.as_ref().and_then(|plan| recorded.runway_of(plan));
         let outcome = Outcome {
             stands_at: truth.position,
             on_ground: truth.on_ground,
             disarmed: !truth.armed,
             ground_speed_mps: truth.ground_speed_mps,
-            runway: destination.clone(),
+            runway: landed_by.unwrap_or(destination).clone(),
+            emergency,
+            by_hand: by_hand::deeds(&recorded.events, &self.sent),
             phase: self.subscribed.status().map_or(Phase::Idle, |s| s.phase),
             states: std::mem::take(&mut recorded.states),
             missing_steps: self.script.missing().map(|s| s.name.to_owned()).collect(),
@@ -322,12 +335,20 @@ impl<'a> Flight<'a> {
         if let Some(why) = refusal(&event) {
             self.last_refusal = Some(why.to_owned());
         }
-        self.script.hear(&event);
+        self.script.hear(&event, self.now_s);
+    }
+
+    /// Who sits before the window may decide: it is flown slowly, and the mission logic decides only after a while.
+    async fn leave_time(&self, passed_s: f64) {
+        if self.watcher.is_watching() && self.script.is_waiting() {
+            self.tell(ASKED);
+            tokio::time::sleep(Duration::from_secs_f64(passed_s.clamp(0.0, 1.0) / ASKED_PACE)).await;
+        }
     }
 
     /// Does the steps of the mission logic that are due; time stands still meanwhile.
     async fn react(&mut self) -> anyhow::Result<()> {
-        while let Some(step) = self.script.next_due() {
+        while let Some(step) = self.script.next_due(self.now_s, self.patience_s()) {
             let flown_s = self.now_s - self.started_s;
             self.progress.tell(&format!(
                 "{:>6}  mission logic: {}",
@@ -338,6 +359,11 @@ impl<'a> Flight<'a> {
             self.tell(step.story);
         }
         Ok(())
+    }
+
+    /// Simulated seconds for which the mission logic leaves a decision to who watches.
+    fn patience_s(&self) -> f64 {
+        if self.watcher.is_watching() { PATIENCE_S } else { 0.0 }
     }
 
     /// Tells who watches what is happening, and what comes next.
@@ -356,7 +382,12 @@ impl<'a> Flight<'a> {
         Ok(())
     }
 
+    /// Another plan than ours is the operator's: it stays as it is.
     async fn update(&mut self, edit: &Edit) -> anyhow::Result<()> {
+        let active = self.subscribed.status().and_then(|status| status.plan);
+        if active.is_some() && active.as_ref() != self.sent.last() {
+            return Ok(());
+        }
         let plan = edit.apply(&self.plan)?;
         self.send_plan(&plan).await?;
         self.plan = plan;
@@ -367,7 +398,7 @@ impl<'a> Flight<'a> {
         let request = Propose { xml: flight_plan::write(plan), seen_revision: None };
         let report = self.session.call(fp_manager::PROPOSE, &request, ANSWER_WITHIN).await?;
         ensure!(report.acceptable, "{}", report.problems.join("; "));
-        self.hash = report.hash.clone();
+        self.sent.push(report.hash.clone());
         self.command(Command::Commit { hash: report.hash, entry: None }).await
     }
 

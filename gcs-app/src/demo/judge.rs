@@ -2,6 +2,7 @@
 
 use crate::report::{Findings, Record, clock};
 use flight_exec::Phase;
+use flight_plan::Id;
 use geometry::{LatLon, LocalFrame, Vec2};
 use usal::contract::GatewayState;
 
@@ -29,8 +30,12 @@ pub struct Outcome {
     pub disarmed: bool,
     /// m/s over the ground.
     pub ground_speed_mps: f64,
-    /// The runway to land on.
+    /// The runway to land on: that of the plan, or of the emergency plan with which the flight ended.
     pub runway: flight_plan::Runway,
+    /// The emergency plan with which the flight ended.
+    pub emergency: Option<Id>,
+    /// What the operator did besides the mission logic.
+    pub by_hand: Vec<String>,
     /// The executor's last phase.
     pub phase: Phase,
     /// The gateway's states in order, as far as events told.
@@ -45,7 +50,26 @@ pub struct Outcome {
 
 /// The verdict's sentences, each with whether it holds.
 pub fn verdict(record: &Record, findings: &Findings, outcome: &Outcome) -> Vec<(bool, String)> {
-    let mut verdict = vec![landed(outcome), finished(outcome), as_previewed(record), on_time(findings)];
+    let mut verdict = vec![landed(outcome), finished(outcome)];
+    let compared = compared(record, findings, outcome);
+    verdict.extend(compared.into_iter().map(|(holds, text)| match holds || outcome.by_hand.is_empty() {
+        true => (holds, text),
+        false => (true, format!("not judged, for the operator took part: {text}")),
+    }));
+    verdict.extend([never_safe(outcome), nothing_refused(outcome)]);
+    verdict.extend(took_part(outcome).map(|text| (true, text)));
+    verdict
+}
+
+/// `the operator took part: held the aircraft for 1:20`.
+fn took_part(outcome: &Outcome) -> Option<String> {
+    let deeds = outcome.by_hand.join(", ");
+    (!deeds.is_empty()).then(|| format!("the operator took part: {deeds}"))
+}
+
+/// Against what was previewed and authored.
+fn compared(record: &Record, findings: &Findings, outcome: &Outcome) -> Vec<(bool, String)> {
+    let mut verdict = vec![as_previewed(record), on_time(findings)];
     if outcome.steps > 0 {
         verdict.push(scripted(outcome));
     }
@@ -58,7 +82,6 @@ pub fn verdict(record: &Record, findings: &Findings, outcome: &Outcome) -> Vec<(
     if is_planned(record, "scan") {
         verdict.push(covered(findings));
     }
-    verdict.extend([never_safe(outcome), nothing_refused(outcome)]);
     verdict
 }
 
@@ -95,10 +118,15 @@ fn landed(outcome: &Outcome) -> (bool, String) {
     }
 }
 
+/// An emergency that the operator raised is no failure, and no plan that was flown.
 fn finished(outcome: &Outcome) -> (bool, String) {
-    match outcome.phase {
-        Phase::Finished => (true, "the plan was flown to its end".into()),
-        other => (false, format!("the plan did not come to its end: {other:?}")),
+    match (outcome.phase, &outcome.emergency) {
+        (Phase::Finished, None) => (true, "the plan was flown to its end".into()),
+        (Phase::Finished, Some(plan)) => (
+            !outcome.by_hand.is_empty(),
+            format!("the plan was not flown to its end: emergency plan {plan} was flown instead"),
+        ),
+        (other, _) => (false, format!("the plan did not come to its end: {other:?}")),
     }
 }
 
@@ -219,6 +247,8 @@ mod tests {
                 priority: 1,
                 approach_entry: None,
             },
+            emergency: None,
+            by_hand: vec![],
             phase: Phase::Finished,
             states: vec![GatewayState::Stop, GatewayState::TakeOff, GatewayState::Nav],
             missing_steps: vec![],
@@ -255,6 +285,30 @@ mod tests {
             !never_safe(&Outcome { states: vec![GatewayState::Nav, GatewayState::SafeHold], ..outcome() }).0
         );
         assert!(!nothing_refused(&Outcome { refusals: vec!["too steep".into()], ..outcome() }).0);
+    }
+
+    #[test]
+    fn emergency_that_ended_the_flight_is_told_and_a_failure_unless_the_operator_raised_it() {
+        let ended = Outcome { emergency: Some("home".into()), ..outcome() };
+        let (holds, text) = finished(&ended);
+        assert!(!holds && text.contains("not flown to its end: emergency plan home"), "{text}");
+        assert!(finished(&Outcome { by_hand: vec!["had home flown".into()], ..ended }).0);
+    }
+
+    #[test]
+    fn what_the_operator_changed_is_not_held_against_the_flight() {
+        let record = crate::report::made_up_record();
+        let held = Outcome { by_hand: vec!["held the aircraft for 1:20".into()], ..outcome() };
+        let verdict = verdict(&record, &Findings::default(), &held);
+        assert!(verdict.iter().all(|(holds, _)| *holds), "{verdict:?}");
+        let texts: Vec<&str> = verdict.iter().map(|(_, text)| text.as_str()).collect();
+        assert!(
+            texts.iter().any(|text| text.starts_with("not judged, for the operator took part: flown in"))
+        );
+        assert!(texts.contains(&"the operator took part: held the aircraft for 1:20"), "{texts:?}");
+        // what has nothing to do with it is
+        let refused = Outcome { refusals: vec!["too steep".into()], ..held };
+        assert!(super::verdict(&record, &Findings::default(), &refused).iter().any(|(holds, _)| !*holds));
     }
 
     #[test]

@@ -143,7 +143,8 @@ pub struct Script {
     /// Waypoints of the present passage that have been flown.
     flown: u64,
     steering_to: Option<Token>,
-    asked: Option<(Id, u64)>,
+    /// The decision that is open: its fork, the pass, and since when, seconds.
+    asked: Option<(Id, u64, f64)>,
 }
 
 impl Script {
@@ -160,10 +161,29 @@ impl Script {
     }
 
     /// The executor told something.
-    pub fn hear(&mut self, event: &Event) {
-        if let Event::DecisionRequested(request) = event {
-            self.asked = Some((request.leg.clone(), iteration(self.place.as_ref())));
+    pub fn hear(&mut self, event: &Event, now_s: f64) {
+        match event {
+            Event::DecisionRequested(request) => {
+                self.asked = Some((request.leg.clone(), iteration(self.place.as_ref()), now_s));
+            }
+            Event::DecisionTaken { .. } => {
+                // somebody else was quicker, or it is our own
+                if self.is_waiting() {
+                    self.steps.pop_front();
+                    self.count -= 1;
+                }
+                self.asked = None;
+            }
+            _ => {}
         }
+    }
+
+    /// The next step is a decision that is open.
+    pub fn is_waiting(&self) -> bool {
+        self.steps.front().is_some_and(|step| match (&step.when, &self.asked) {
+            (When::Asked { leg, iteration }, Some((asked, pass, _))) => (leg, iteration) == (asked, pass),
+            _ => false,
+        })
     }
 
     /// The aircraft is at this place and steers to this waypoint.
@@ -178,9 +198,15 @@ impl Script {
         self.steering_to = current;
     }
 
-    /// The next step, if it is due; it won't come again.
-    pub fn next_due(&mut self) -> Option<Step> {
-        let due = self.is_due(&self.steps.front()?.when);
+    /// The next step, if it is due; it won't come again. A decision is left to others for `patience_s`.
+    pub fn next_due(&mut self, now_s: f64, patience_s: f64) -> Option<Step> {
+        let due = match &self.steps.front()?.when {
+            When::Asked { .. } => {
+                let since_s = self.asked.as_ref().map_or(f64::INFINITY, |(.., since_s)| *since_s);
+                self.is_waiting() && now_s - since_s >= patience_s
+            }
+            When::On { leg, iteration, waypoints } => self.is_at(leg, *iteration, *waypoints),
+        };
         if due { self.steps.pop_front() } else { None }
     }
 
@@ -194,14 +220,9 @@ impl Script {
         self.steps.iter()
     }
 
-    fn is_due(&self, when: &When) -> bool {
-        match when {
-            When::Asked { leg, iteration } => self.asked.as_ref() == Some(&(leg.clone(), *iteration)),
-            When::On { leg, iteration: pass, waypoints } => {
-                let here = self.place.as_ref().is_some_and(|p| p.leg == *leg);
-                here && iteration(self.place.as_ref()) == *pass && self.flown >= *waypoints
-            }
-        }
+    fn is_at(&self, leg: &Id, pass: u64, waypoints: u64) -> bool {
+        let here = self.place.as_ref().is_some_and(|p| p.leg == *leg);
+        here && iteration(self.place.as_ref()) == pass && self.flown >= waypoints
     }
 }
 
@@ -286,14 +307,14 @@ mod tests {
                 token += 1;
                 for _ in 0..3 {
                     script.steers_to(Some(&place(leg, iteration)), Some(Token(token)));
-                    names.extend(std::iter::from_fn(|| script.next_due()).map(|s| s.name));
+                    names.extend(std::iter::from_fn(|| script.next_due(0.0, 0.0)).map(|s| s.name));
                 }
             }
             names
         };
         assert!(fly(&mut script, "sweep", 1, 4).is_empty(), "three are flown");
         assert_eq!(fly(&mut script, "sweep", 1, 1), ["the fire grows"]);
-        script.hear(&ask());
+        script.hear(&ask(), 0.0);
         assert_eq!(fly(&mut script, "sweep", 1, 20), ["another round"]);
         assert!(fly(&mut script, "regroup", 1, 9).is_empty());
         assert_eq!(fly(&mut script, "sweep", 2, 9), ["the fire moves"]);
@@ -301,6 +322,25 @@ mod tests {
             script.missing().map(|s| s.name).collect::<Vec<_>>(),
             ["a closer look", "the fire is out", "another way home"]
         );
+    }
+
+    #[test]
+    fn a_decision_is_left_to_who_watches_for_a_while_and_whoever_was_quicker_has_decided() {
+        let waiting = || {
+            let mut script = Script::new(fire_watch());
+            script.steps.pop_front();
+            script.steers_to(Some(&place("sweep", 1)), Some(Token(1)));
+            script.hear(&ask(), 100.0);
+            script
+        };
+        let mut script = waiting();
+        assert!(script.next_due(114.0, 15.0).is_none() && script.is_waiting());
+        assert_eq!(script.next_due(115.0, 15.0).map(|step| step.name), Some("another round"));
+        let mut script = waiting();
+        let taken = Event::DecisionTaken { leg: "ask".into(), branch: "close".into(), by: "operator".into() };
+        script.hear(&taken, 105.0);
+        assert!(script.next_due(120.0, 15.0).is_none() && !script.is_waiting());
+        assert_eq!(script.missing().next().map(|step| step.name), Some("the fire moves"));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! `mission` is what a service above the plan does, `flight` does it in step with the simulated clock, `components`
 //! starts and watches the rest, `judge` says whether the mission was really flown as planned.
 
+mod by_hand;
 mod components;
 mod flight;
 mod judge;
@@ -237,6 +238,8 @@ async fn fly_with(
 struct Conclusion {
     /// It was flown as planned.
     is_good: bool,
+    /// The operator took part.
+    is_by_hand: bool,
     /// Its report was made.
     is_reported: bool,
 }
@@ -246,6 +249,9 @@ fn last_words(failure: Option<&anyhow::Error>, conclusion: Option<&Conclusion>) 
         (Some(failure), _) => format!(
             "The demo has failed: {failure:#}. Try again, on a busy machine with a lower --speed; or close this strip and fly on yourself while the vehicle is connected."
         ),
+        (None, Some(conclusion)) if conclusion.is_good && conclusion.is_by_hand => {
+            "The mission was flown as you commanded it: its report says how. Close the window to end the demo.".into()
+        }
         (None, Some(conclusion)) if conclusion.is_good => {
             "The mission was flown as planned. Close the window to end the demo.".into()
         }
@@ -296,8 +302,9 @@ fn conclude(
 ) -> anyhow::Result<Conclusion> {
     let mut record: Record = prepared.record(ending, &args.wind);
     record.verdict = judge::verdict(&record, &Findings::of(&record), &ending.outcome);
+    let is_by_hand = !record.by_hand.is_empty();
     if record.flown.points().is_empty() {
-        return Ok(Conclusion { is_good: false, is_reported: false });
+        return Ok(Conclusion { is_good: false, is_by_hand, is_reported: false });
     }
     let work = story.work("Making the report");
     let findings = report::write(&record, &args.report, work.progress())?;
@@ -305,7 +312,7 @@ fn conclude(
         summary::print(&record, findings, wall_s, &args.report)?;
     }
     let is_good = record.verdict.iter().all(|(holds, _)| *holds);
-    Ok(Conclusion { is_good, is_reported: findings.is_some() })
+    Ok(Conclusion { is_good, is_by_hand, is_reported: findings.is_some() })
 }
 
 #[cfg(test)]

@@ -162,6 +162,7 @@ impl Prepared {
             flown,
             happenings: recorded.events.iter().map(|(t, e)| assemble::happening(*t, e)).collect(),
             verdict: Vec::new(),
+            by_hand: ending.outcome.by_hand.clone(),
             terrain: self.terrain.clone(),
         }
     }

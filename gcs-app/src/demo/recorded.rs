@@ -2,7 +2,7 @@
 
 use crate::report::TrackPoint;
 use flight_exec::Event;
-use flight_plan::FlightPlan;
+use flight_plan::{FlightPlan, Id, Runway};
 use geometry::LatLon;
 use recording::Message;
 use serde::{Deserialize, Serialize};
@@ -113,6 +113,13 @@ impl Recorded {
         if self.plans.last().is_none_or(|(last, _)| last.as_deref() != Some(hash)) {
             self.refusals.push("the recording lacks the plan that was flown last".into());
         }
+    }
+
+    /// The runway of an emergency plan, in the plan that was flown last.
+    pub fn runway_of(&self, emergency: &Id) -> Option<&Runway> {
+        let (_, plan) = self.plans.last()?;
+        let emergency = plan.emergency_plans.iter().find(|plan| plan.id == *emergency)?;
+        plan.runway(&emergency.runway)
     }
 
     /// The flight from `started_s` on: times count from there.

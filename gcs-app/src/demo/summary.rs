@@ -24,10 +24,12 @@ pub fn print(record: &Record, findings: &Findings, wall_s: f64, folder: &Path) -
         folder.join("report.html").display()
     )?;
     let good = record.verdict.iter().all(|(holds, _)| *holds);
-    say!(
-        "{}",
-        if good { "The mission was flown as planned." } else { "The mission was NOT flown as planned." }
-    )
+    let words = match (good, record.by_hand.is_empty()) {
+        (true, true) => "The mission was flown as planned.",
+        (true, false) => "The mission was flown as commanded.",
+        (false, _) => "The mission was NOT flown as planned.",
+    };
+    say!("{words}")
 }
 
 fn table(findings: &Findings) -> String {

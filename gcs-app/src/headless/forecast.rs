@@ -201,6 +201,7 @@ pub fn record(loaded: &Loaded, program: &Program, preview: &Preview, wind: &Wind
         authored: Default::default(),
         happenings,
         verdict: Vec::new(),
+        by_hand: Vec::new(),
         terrain: loaded.terrain.clone(),
     }
 }

@@ -154,11 +154,19 @@ fn verdict(cursor: &mut Cursor, record: &Record) {
     }
     let failed: Vec<&String> =
         record.verdict.iter().filter(|(holds, _)| !*holds).map(|(_, text)| text).collect();
-    cursor.heading(if failed.is_empty() { "Flown as planned" } else { "Not flown as planned" });
+    cursor.heading(match (failed.is_empty(), record.by_hand.is_empty()) {
+        (true, true) => "Flown as planned",
+        (true, false) => "Flown as commanded",
+        (false, _) => "Not flown as planned",
+    });
     let held = record.verdict.len() - failed.len();
     tick(cursor, failed.is_empty());
     let text = format!("{held} of {} conditions hold", record.verdict.len());
     cursor.paragraph(24.0, &text, Type::plain(SIZE, TEXT));
+    if !record.by_hand.is_empty() {
+        let text = format!("The operator took part: {}", record.by_hand.join(", "));
+        cursor.paragraph(24.0, &text, Type::plain(SIZE, TEXT));
+    }
     for text in failed {
         tick(cursor, false);
         cursor.paragraph(24.0, text, Type::plain(SIZE, BAD));

@@ -206,6 +206,8 @@ pub struct Record {
     pub happenings: Vec<Happening>,
     /// The verdict's sentences, with whether each holds.
     pub verdict: Vec<(bool, String)>,
+    /// What the operator did that nobody had planned.
+    pub by_hand: Vec<String>,
     /// The ground.
     pub terrain: Arc<dyn Terrain>,
 }
@@ -264,6 +266,7 @@ pub(crate) mod tests {
                     details: serde_json::json!({"event": "plan-activated"}),
                 },
             ],
+            by_hand: Vec::new(),
             verdict: vec![
                 (true, "landed on R05".into()),
                 (false, "cross-track 16.2 m on TF legs (limit 15 m)".into()),
