@@ -28,7 +28,7 @@ pub enum Report {
 }
 
 /// Who asks for what an alarm of the gateway leads to.
-const GATEWAY: &str = "gateway";
+pub(super) const GATEWAY: &str = "gateway";
 
 impl Manager {
     /// Something comes from a gateway; only the one that we joined counts.

@@ -13,6 +13,9 @@ const SETTLING: Duration = Duration::from_secs(1);
 const SILENT: Duration = Duration::from_secs(3);
 /// A request (but for the launch and Safe mode) is given up after so many refusals.
 const ATTEMPTS: u32 = 5;
+/// A launch that is not granted is asked for again for so long. Whoever mends what was in the way stands before the propeller: later
+/// nobody may be surprised by a take-off.
+const LAUNCH_WITHIN: Duration = Duration::from_secs(10);
 
 /// Where we stand.
 #[derive(Debug, Default)]
@@ -44,11 +47,13 @@ struct Pending {
     refusals: u32,
     not_before: Option<Time>,
     last_reason: String,
+    /// Since when it waits, as far as it was looked at.
+    since: Option<Time>,
 }
 
 impl Pending {
     fn new(request: GatewayRequest) -> Self {
-        Self { request, refusals: 0, not_before: None, last_reason: String::new() }
+        Self { request, refusals: 0, not_before: None, last_reason: String::new(), since: None }
     }
 
     fn is_due(&self, now: Time) -> bool {
@@ -62,6 +67,15 @@ impl Pending {
         let new = self.last_reason != reason;
         self.last_reason = reason.to_owned();
         new
+    }
+
+    /// It is a launch that has waited for too long: what is told of it.
+    fn overdue(&mut self, now: Time) -> Option<String> {
+        let since = *self.since.get_or_insert(now);
+        let is_late = self.request == GatewayRequest::Launch && now >= since + LAUNCH_WITHIN;
+        let why = if self.last_reason.is_empty() { "the gateway did not answer." } else { &self.last_reason };
+        let seconds = LAUNCH_WITHIN.as_secs();
+        is_late.then(|| format!("{why} Given up after {seconds} s: nothing takes off by itself later. Mend that, and start again."))
     }
 
     fn is_hopeless(&self) -> bool {
@@ -164,11 +178,15 @@ impl GatewaySession {
     }
 
     /// Time has passed: a gateway that is not heard any more may have been followed by another one, which has to be joined.
-    pub fn tick(&mut self, now: Time) {
+    /// Gives why a launch is given up.
+    pub fn tick(&mut self, now: Time) -> Option<String> {
         let silent = self.gateway.is_some() && self.heard.is_some_and(|at| now > at + SILENT);
         if silent && self.joined {
             self.lost();
         }
+        let why = self.wanted.as_mut()?.overdue(now)?;
+        self.wanted = None;
+        Some(why)
     }
 
     /// Whether to join now; if so, it is under way. Its state has to be known before. One that does not hear the autopilot lets
@@ -364,6 +382,25 @@ mod tests {
         assert!(session.take_back(), "but who asks for it now gets it");
         session.state(Duration::ZERO, GatewayState::Manual);
         assert_eq!(session.request_back(Duration::ZERO), Some(GatewayRequest::Resume));
+    }
+
+    #[test]
+    fn a_launch_that_is_refused_for_long_is_given_up_and_told() {
+        let mut session = GatewaySession::default();
+        let now = Duration::from_secs;
+        session.want(GatewayRequest::Launch);
+        assert_eq!(session.tick(now(5)), None);
+        assert_eq!(session.request(now(5), true), Some(GatewayRequest::Launch));
+        let refused = Err("There is no GPS fix.".to_owned());
+        session.requested(now(5), &GatewayRequest::Launch, refused);
+        assert_eq!(session.tick(now(14)), None);
+        let why = session.tick(now(15)).unwrap();
+        assert!(why.starts_with("There is no GPS fix.") && why.contains("start again"), "{why}");
+        assert_eq!(session.tick(now(16)), None);
+        assert_eq!(session.wanted(), None);
+        session.want(GatewayRequest::Safe);
+        assert_eq!(session.tick(now(20)), None);
+        assert_eq!(session.tick(now(99)), None, "Safe mode is never given up");
     }
 
     fn answer(instance: Option<&str>) -> Option<JoinAnswer> {

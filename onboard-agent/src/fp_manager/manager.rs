@@ -5,6 +5,7 @@
 use super::aircraft::Aircraft;
 use super::alarms::Alarms;
 use super::feeder::{BatchResult, Feeder};
+use super::gateway_events::GATEWAY;
 use super::gateway_session::GatewaySession;
 use super::journal::{Entry, ManagerState, Record, Reply};
 use super::plan_history::PlanHistory;
@@ -151,7 +152,9 @@ impl Manager {
     /// Time has passed.
     pub fn tick(&mut self, now: Time, out: &mut Vec<Effect>) {
         self.timeline.begin(now, self.executor.last_step());
-        self.gateway_session.tick(now);
+        if let Some(reason) = self.gateway_session.tick(now) {
+            self.not_launched(now, reason, out);
+        }
         let state = self.aircraft.state(self.alarms.engine_is_out());
         let input = state.map_or(Input::Tick, Input::Aircraft);
         self.step(now, input, out);
@@ -228,6 +231,17 @@ impl Manager {
             }
         }
         self.send(now, out);
+    }
+
+    /// The take-off was not granted in time: the plan stands at its start again, unless another flight of it was flown before.
+    fn not_launched(&mut self, now: Time, reason: String, out: &mut Vec<Effect>) {
+        let request = GatewayRequest::Launch.name().into();
+        out.push(Effect::Event(Event::NotGranted { request, reason }));
+        let is_single = self.executor.program().is_some_and(|program| program.flown().flights().count() <= 1);
+        if is_single {
+            let request = self.next_request();
+            self.step(now, Input::Command { request, by: GATEWAY.into(), command: Command::Rewind }, out);
+        }
     }
 
     pub(super) fn is_in_emergency(&self) -> bool {

@@ -12,6 +12,9 @@ use crate::layout::world::World;
 use flight_plan::suggest::did_you_mean_leg;
 use flight_plan::{Id, Leg, LegKind, LegPath, Program, StageKind, VariableValue};
 
+/// Farther than this from a runway an aircraft does not stand on it, metres.
+const AT_RUNWAY_M: f64 = 500.0;
+
 impl Executor {
     pub(crate) fn command(
         &mut self,
@@ -54,6 +57,7 @@ impl Executor {
         if self.program().is_none() {
             return Err(refusal("no-plan", "there is no plan: propose one and commit it first"));
         }
+        self.check_at_runway()?;
         let cursor = match self.later_flight() {
             Some(mut cursor) => {
                 cursor.move_path_to(self.here());
@@ -69,6 +73,24 @@ impl Executor {
         self.enter_phase(Phase::Flying, out);
         self.jump(cursor, out);
         Ok(())
+    }
+
+    /// The aircraft stands where the flight is to take off.
+    fn check_at_runway(&self) -> Result<(), Refusal> {
+        let stage = self.later_flight().map_or(0, |cursor| cursor.stage);
+        let stage = self.setup.program.flown().stages.get(stage).filter(|s| s.kind == StageKind::TakeOff);
+        let runway = stage.and_then(|s| self.setup.program.plan.runway(s.runway.as_ref()?));
+        let Some((runway, aircraft)) = runway.zip(self.life.aircraft()) else { return Ok(()) };
+        let away_m = distance_m(aircraft.position, runway.threshold);
+        if !aircraft.on_ground || away_m <= runway.length_m + AT_RUNWAY_M {
+            return Ok(());
+        }
+        let reason = format!(
+            "the aircraft stands {:.1} km from runway `{}`, from which the plan takes off: bring it there, or fly a plan of where it stands",
+            away_m / 1000.0,
+            runway.id
+        );
+        Err(refusal("not-at-the-runway", reason))
     }
 
     /// At the beginning of the flight that is to be started now, if others of the plan were flown before it: then what they left behind

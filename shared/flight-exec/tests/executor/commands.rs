@@ -1,6 +1,6 @@
 //! Commands: each is done or refused with a reason, and answered once.
 
-use crate::rig::{Rig, document, fix, program};
+use crate::rig::{HOME, Rig, document, fix, program};
 use aircraft::Profile;
 use flight_exec::{AircraftState, Command, Event, Executor, Input, Output, Phase, Snapshot, Time, Token};
 use flight_plan::Cause;
@@ -510,4 +510,18 @@ fn after_a_hold_what_an_update_brings_can_be_taken_back_by_the_next() {
     let ways: Vec<_> = rig.buffer.iter().take(3).map(|w| (w.leg.as_str(), w.position)).collect();
     let there = |i: usize, leg: &str, position| ways[i].0 == leg && position == ways[i].1;
     assert!(there(0, "k", rig.position) && there(1, "k", fix("B5")) && there(2, "z", fix("A3")), "{ways:?}");
+}
+
+/// A plan of Tennessee took off in Munich, and flew west.
+#[test]
+fn nobody_takes_off_elsewhere_than_from_the_runway_of_the_plan() {
+    let mut rig = Rig::new();
+    rig.update(&program(&document(r#"<TF id="a" fix="B1"/>"#))).unwrap();
+    rig.position = HOME.destination(200.0, 2400.0);
+    rig.report();
+    let refusal = rig.command(Command::Start).unwrap_err();
+    assert!(refusal.code == "not-at-the-runway" && refusal.reason.contains("2.4 km"), "{refusal}");
+    rig.position = HOME.destination(90.0, 300.0);
+    rig.report();
+    rig.command(Command::Start).unwrap();
 }
