@@ -51,6 +51,20 @@ async fn the_return_path_of_datagrams_belongs_to_the_autopilot_and_strangers_are
 }
 
 #[tokio::test]
+async fn what_an_autopilot_says_before_its_first_heartbeat_is_no_strangers() {
+    let mut link = Link::open(&"udp:127.0.0.1:0".parse().unwrap()).await.unwrap();
+    let at = link.local_address().unwrap();
+    let [stranger, own] = [(); 2].map(|()| UdpSocket::bind("127.0.0.1:0").unwrap());
+    stranger.send_to(b"hello", at).unwrap();
+    for _ in 0..30 {
+        own.send_to(b"attitude", at).unwrap();
+    }
+    own.send_to(b"own", at).unwrap();
+    assert_eq!(next(&mut link).await.1, b"own");
+    assert_eq!((link.stats().strangers, link.stats().stranger_bytes), (1, 5));
+}
+
+#[tokio::test]
 async fn an_autopilot_that_is_silent_gives_up_its_place_to_one_that_is_recognised() {
     let socket = tokio::net::UdpSocket::bind("127.0.0.1:0").await.unwrap();
     let mut link = Link::udp(socket, Partners::Recognised { most: 1, silent: Duration::ZERO });

@@ -1,6 +1,7 @@
 //! Datagrams. The return path belongs to those who were recognised, not to any stranger.
 
 use super::{Event, Peer, Stats};
+use std::collections::VecDeque;
 use std::io;
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
@@ -8,6 +9,9 @@ use tokio::net::{UdpSocket, lookup_host};
 
 /// The largest datagram.
 const LARGEST: usize = 65_536;
+
+/// So many who were not recognised are remembered.
+const UNKNOWN_MAX: usize = 16;
 
 /// Who may be at the other end of datagrams.
 #[derive(Debug, Clone, Copy)]
@@ -35,11 +39,20 @@ struct Partner {
     heard: Instant,
 }
 
+/// Who was not recognised.
+struct Unknown {
+    address: SocketAddr,
+    datagrams: u64,
+    bytes: u64,
+}
+
 /// A socket and who is at its other end.
 pub struct Udp {
     socket: UdpSocket,
     rule: Partners,
     partners: Vec<Partner>,
+    /// The latest who were not recognised: one of them may be the autopilot, which has not said yet that it is one.
+    unknown: VecDeque<Unknown>,
     /// Peers that there were so far.
     given: u32,
 }
@@ -47,7 +60,7 @@ pub struct Udp {
 impl Udp {
     /// Exchanges datagrams with those that the rule allows.
     pub fn new(socket: UdpSocket, rule: Partners) -> Self {
-        let mut udp = Self { socket, rule, partners: vec![], given: 0 };
+        let mut udp = Self { socket, rule, partners: vec![], unknown: VecDeque::new(), given: 0 };
         if let Partners::Only(address) = rule {
             udp.admit(Instant::now(), address);
         }
@@ -91,10 +104,33 @@ impl Udp {
                 continue;
             };
             if let Some(peer) = self.peer_at(Instant::now(), from, || is_partner(into)) {
+                self.was_no_stranger(from, stats);
                 return Event::Datagram(peer);
             }
-            stats.strangers += 1;
-            stats.stranger_bytes += length as u64;
+            self.is_unknown(from, length as u64, stats);
+        }
+    }
+
+    fn is_unknown(&mut self, from: SocketAddr, bytes: u64, stats: &mut Stats) {
+        stats.strangers += 1;
+        stats.stranger_bytes += bytes;
+        if let Some(known) = self.unknown.iter_mut().find(|unknown| unknown.address == from) {
+            known.datagrams += 1;
+            known.bytes += bytes;
+            return;
+        }
+        if self.unknown.len() >= UNKNOWN_MAX {
+            self.unknown.pop_front();
+        }
+        self.unknown.push_back(Unknown { address: from, datagrams: 1, bytes });
+    }
+
+    /// What a partner sent before he was recognised, as an autopilot does between two heartbeats, was no stranger's.
+    fn was_no_stranger(&mut self, partner: SocketAddr, stats: &mut Stats) {
+        let Some(at) = self.unknown.iter().position(|unknown| unknown.address == partner) else { return };
+        if let Some(Unknown { datagrams, bytes, .. }) = self.unknown.remove(at) {
+            stats.strangers -= datagrams;
+            stats.stranger_bytes -= bytes;
         }
     }
 

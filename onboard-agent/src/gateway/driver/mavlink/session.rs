@@ -247,7 +247,10 @@ impl Session {
                     self.current(now, current.seq, events);
                 }
             }
-            MavMessage::STATUSTEXT(text) => self.words.hear(now, text),
+            MavMessage::STATUSTEXT(text) => {
+                self.streams.said(text);
+                self.words.hear(now, text);
+            }
             MavMessage::PARAM_VALUE(value) => events.push(SessionEvent::Parameter(value.clone())),
             _ => self.on_other(now, message, peer, events),
         }

@@ -31,6 +31,9 @@ const WANTED: [(u32, u32); 15] = [
     (HOME_POSITION_DATA::ID, 0),
 ];
 
+/// How ArduPilot begins to say that it has no such message; its number and a bracket follow.
+const LACKING: &str = "No ap_message for mavlink id (";
+
 /// Of these each autopilot has one.
 const WINDS: [u32; 2] = [WIND_DATA::ID, WIND_COV_DATA::ID];
 
@@ -48,6 +51,8 @@ struct Stream {
     count: u32,
     /// Asked for in vain, one time after the other.
     in_vain: u32,
+    /// The autopilot has said that it has no such message.
+    is_lacking: bool,
 }
 
 impl Stream {
@@ -63,7 +68,8 @@ impl Stream {
         }
         let wanted = looked.as_millis() / u128::from(interval_ms.max(1));
         let missing = self.count == 0 || u128::from(self.count) * 2 < wanted;
-        *self = Self { since: Some(now), count: 0, in_vain: if missing { self.in_vain + 1 } else { 0 } };
+        *self =
+            Self { since: Some(now), count: 0, in_vain: if missing { self.in_vain + 1 } else { 0 }, ..*self };
         missing
     }
 }
@@ -74,15 +80,27 @@ impl Streams {
         let known = WANTED.iter().zip(&mut self.streams).find(|((wanted, _), _)| *wanted == id);
         if let Some((_, stream)) = known {
             stream.count += 1;
+            stream.is_lacking = false;
             self.got_home |= id == HOME_POSITION_DATA::ID;
         }
+    }
+
+    /// The autopilot says something: ArduPilot says in words which message it does not have, each time that it is asked for it.
+    pub fn said(&mut self, text: &STATUSTEXT_DATA) {
+        let id = text
+            .text
+            .to_str()
+            .ok()
+            .and_then(|text| text.strip_prefix(LACKING)?.strip_suffix(')')?.parse::<u32>().ok());
+        let lacking = WANTED.iter().zip(&mut self.streams).find(|((wanted, _), _)| Some(*wanted) == id);
+        lacking.into_iter().for_each(|(_, stream)| stream.is_lacking = true);
     }
 
     /// Asks for what is missing; of the messages that say the wind, for this one.
     pub fn tick(&mut self, now: Time, peer: Peer, wind: u32, out: &mut Vec<MavMessage>) {
         for ((id, interval_ms), stream) in WANTED.iter().zip(&mut self.streams) {
             let other_wind = WINDS.contains(id) && *id != wind;
-            let wanted = !other_wind && (*interval_ms > 0 || !self.got_home);
+            let wanted = !other_wind && !stream.is_lacking && (*interval_ms > 0 || !self.got_home);
             if wanted && stream.is_due(now, *interval_ms) {
                 out.push(ask(*id, *interval_ms, peer));
             }
@@ -114,6 +132,28 @@ fn ask(id: u32, interval_ms: u32, peer: Peer) -> MavMessage {
 mod tests {
     use super::*;
     use mavlink::Message;
+
+    fn asked_for(out: &[MavMessage], id: u32) -> usize {
+        let asks =
+            |message: &&MavMessage| matches!(message, MavMessage::COMMAND_LONG(m) if m.param1 == id as f32);
+        out.iter().filter(asks).count()
+    }
+
+    #[test]
+    fn what_the_autopilot_says_it_does_not_have_is_not_asked_for_again() {
+        let (mut streams, mut out) = (Streams::default(), vec![]);
+        let peer = Peer { system: 1, component: 1 };
+        streams.tick(Time::ZERO, peer, WIND_DATA::ID, &mut out);
+        for text in ["No ap_message for mavlink id (371)", "No ap_message for mavlink id (x)", "id (30)"] {
+            streams.said(&STATUSTEXT_DATA { text: text.into(), ..STATUSTEXT_DATA::DEFAULT });
+        }
+        (1..1000).for_each(|second| streams.tick(Time::from_secs(second), peer, WIND_DATA::ID, &mut out));
+        assert_eq!(asked_for(&out, FUEL_STATUS_DATA::ID), 1);
+        assert!(
+            asked_for(&out, RPM_DATA::ID) > 5 && asked_for(&out, ATTITUDE_DATA::ID) > 5,
+            "they may have been lost"
+        );
+    }
 
     /// What is read and never asked for stays away from an autopilot that sends nothing by itself.
     #[test]
