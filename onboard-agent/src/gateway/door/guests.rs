@@ -1,7 +1,8 @@
 //! Pure: who may stay at the port that everybody reaches.
 //!
 //! A connection is a **stranger** until the hub has answered its whole handshake; then it is a **guest**. Strangers have few
-//! places and little time; when the places are full, one goes that belongs to whoever has most of them.
+//! places and little time. When the places are full, one goes that belongs to whoever has most of them: no address, nor a few
+//! together, can keep the others out.
 
 use crate::gateway::order::Time;
 use std::collections::{BTreeMap, VecDeque};
@@ -38,6 +39,15 @@ pub enum Input {
     Gone(Id),
     /// Time passed.
     Tick,
+}
+
+/// The place that a guest gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// Nobody's.
+    Free,
+    /// That of this one, who goes.
+    Of(Id),
 }
 
 /// Who is at the door and inside.
@@ -106,7 +116,7 @@ impl Guests {
     }
 
     fn came(&mut self, now: Time, id: Id, network: IpAddr) -> Option<Id> {
-        if !self.has_room_for(network) {
+        if self.place_for(network).is_none() {
             return Some(id);
         }
         self.strangers.push(Stranger { id, network, came: now, spoke: None });
@@ -116,16 +126,32 @@ impl Guests {
     fn let_in(&mut self, id: Id) -> Option<Id> {
         let at = self.strangers.iter().position(|s| s.id == id)?;
         let network = self.strangers.remove(at).network;
-        if !self.has_room_for(network) {
-            return Some(id);
+        let Some(place) = self.place_for(network) else { return Some(id) };
+        let goes = match place {
+            Place::Free => None,
+            Place::Of(guest) => Some(guest),
+        };
+        if let Some(guest) = &goes {
+            self.guests.remove(guest);
         }
         self.guests.insert(id, network);
-        None
+        goes
     }
 
-    fn has_room_for(&self, network: IpAddr) -> bool {
-        let same = self.guests.values().filter(|guest| **guest == network).count();
-        self.guests.len() < GUESTS_MAX && same < GUESTS_PER_ADDRESS_MAX
+    /// The place of one more guest of a network, if there is one: when all are taken, that of who has most of them, as long as he
+    /// keeps no fewer.
+    fn place_for(&self, network: IpAddr) -> Option<Place> {
+        let count = |of: IpAddr| self.guests.values().filter(|guest| **guest == of).count();
+        let same = count(network);
+        if same >= GUESTS_PER_ADDRESS_MAX {
+            return None;
+        }
+        if self.guests.len() < GUESTS_MAX {
+            return Some(Place::Free);
+        }
+        // of these who came last: the operator's window has been there for long
+        let (newest, of) = self.guests.iter().max_by_key(|(id, of)| (count(**of), **id))?;
+        (count(*of) > same + 1).then_some(Place::Of(*newest))
     }
 
     /// Of whoever has most places: first who said nothing, of these who is there for the longest time.
@@ -247,9 +273,31 @@ mod tests {
         for id in 2000..2000 + GUESTS_PER_ADDRESS_MAX as Id {
             assert_eq!(let_in(&mut guests, 0.0, id, THERE), NOBODY);
         }
-        assert_eq!(came(&mut guests, 0.0, 3000, "10.0.0.8"), [3000], "full");
+        assert_eq!(came(&mut guests, 0.0, 3000, HERE), [3000], "it has its share");
         guests.step(at(1.0), Input::Gone(5));
         assert_eq!(let_in(&mut guests, 1.0, 4000, HERE), NOBODY);
+    }
+
+    #[test]
+    fn two_addresses_that_have_all_places_make_room_for_a_third_up_to_its_share() {
+        let mut guests = Guests::default();
+        let half = GUESTS_PER_ADDRESS_MAX as Id;
+        (0..half).for_each(|id| drop(let_in(&mut guests, 0.0, id, HERE)));
+        (half..2 * half).for_each(|id| drop(let_in(&mut guests, 0.0, id, THERE)));
+        assert_eq!(guests.guests.len(), GUESTS_MAX);
+        assert_eq!(
+            let_in(&mut guests, 0.0, 1000, "10.0.0.8"),
+            [2 * half - 1],
+            "who came last of those with most"
+        );
+        assert_eq!(let_in(&mut guests, 0.0, 1001, "10.0.0.8"), [half - 1]);
+        for id in 1002..1200 {
+            let_in(&mut guests, 0.0, id, "10.0.0.8");
+        }
+        let count =
+            |of: &str| guests.guests.values().filter(|guest| **guest == network(of.parse().unwrap())).count();
+        assert_eq!(guests.guests.len(), GUESTS_MAX);
+        assert_eq!([HERE, THERE, "10.0.0.8"].map(count), [43, 43, 42]);
     }
 
     #[test]
