@@ -2,12 +2,13 @@
 //! It asks, and changes no setting; the autopilot goes on sending the telemetry that it is asked for.
 
 use crate::Shutdown;
-use crate::gateway::driver::Registration;
 use crate::gateway::driver::examination::{Degree, Finding};
+use crate::gateway::driver::{Registration, Setup};
 use crate::gateway::{Address, Config, from_link};
 use anyhow::{Context, bail};
+use autopilot_link::signing::Signing;
 use autopilot_link::{Link, Outbox};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Whoever says nothing for so long isn't there.
 const HEARD_WITHIN: Duration = Duration::from_secs(15);
@@ -58,22 +59,14 @@ pub async fn examine(
     shutdown: Shutdown,
     mut found: impl FnMut(&Address, &Diagnosis),
 ) -> anyhow::Result<()> {
-    if config.key.is_some() {
-        bail!(
-            "it does not sign: look the autopilot over on a link that needs no key, as its USB port, without --signing-key"
-        );
-    }
     for address in &config.autopilots {
-        found(address, &examine_by(config.driver, address, shutdown.clone()).await?);
+        found(address, &examine_by(config, address, shutdown.clone()).await?);
     }
     Ok(())
 }
 
-async fn examine_by(
-    driver: Registration,
-    address: &Address,
-    mut shutdown: Shutdown,
-) -> anyhow::Result<Diagnosis> {
+async fn examine_by(config: &Config, address: &Address, mut shutdown: Shutdown) -> anyhow::Result<Diagnosis> {
+    let driver: Registration = config.driver;
     let make = driver
         .examine
         .with_context(|| format!("the driver `{}` can't look an autopilot over", driver.name))?;
@@ -81,13 +74,18 @@ async fn examine_by(
     let mut link = link.with_context(|| {
         format!("the autopilot's link {address}: does the agent run already? End it first")
     })?;
-    let mut examination = make();
+    let unix = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    let signing = config.key.clone().map(|key| Signing::new(key, unix));
+    let mut recognising = signing.clone();
+    let mut examination = make(&Setup { links: vec![address.to_string()], signing, ..Setup::default() });
     let (began, mut beat) = (Instant::now(), tokio::time::interval(BEAT));
     let (mut received, mut outbox) = (Vec::new(), Outbox::default());
     loop {
         tokio::select! {
             () = shutdown.requested() => bail!("it was ended before it was done"),
-            event = link.next(&mut received, |datagram| (driver.recognises)(datagram, None)) => {
+            event = link.next(&mut received, |datagram| {
+                (driver.recognises)(datagram, recognising.as_mut().map(|signing| (signing, began.elapsed())))
+            }) => {
                 examination.receive(began.elapsed(), from_link(event, &received));
             }
             _ = beat.tick() => examination.tick(began.elapsed()),
@@ -102,8 +100,9 @@ async fn examine_by(
         if !examination.has_heard() && now > HEARD_WITHIN {
             bail!(
                 "nobody answers at {address} within {} s: check that the autopilot is powered, the cable or the network, the port \
-                 and the baud rate, that this port speaks MAVLink 2, and that no other program (an agent that runs) has it",
-                HEARD_WITHIN.as_secs()
+                 and the baud rate, that this port speaks MAVLink 2{}, and that no other program (an agent that runs) has it",
+                HEARD_WITHIN.as_secs(),
+                if config.key.is_some() { " and signs with the key of --signing-key" } else { "" }
             );
         }
     }

@@ -90,7 +90,7 @@ pub struct Registration {
     /// autopilot at the other end.
     pub make: fn(&Setup) -> Box<dyn Driver>,
     /// Makes an examination, for `doctor`; `None`: it can't look an autopilot over.
-    pub examine: Option<fn() -> Box<dyn Examination>>,
+    pub examine: Option<fn(&Setup) -> Box<dyn Examination>>,
 }
 
 /// The drivers: a new one is a line here.

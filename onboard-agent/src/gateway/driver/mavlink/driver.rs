@@ -27,7 +27,7 @@ pub const REGISTRATION: Registration = Registration {
     name: "mavlink",
     recognises: session::recognises,
     make: |setup| Box::new(MavlinkDriver::new(setup)),
-    examine: Some(|| Box::<Looked>::default()),
+    examine: Some(|setup| Box::new(Looked::new(setup))),
 };
 
 /// An autopilot that was heard.

@@ -5,14 +5,14 @@ mod judge;
 mod tests;
 
 use super::super::examination::{Examination, Finding};
-use super::super::{DIALECTS, FromLink};
+use super::super::{DIALECTS, FromLink, Setup};
 use super::Peer;
 use super::dialect::Dialect;
+use super::links::Received;
 use super::parameters::Needed;
 use super::session::Session;
 use crate::gateway::order::Time;
 use autopilot_link::Outbox;
-use autopilot_link::frame::Decoder;
 use mavlink::dialects::ardupilotmega::*;
 use mavlink::{Message, MessageData};
 use std::collections::BTreeMap;
@@ -39,7 +39,6 @@ pub struct Advice {
 /// What was found out so far.
 #[derive(Default)]
 pub struct Looked {
-    decoder: Decoder,
     session: Session,
     heard: Option<(Time, HEARTBEAT_DATA)>,
     dialect: Option<&'static Dialect>,
@@ -55,6 +54,11 @@ pub struct Looked {
 }
 
 impl Looked {
+    /// One that has heard nothing, by the one link of `setup`.
+    pub fn new(setup: &Setup) -> Self {
+        Self { session: Session::new(setup), ..Self::default() }
+    }
+
     fn on_message(&mut self, now: Time, message: &MavMessage) {
         match message {
             MavMessage::HEARTBEAT(beat) => self.on_heartbeat(now, beat),
@@ -130,10 +134,9 @@ impl Looked {
 
     fn process(&mut self, now: Time) {
         let mut events = vec![];
-        while let Some(frame) = self.decoder.next_frame() {
-            let (sender, message) = (frame.sender, frame.message());
+        while let Some(Received { link, sender, message }) = self.session.next_message(now) {
             let Some(message) = message else { continue };
-            self.session.on_message(now, 0, sender, &message, &mut events);
+            self.session.on_message(now, link, sender, &message, &mut events);
             if self.session.peer() == Some(sender) {
                 self.on_message(now, &message);
             }
@@ -143,11 +146,7 @@ impl Looked {
 
 impl Examination for Looked {
     fn receive(&mut self, now: Time, incoming: FromLink<'_>) {
-        match incoming {
-            FromLink::Connected => self.decoder.restart(),
-            FromLink::Stream(bytes) => self.decoder.push(bytes),
-            FromLink::Datagram(bytes) => self.decoder.push_datagram(bytes),
-        }
+        self.session.receive(0, incoming);
         self.process(now);
     }
 

@@ -103,15 +103,20 @@ impl Session {
         }
     }
 
-    /// Handles the next message of what was received. False: there is none left.
-    pub fn process(&mut self, now: Time, events: &mut Vec<SessionEvent>) -> bool {
+    /// The next message of what was received and is believed, whoever sent it; the mirror gets those of the autopilot.
+    pub fn next_message(&mut self, now: Time) -> Option<Received> {
         let (mirror, peer) = (self.mirror.as_mut(), self.peer);
         let pass = |frame: &Frame<'_>| {
             if let Some(mirror) = mirror.filter(|_| peer == Some(frame.sender)) {
                 mirror.pass(frame);
             }
         };
-        let Some(Received { link, sender, message }) = self.links.next(now, pass) else {
+        self.links.next(now, pass)
+    }
+
+    /// Handles the next message of what was received. False: there is none left.
+    pub fn process(&mut self, now: Time, events: &mut Vec<SessionEvent>) -> bool {
+        let Some(Received { link, sender, message }) = self.next_message(now) else {
             let mirror = self.mirror.as_mut();
             return mirror.is_some_and(|mirror| mirror.process(now, self.mission.aboard()));
         };

@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::gateway::driver::examination::Degree;
+use autopilot_link::frame::Decoder;
+use autopilot_link::signing::{Key, Signing};
 use sim::core::{Peer as SimPeer, Simulator};
 use sim::{FaultRequest, Personality};
 
@@ -9,32 +11,64 @@ const PEER: SimPeer = SimPeer(1);
 
 /// What is found out about a simulator after `prepare`.
 fn look_over(personality: Personality, prepare: impl Fn(&mut Simulator)) -> Vec<Finding> {
+    look_over_signed(personality, [None; 2], prepare).expect("it is heard")
+}
+
+/// With the keys of the autopilot and of the doctor; `None`: they don't believe each other.
+fn look_over_signed(
+    personality: Personality,
+    keys: [Option<&str>; 2],
+    prepare: impl Fn(&mut Simulator),
+) -> Option<Vec<Finding>> {
     let config = sim::Config::default();
     let mut sim = Simulator::of(personality, config.profile, config.home, aircraft::Wind::default(), 1);
     sim.connect(PEER);
     prepare(&mut sim);
-    let (mut looked, mut outbox) = (Looked::default(), Outbox::default());
+    let signing = |key: &str| Signing::new(Key::read(key).unwrap(), Duration::from_secs(1_763_884_800));
+    let [mut far, own] = keys.map(|key| key.map(signing));
+    let mut looked = Looked::new(&Setup { signing: own, ..Setup::default() });
+    let mut outbox = Outbox::default();
     let mut decoder = sim::frame::Decoder::default();
     for _ in 0..1000 {
         sim.step();
         let now = Duration::from_nanos(sim.now_ns());
-        for outgoing in sim.take_outgoing() {
+        for mut outgoing in sim.take_outgoing() {
+            far.iter_mut().for_each(|far| far.sign(now, 0, &mut outgoing.bytes, 0));
             looked.receive(now, FromLink::Stream(&outgoing.bytes));
         }
         looked.tick(now);
         if looked.is_complete(now) {
-            return looked.findings(now);
+            return Some(looked.findings(now));
         }
         outbox.clear();
         looked.send(&mut outbox);
         for bytes in outbox.frames() {
+            if !far.as_mut().is_none_or(|far| believes(far, now, bytes)) {
+                continue;
+            }
             decoder.push(bytes);
             for frame in sim::frame::take_frames(&mut decoder) {
                 sim.receive(PEER, frame);
             }
         }
     }
-    panic!("never complete: {:?}", looked.findings(Time::MAX));
+    assert!(!looked.has_heard(), "never complete: {:?}", looked.findings(Time::MAX));
+    None
+}
+
+fn believes(signing: &mut Signing, now: Time, bytes: &[u8]) -> bool {
+    let mut decoder = Decoder::default();
+    decoder.push(bytes);
+    decoder.next_frame().is_some_and(|frame| signing.believes(now, &frame))
+}
+
+#[test]
+fn an_autopilot_with_a_key_is_looked_over_with_it() {
+    let ready =
+        |keys| look_over_signed(Personality::ArduPlane, keys, warm_up).map(|findings| to_do(&findings));
+    assert_eq!(ready([Some("ours"), Some("ours")]), Some(vec![]));
+    assert_eq!(ready([Some("ours"), Some("another")]), None);
+    assert_eq!(ready([None, Some("ours")]), None);
 }
 
 fn warm_up(sim: &mut Simulator) {
