@@ -175,3 +175,14 @@ fn one_that_never_arms_is_refused_in_the_end() {
     assert!(flight.report().contains("launch refused by the autopilot"), "{}", flight.report());
     assert_eq!(flight.state(), GatewayState::Stop);
 }
+
+/// The first time that it is told is in the moment in which the take-off ends.
+#[test]
+fn the_departure_is_flown_at_the_airspeed_of_the_plan() {
+    let mut flight = flight(Personality::Px4, 7, &[]);
+    let slow = zigzag(0, 6, 900.0).into_iter().map(|w| Waypoint { airspeed_mps: 20.0, ..w });
+    flight.launch(std::iter::once(take_off()).chain(slow).collect());
+    assert_ne!(flight.sim.autopilot.airspeed_mps(), 20.0);
+    flight.run_until(5.0, "slow", |f| f.sim.autopilot.airspeed_mps() == 20.0);
+    assert!(!flight.has_reached(3), "on the first leg");
+}

@@ -31,7 +31,7 @@ impl Px4 {
             MavCmd::MAV_CMD_DO_REPOSITION => self.reposition(a, c, now_ns),
             MavCmd::MAV_CMD_DO_ORBIT => self.orbit(a, c, now_ns),
             MavCmd::MAV_CMD_DO_CHANGE_SPEED => {
-                a.change_speed(c.params[1].into());
+                self.departure.change_speed(a, c.params[1].into(), now_ns);
                 ACCEPTED
             }
             MavCmd::MAV_CMD_DO_LAND_START => self.land_by_mission(a, now_ns),

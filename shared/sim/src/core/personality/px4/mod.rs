@@ -2,6 +2,7 @@
 
 mod check;
 mod commands;
+mod departure;
 mod failsafe;
 mod items;
 mod mission;
@@ -116,6 +117,7 @@ fn needs_sticks(mode: Mode) -> bool {
 pub(super) struct Px4 {
     transfer: transfer::Transfer,
     failsafe: failsafe::Failsafe,
+    departure: departure::Departure,
     /// When the mission was taken; what is wrong with it is known a moment later.
     taken_ns: u64,
     problem: Option<&'static str>,
@@ -287,6 +289,7 @@ impl Behaviour for Px4 {
             self.send(a, party, reply, now_ns, out);
         }
         self.failsafe.watch(a, now_ns);
+        self.departure.watch(a, now_ns);
         self.tell_mission(a, now_ns, out);
     }
 }

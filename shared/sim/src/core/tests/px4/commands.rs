@@ -62,6 +62,7 @@ fn orbit_has_a_radius_and_a_direction() {
 fn a_speed_is_taken_up_to_what_it_can_fly_and_forgotten_when_the_mission_is_entered() {
     let home = Config::default().home.position;
     let mut ground = Ground::px4_airborne(&circuit(home));
+    ground.fly_until(1.0, |_| false);
     let most = ground.sim.autopilot.params.value("FW_AIRSPD_MAX");
     for (asked, flown) in [(20.0, 20.0), (99.0, most), (-1.0, 25.0)] {
         let change = [0., asked, -1., 0., 0., 0., 0.];
@@ -72,6 +73,21 @@ fn a_speed_is_taken_up_to_what_it_can_fly_and_forgotten_when_the_mission_is_ente
     ground.enter(HOLD);
     ground.enter(MISSION);
     assert_eq!(ground.sim.autopilot.airspeed_mps(), 25.0);
+}
+
+#[test]
+fn an_airspeed_told_in_the_moment_in_which_the_take_off_ends_is_accepted_and_flown_from_the_next_item_on() {
+    for (after_s, flown_at_once) in [(0.0, false), (1.0, true)] {
+        let mut ground = Ground::px4_airborne(&circuit(Config::default().home.position));
+        ground.fly_until(after_s, |_| false);
+        let change = [0., 20., -1., 0., 0., 0., 0.];
+        assert_eq!(ground.command(MavCmd::MAV_CMD_DO_CHANGE_SPEED, change), MavResult::MAV_RESULT_ACCEPTED);
+        ground.fly_until(5.0, |_| false);
+        assert_eq!((ground.current(), ground.sim.autopilot.airspeed_mps() == 20.0), (1, flown_at_once));
+        assert!(ground.fly_until(200.0, |sim| sim.autopilot.run.current == 2));
+        ground.fly_until(0.2, |_| false);
+        assert_eq!(ground.sim.autopilot.airspeed_mps(), 20.0);
+    }
 }
 
 #[test]
