@@ -13,7 +13,8 @@ use std::time::Duration;
 use usal::Instance;
 use usal::contract::*;
 
-const PEER: Peer = Peer(1);
+/// At the other end of the first link, and of the second.
+const PEERS: [Peer; 2] = [Peer(1), Peer(2)];
 const HOME: LatLon = LatLon::new(36.3190, -84.1730);
 const HEADING_DEG: f64 = 52.0;
 const GROUND_M: f64 = 349.0;
@@ -36,6 +37,10 @@ pub struct Flight {
     pub steered: Vec<LatLon>,
     /// Another link, beside the one in use.
     slower: Option<two_links::Slower>,
+    /// A second link as good as the first: what is sent over it.
+    second: Option<sim::frame::Decoder>,
+    /// Links over which nothing comes and goes.
+    cut: Vec<usize>,
     outbox: Outbox,
     sim_decoder: sim::frame::Decoder,
     /// Number of the next waypoint.
@@ -67,7 +72,7 @@ impl Flight {
         let config = sim::Config::default();
         let wind = aircraft::Wind::from_direction(270.0, 5.0);
         let mut sim = Simulator::of(personality, config.profile, config.home, wind, seed);
-        sim.connect(PEER);
+        sim.connect(PEERS[0]);
         for fault in faults {
             assert!(sim.inject(fault.parse().unwrap()));
         }
@@ -82,6 +87,8 @@ impl Flight {
             beats: 0,
             steered: vec![],
             slower: None,
+            second: None,
+            cut: vec![],
             outbox: Outbox::default(),
             sim_decoder: sim::frame::Decoder::default(),
             next: 1,
@@ -95,7 +102,11 @@ impl Flight {
         self.now = Duration::from_nanos(self.sim.now_ns());
         let mut step = None;
         for outgoing in self.sim.take_outgoing() {
-            self.station.receive(0, FromLink::Stream(&outgoing.bytes));
+            let link = usize::from(outgoing.to == PEERS[1]);
+            if self.cut.contains(&link) {
+                continue;
+            }
+            self.station.receive(link, FromLink::Stream(&outgoing.bytes));
             while let Some(asked) = self.station.process(self.now) {
                 step = Some(asked);
             }
@@ -113,17 +124,25 @@ impl Flight {
         }
         self.station.tick(self.now);
         self.station.answer_step(step.expect("every step asks for the time"));
-        self.outbox.clear();
-        self.station.send(&mut self.outbox);
-        for bytes in self.outbox.frames_over(0) {
-            self.sim_decoder.push(bytes);
-            for frame in sim::frame::take_frames(&mut self.sim_decoder) {
-                self.sim.receive(PEER, frame);
-            }
-        }
+        self.pass_on();
         let now_s = self.now.as_secs_f64();
         self.events.extend(self.station.take_events().into_iter().map(|e| (now_s, e)));
         self.watch_target();
+    }
+
+    fn pass_on(&mut self) {
+        self.outbox.clear();
+        self.station.send(&mut self.outbox);
+        let decoders = [Some(&mut self.sim_decoder), self.second.as_mut()];
+        for (link, (peer, decoder)) in PEERS.into_iter().zip(decoders).enumerate() {
+            let Some(decoder) = decoder.filter(|_| !self.cut.contains(&link)) else { continue };
+            for bytes in self.outbox.frames_over(link) {
+                decoder.push(bytes);
+                for frame in sim::frame::take_frames(decoder) {
+                    self.sim.receive(peer, frame);
+                }
+            }
+        }
     }
 
     /// Where the autopilot really steers to, whatever anybody says.

@@ -1,4 +1,4 @@
-//! A second link to the autopilot, far slower than the one in use.
+//! A second link to the autopilot: one far slower than the one in use, and one as good as that.
 
 use super::*;
 use autopilot_link::frame::{Decoder, encode};
@@ -39,13 +39,17 @@ impl Slower {
 impl Flight {
     /// With such a link, which is so much slower.
     fn with_slower_link(mut self, lag: Duration) -> Self {
-        let links = vec!["fast".into(), "slow".into()];
-        let setup = Setup { lockstep: true, links, ..Setup::default() };
-        self.station = Station::new(settings(), None, (driver::DEFAULT.make)(&setup));
+        self.station = station_with_two_links();
         self.slower =
             Some(Slower { lag, decoder: Decoder::default(), sequence: 0, on_its_way: VecDeque::new() });
         self
     }
+}
+
+fn station_with_two_links() -> Station {
+    let links = vec!["first".into(), "second".into()];
+    let setup = Setup { lockstep: true, links, ..Setup::default() };
+    Station::new(settings(), None, (driver::DEFAULT.make)(&setup))
 }
 
 /// Whatever it says of the past, nobody took over, nothing was lost, and nothing is flown that was not next.
@@ -78,4 +82,40 @@ fn check(personality: Personality, lag_ms: u64) {
 fn a_far_slower_second_link_changes_nothing_in_flight() {
     check(Personality::ArduPlane, 1200);
     check(Personality::Px4, 4000);
+}
+
+/// The first link is cut in flight, is back, and then the other one is cut.
+fn check_cut(personality: Personality) {
+    let mut flight = Flight::of(personality, 6, &[]);
+    flight.station = station_with_two_links();
+    assert!(flight.sim.connect(PEERS[1]));
+    flight.second = Some(sim::frame::Decoder::default());
+    if personality == Personality::Px4 {
+        assert!(flight.sim.autopilot.params.set("MIS_TKO_LAND_REQ", 0.0));
+    }
+    while !flight.ask(GatewayRequest::Launch).unwrap_err().contains("nothing to fly") {
+        flight.step();
+    }
+    flight.launch(std::iter::once(take_off()).chain(zigzag(0, 30, 300.0)).collect());
+    let mut longest_s = 0.0_f64;
+    for (cut, until) in [(vec![], 4), (vec![0], 12), (vec![], 16), (vec![1], 20), (vec![0], 24)] {
+        flight.cut = cut;
+        flight.run_until(200.0, "farther", |f| {
+            longest_s = longest_s.max(f.station.gateway().status(f.now).autopilot_age_s);
+            f.has_reached(until)
+        });
+    }
+    assert!(longest_s < 2.5, "it was not heard for {longest_s} s");
+    let states: Vec<_> = flight.changes().into_iter().map(|(_, state)| state).collect();
+    assert_eq!(states, [GatewayState::Stop, GatewayState::TakeOff, GatewayState::Nav]);
+    let told: Vec<u64> = flight.progress().into_iter().flatten().collect();
+    assert!(told.windows(2).all(|w| w[1] == w[0] + 1), "{told:?}");
+    let low = |event: &(f64, GatewayEvent)| matches!(event.1, GatewayEvent::BufferLow { .. });
+    assert!(!flight.events.iter().any(low), "{:?}", flight.events);
+}
+
+#[test]
+fn a_link_that_is_cut_in_flight_is_followed_by_the_other_one_without_a_gap() {
+    check_cut(Personality::ArduPlane);
+    check_cut(Personality::Px4);
 }
