@@ -1,5 +1,7 @@
 //! Telemetry messages to contract values. No field is trusted.
 
+mod high_latency;
+
 use super::session::SessionEvent;
 use crate::gateway::order::{Fix, Report, Time};
 use geometry::LatLon;
@@ -28,6 +30,12 @@ pub struct Readings {
     fuel: Option<f64>,
     last_fix: Option<(Time, LatLon)>,
     jumps: u32,
+    /// When a position of the usual message came.
+    finer_at: Option<Time>,
+    /// The take-off place's altitude AMSL, as its two heights say it.
+    home_amsl_m: Option<f64>,
+    /// The energy, as it was said last.
+    power: Option<Power>,
     /// The time of day when it was received last, seconds since 1970.
     day: Option<(Time, i64)>,
 }
@@ -62,6 +70,8 @@ impl Readings {
             MavMessage::SYS_STATUS(m) => {
                 self.power(m).map(|p| out.push(SessionEvent::Telemetry(Report::Power(p))))
             }
+            // not asked for: it would come beside all that it sums up
+            MavMessage::HIGH_LATENCY2(summary) => self.summary(now, summary, out),
             MavMessage::FUEL_STATUS(m) => self.tank(m),
             MavMessage::RPM(m) => {
                 self.engine(m.rpm1).map(|e| out.push(SessionEvent::Telemetry(Report::Engine(e))))
@@ -80,6 +90,8 @@ impl Readings {
         let position = place(m.lat, m.lon)?;
         self.is_plausible(now, position).then_some(())?;
         self.last_fix = Some((now, position));
+        self.finer_at = Some(now);
+        self.home_amsl_m = Some((f64::from(m.alt) - f64::from(m.relative_alt)) / 1e3);
         Some(Fix {
             position,
             altitude_amsl_m: f64::from(m.alt) / 1e3,
@@ -149,13 +161,15 @@ impl Readings {
         })
     }
 
-    fn power(&self, m: &SYS_STATUS_DATA) -> Option<Power> {
-        (0..=100).contains(&m.battery_remaining).then(|| Power {
+    fn power(&mut self, m: &SYS_STATUS_DATA) -> Option<Power> {
+        let power = (0..=100).contains(&m.battery_remaining).then(|| Power {
             voltage_v: f64::from(m.voltage_battery) / 1e3,
             current_a: f64::from(m.current_battery) / 1e2,
             battery: f64::from(m.battery_remaining) / 100.0,
             fuel: self.fuel,
-        })
+        });
+        self.power = power.or(self.power);
+        power
     }
 
     /// It is published with the battery.
