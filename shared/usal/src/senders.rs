@@ -2,8 +2,8 @@
 //! mistakes apart and proves nothing: whoever means harm can take another's name.
 //!
 //! For a window it is the session that answers when the service is asked to describe itself; a service knows better whom it has
-//! joined, or who has joined it. A service that is gone may come back as another session, so nobody waits for its description: until then whoever names
-//! himself counts. A plain put names nobody.
+//! joined, or who has joined it. A service that is gone may come back as another session, so nobody waits for its description:
+//! until then whoever names himself counts. A plain put names nobody.
 
 use crate::{Gate, Instance};
 use std::collections::{BTreeMap, BTreeSet};
