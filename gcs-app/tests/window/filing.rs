@@ -366,7 +366,7 @@ fn every_document_survives_a_crash() {
     let mut next = window("");
     next.harness.state_mut().keep_copies(copies.path());
     next.steps(3);
-    assert!(next.shows("second.xml and of another plan"));
+    assert!(next.shows("second.xml") && next.shows("first.xml"));
     next.click("Recover the changes");
     for name in ["second.xml", "first.xml"] {
         assert_eq!(next.app().document().path(), Some(folder.path().join(name).as_path()));
