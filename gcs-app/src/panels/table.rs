@@ -9,7 +9,7 @@ use super::in_place::{InPlace, Typed};
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme;
-use cell::{cell, heading, left_out};
+use cell::{cell, heading, not_flown};
 use egui::{
     Align, Context, EventFilter, Id as WidgetId, Key, Modifiers, Rect, RichText, ScrollArea, Sense, Ui,
 };
@@ -103,7 +103,7 @@ impl Table {
         let of = (scene.document.version(), scene.analysis.forecast_version);
         if self.of != Some(of) {
             self.of = Some(of);
-            self.rows = rows(scene.forecast());
+            self.rows = rows(scene.forecast(), scene.document.plan());
             self.said = said(scene.document.plan());
         }
     }
@@ -197,7 +197,7 @@ impl Table {
     }
 
     /// The leg of a row, if it is one.
-    fn entry<'a>(&self, row: usize, scene: &Scene<'a>) -> Option<Entry<'a>> {
+    fn entry<'a>(&'a self, row: usize, scene: &Scene<'a>) -> Option<Entry<'a>> {
         self.rows.get(row)?.entry(scene.forecast())
     }
 
@@ -238,13 +238,15 @@ impl Table {
                 });
             }
         });
+        // drawing a leg changes what is typed, and never the rows
+        let rows = std::mem::take(&mut self.rows);
         table.body(|body| {
-            body.rows(22.0, self.rows.len(), |mut row| {
+            body.rows(22.0, rows.len(), |mut row| {
                 let index = row.index();
-                match self.rows.get(index) {
+                match rows.get(index) {
                     Some(Row::Stage(stage)) => heading(&mut row, whole, scene, stage, queue),
-                    _ => {
-                        if let Some(entry) = self.entry(index, scene) {
+                    other => {
+                        if let Some(entry) = other.and_then(|other| other.entry(scene.forecast())) {
                             done =
                                 self.leg(&mut row, whole, scene, &entry).map(|d| (index, d)).or(done.take());
                         }
@@ -252,6 +254,7 @@ impl Table {
                 }
             });
         });
+        self.rows = rows;
         if let Some((row, (column, what))) = done {
             self.take(ui, row, column, what, scene, queue);
         }
@@ -274,7 +277,7 @@ impl Table {
             if let (None, Err(why)) = (column, entry.flown) {
                 row.col(|ui| {
                     if number == Column::ALL.len() {
-                        left_out(ui, whole, why);
+                        not_flown(ui, whole, why);
                     }
                 });
                 continue;

@@ -1,6 +1,7 @@
 //! What is drawn in the table's cells.
 
 use super::cursor_id;
+use super::rows::Why;
 use super::typed::Column;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::panels::Scene;
@@ -30,11 +31,15 @@ pub(super) fn cell(ui: &mut Ui, at: (usize, Column), is_current: bool, text: Str
 }
 
 /// Why a leg is not flown: over all columns that would say how it is.
-pub(super) fn left_out(ui: &mut Ui, whole: Rect, why: &str) {
+pub(super) fn not_flown(ui: &mut Ui, whole: Rect, why: Why<'_>) {
     let rect = ui.max_rect();
-    let text = format!("⚠ Left out: {why}");
+    let text = why.to_string();
     let painter = ui.painter().with_clip_rect(whole.intersect(rect.with_max_x(f32::INFINITY)));
-    let colour = theme::of(ui).caution;
+    let p = theme::of(ui);
+    let colour = match why {
+        Why::LeftOut(_) => p.caution,
+        Why::Error => p.weak,
+    };
     painter.text(rect.left_center(), Align2::LEFT_CENTER, &text, FontId::proportional(12.5), colour);
     let response = ui.response();
     response.widget_info(|| egui::WidgetInfo::labeled(Role::Label, true, &text));

@@ -7,8 +7,9 @@ use crate::panels::Scene;
 use crate::panels::inspector::inherited::{self, Inherited};
 use crate::panels::tree::title;
 use crate::units;
-use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Value};
-use std::collections::HashMap;
+use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Section, Value};
+use std::collections::{HashMap, HashSet};
+use std::fmt;
 
 /// One row.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +20,8 @@ pub(super) enum Row {
     Passage(usize),
     /// A leg that would be left out, by its index in the forecast.
     LeftOut(usize),
+    /// A leg of a plan with an error that is flown no farther than to there, and its stage.
+    Written(Id, Id),
 }
 
 /// A leg in the table.
@@ -26,13 +29,31 @@ pub(super) enum Row {
 pub(super) struct Entry<'a> {
     pub leg: &'a Id,
     pub stage: &'a Id,
-    /// A passage of it; else why it is left out.
-    pub flown: Result<&'a Passage, &'a str>,
+    /// A passage of it; else why it is not flown.
+    pub flown: Result<&'a Passage, Why<'a>>,
+}
+
+/// Why a leg is not flown.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Why<'a> {
+    /// The aircraft would leave it out.
+    LeftOut(&'a str),
+    /// The plan has an error, there or before.
+    Error,
+}
+
+impl fmt::Display for Why<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::LeftOut(why) => write!(f, "⚠ Left out: {why}"),
+            Self::Error => f.write_str("Not flown yet: the plan has an error, see its problems"),
+        }
+    }
 }
 
 impl Row {
     /// `None`: it is a heading.
-    pub fn entry<'a>(&self, forecast: &'a Forecast) -> Option<Entry<'a>> {
+    pub fn entry<'a>(&'a self, forecast: &'a Forecast) -> Option<Entry<'a>> {
         match self {
             Self::Stage(_) => None,
             Self::Passage(index) => {
@@ -41,14 +62,15 @@ impl Row {
             }
             Self::LeftOut(index) => {
                 let left = forecast.left_out.get(*index)?;
-                Some(Entry { leg: &left.leg, stage: &left.stage, flown: Err(&left.reason) })
+                Some(Entry { leg: &left.leg, stage: &left.stage, flown: Err(Why::LeftOut(&left.reason)) })
             }
+            Self::Written(leg, stage) => Some(Entry { leg, stage, flown: Err(Why::Error) }),
         }
     }
 }
 
-/// All rows of a flight: legs that would be left out stand where they would be flown.
-pub(super) fn rows(forecast: &Forecast) -> Vec<Row> {
+/// All rows of a flight: legs that would be left out stand where they would be flown; of a plan with errors those behind it, too.
+pub(super) fn rows(forecast: &Forecast, plan: &FlightPlan) -> Vec<Row> {
     let mut rows = Vec::with_capacity(forecast.passages.len());
     let mut left_out = forecast.left_out.iter().enumerate().peekable();
     let mut stage: Option<&Id> = None;
@@ -67,7 +89,24 @@ pub(super) fn rows(forecast: &Forecast) -> Vec<Row> {
             push(&mut rows, &passage.stage, Row::Passage(index));
         }
     }
+    if forecast.is_beginning || forecast.passages.is_empty() {
+        for (leg, stage) in behind(forecast, plan) {
+            push(&mut rows, stage, Row::Written(leg.clone(), stage.clone()));
+        }
+    }
     rows
+}
+
+/// The legs of the main plan behind all that is flown, with their stages.
+fn behind<'p>(forecast: &Forecast, plan: &'p FlightPlan) -> impl Iterator<Item = (&'p Id, &'p Id)> {
+    let flown: HashSet<&Id> = forecast.passages.iter().map(|passage| &passage.leg).collect();
+    let legs: Vec<_> = plan.all_legs();
+    let main = legs.into_iter().filter(|context| context.section == Section::Main);
+    // what is around other legs is flown as these
+    let main = main.filter(|context| context.leg.as_loop().is_none() && context.leg.as_fork().is_none());
+    let main: Vec<_> = main.map(|context| (&context.leg.id, &context.stage.id)).collect();
+    let first = main.iter().rposition(|(leg, _)| flown.contains(leg)).map_or(0, |last| last + 1);
+    main.into_iter().skip(first)
 }
 
 /// What the plan says of a leg's altitude and airspeed, and where it says it.
@@ -152,7 +191,7 @@ pub(super) fn cells(scene: &Scene<'_>, entry: &Entry<'_>, said: &Said) -> [Strin
         airspeed,
         units::duration(last.time_s - first.time_s),
         format!("{:.0} %", 100.0 * passage.energy_left),
-        passage.clearance_m.map_or_else(|| "–".into(), |metres| u.altitude().number(metres)),
+        passage.clearance_m.map_or_else(|| "–".into(), |metres| u.altitude().number(on_ground(metres))),
         kind.into(),
         pass,
         track(first, last),
@@ -163,6 +202,14 @@ pub(super) fn cells(scene: &Scene<'_>, entry: &Entry<'_>, said: &Said) -> [Strin
         u.speed().number((last.distance_m - first.distance_m) / (last.time_s - first.time_s)),
     ]
 }
+
+/// What is a little below the ground by the elevations that are loaded stands on it.
+fn on_ground(clearance_m: f64) -> f64 {
+    if (-ON_GROUND_M..0.0).contains(&clearance_m) { 0.0 } else { clearance_m }
+}
+
+/// A runway and the elevations under it agree within this, metres.
+const ON_GROUND_M: f64 = 1.0;
 
 /// `1400 m AMSL, Fire watch`: what is said, and where.
 fn altitude_text(scene: &Scene<'_>, said: &Said, points: &[Point]) -> String {
