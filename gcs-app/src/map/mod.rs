@@ -90,6 +90,8 @@ pub struct MapState {
     items: items::Items,
     sketch: Sketch,
     sketched: Option<(u64, Option<PlanVariables>)>,
+    /// The forecast that its ways begin by.
+    ways_of: Option<u64>,
 }
 
 impl MapState {
@@ -208,6 +210,7 @@ impl MapState {
     /// Draws the map and takes what the operator does on it.
     pub fn show(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         self.sketch(scene);
+        self.begin_ways(scene);
         if self.fit {
             self.fit_now(ui.available_size());
         }
@@ -339,6 +342,16 @@ impl MapState {
         self.sketch = Sketch::new(plan, &variables);
         self.items = items::Items::default();
         self.sketched = Some((version, live.cloned()));
+        self.ways_of = None;
+    }
+
+    /// By the forecast of the plan as it is sketched.
+    fn begin_ways(&mut self, scene: &Scene<'_>) {
+        let of = Some(scene.analysis.forecast_version);
+        if self.ways_of != of && scene.analysis.version == scene.document.version() {
+            self.sketch.begin_ways(scene.forecast());
+            self.ways_of = of;
+        }
     }
 
     /// In the middle of what the card for a new mission leaves free.

@@ -14,6 +14,7 @@ pub use handle::{Handle, Handled};
 pub use radius::{bound_radius, radius_edit};
 pub use ways::Way;
 
+use crate::forecast::Forecast;
 use flight_plan::{
     Area, Env, FlightPlan, FlightState, Id, Leg, LegKind, Pattern, Place, Scan, Section, Value,
     VariableValue, Variables, Zone, ZoneShape, expression,
@@ -64,6 +65,8 @@ pub struct Sketch {
     pub variables: Vec<PlacedVariable>,
     /// Ways on from forks.
     pub ways: Vec<Way>,
+    /// What procedures lead over, where they are called.
+    called: Vec<LatLon>,
     /// Pictures along legs.
     pub photos: Vec<photos::Photos>,
     /// Where legs end a series of pictures.
@@ -101,7 +104,13 @@ impl Sketch {
         sketch.add_lines(plan, &reader);
         sketch.add_variables();
         sketch.ways = ways::of(&arrivals, &reader);
+        sketch.called = ways::called(&reader);
         sketch
+    }
+
+    /// Ways on from forks begin where the flight comes from.
+    pub fn begin_ways(&mut self, forecast: &Forecast) {
+        self.ways.iter_mut().for_each(|way| way.begin(forecast));
     }
 
     fn add_leg(&mut self, leg: &Leg, reader: &Reader<'_>) {
@@ -300,7 +309,8 @@ impl Sketch {
             .circles
             .iter()
             .flat_map(|c| [0.0, 90.0, 180.0, 270.0].map(|b| c.centre.destination(b, c.radius_m)));
-        self.handles.iter().map(|h| h.at).chain(self.main.iter().flatten().copied()).chain(rims).collect()
+        let drawn = self.main.iter().flatten().chain(&self.called).copied();
+        self.handles.iter().map(|h| h.at).chain(drawn).chain(rims).collect()
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::calls::Calls;
 use super::{Line, Reader};
-use flight_plan::{Area, Id, Leg, LegContext, LegKind, Pattern, Scan};
+use crate::forecast::Forecast;
+use flight_plan::{Area, Id, Leg, LegContext, LegKind, Pattern, Scan, Section};
 use geometry::{LatLon, LocalFrame};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -25,9 +26,19 @@ pub struct Way {
     pub is_default: bool,
     /// From where the path arrives at the fork to where the way leads back, each piece with the leg that goes along it.
     pub lines: Vec<Line>,
+    /// The leg before the fork, if it covers an area: only the flight says where that is left.
+    behind_area: Option<Id>,
 }
 
 impl Way {
+    /// Behind an area it begins where the flight leaves that.
+    pub(super) fn begin(&mut self, forecast: &Forecast) {
+        let left = self.behind_area.as_ref().and_then(|leg| forecast.end_of(leg));
+        if let Some((first, left)) = self.lines.first_mut().zip(left) {
+            first.from = left.from;
+        }
+    }
+
     /// Its places, one after the other.
     pub fn places(&self) -> impl Iterator<Item = LatLon> {
         self.lines.first().map(|line| line.from).into_iter().chain(self.lines.iter().map(|line| line.to))
@@ -90,10 +101,16 @@ pub(super) fn of(arrivals: &Arrivals<'_>, reader: &Reader<'_>) -> Vec<Way> {
         let heads: Vec<&Id> = fork.branches.iter().filter_map(|branch| branch.next.as_ref()).collect();
         for branch in fork.branches {
             let mut trace = Trace { reader, calls: &mut calls, at: from, lines: Vec::new() };
-            trace.way(context.siblings, branch.next.clone().or_else(|| after(&context)), &heads);
+            let next = branch.next.clone().or_else(|| after(&context));
+            if let (End::OfList, Some(to)) =
+                (trace.way(context.siblings, next, &heads), behind(&context, reader))
+            {
+                trace.to(to, &context.leg.id);
+            }
             let label = if branch.label.is_empty() { branch.id.to_string() } else { branch.label.clone() };
             let is_default = fork.default == Some(&branch.id);
-            ways.push(Way { fork: context.leg.id.clone(), label, is_default, lines: trace.lines });
+            let (fork, lines, behind_area) = (context.leg.id.clone(), trace.lines, area_before(&context));
+            ways.push(Way { fork, label, is_default, lines, behind_area });
         }
         if ways.len() >= MOST {
             break;
@@ -106,6 +123,34 @@ fn after(context: &LegContext<'_>) -> Option<Id> {
     context.siblings.get(context.index + 1).map(|leg| leg.id.clone())
 }
 
+/// The leg that the fork is behind, if it covers an area.
+fn area_before(context: &LegContext<'_>) -> Option<Id> {
+    let before = context.siblings.get(context.index.checked_sub(1)?)?;
+    area(before).filter(|_| before.falls_through()).map(|_| before.id.clone())
+}
+
+/// Where the flight goes on behind the list of a stage: to the next one, or to its runway.
+fn behind(context: &LegContext<'_>, reader: &Reader<'_>) -> Option<LatLon> {
+    let stages = match context.section {
+        _ if !context.loops.is_empty() => return None,
+        Section::Main => &reader.plan.stages,
+        Section::Emergency(plan) => &plan.stages,
+    };
+    let next = stages.iter().skip_while(|stage| stage.id != context.stage.id).nth(1)?;
+    let first = next.legs.iter().find_map(|leg| places(leg.first_flown(), reader).first().copied());
+    let runway = || reader.plan.runway(next.runway.as_ref()?).map(|runway| runway.threshold);
+    first.or_else(runway)
+}
+
+/// How far a way was followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum End {
+    /// To the end of its list.
+    OfList,
+    /// To where another way leads, too, or something else is said about what follows.
+    Within,
+}
+
 /// A way as far as it was followed.
 struct Trace<'a, 'p> {
     reader: &'a Reader<'p>,
@@ -116,25 +161,33 @@ struct Trace<'a, 'p> {
 
 impl Trace<'_, '_> {
     /// Leg by leg, until another way is met or something is said about what follows.
-    fn way(&mut self, list: &[Arc<Leg>], mut next: Option<Id>, heads: &[&Id]) {
+    fn way(&mut self, list: &[Arc<Leg>], mut next: Option<Id>, heads: &[&Id]) -> End {
         for step in 0..LONGEST {
-            let Some(index) = next.as_ref().and_then(|id| list.iter().position(|leg| leg.id == *id)) else {
-                return;
+            let Some(id) = next else { return End::OfList };
+            let Some((index, leg)) = list.iter().enumerate().find(|(_, leg)| leg.id == id) else {
+                return End::Within;
             };
-            let Some(leg) = list.get(index) else { return };
             if step > 0 && heads.contains(&&leg.id) {
-                return self.first(leg);
+                // where ways only meet, what is behind says where that is
+                let meets = leg.next.is_none() && leg.as_fork().is_some_and(|fork| fork.branches.is_empty());
+                let met = if meets { list.get(index + 1) } else { Some(leg) };
+                return met.map_or(End::OfList, |met| {
+                    self.first(met);
+                    End::Within
+                });
             }
             if leg.as_fork().is_some_and(|fork| !fork.branches.is_empty()) {
-                return;
+                return End::Within;
             }
             self.leg(leg, &leg.id);
             if let Some(target) = &leg.next {
                 let target = list.iter().find(|leg| leg.id == *target);
-                return target.into_iter().for_each(|target| self.first(target));
+                target.into_iter().for_each(|target| self.first(target));
+                return End::Within;
             }
             next = list.get(index + 1).map(|leg| leg.id.clone());
         }
+        End::Within
     }
 
     /// Only to where a leg begins.
@@ -142,7 +195,7 @@ impl Trace<'_, '_> {
         let first = leg.first_flown();
         let called = self.calls.body(first).first().cloned();
         let first = called.as_deref().map_or(first, Leg::first_flown);
-        places(first, self.reader).into_iter().take(1).for_each(|to| self.to(to, &leg.id));
+        self.places(first).into_iter().take(1).for_each(|to| self.to(to, &leg.id));
     }
 
     /// All of a leg, as a leg of the document: what a procedure flies is the call's.
@@ -155,7 +208,18 @@ impl Trace<'_, '_> {
             let is_written = leg.id == *written;
             self.leg(inner, if is_written { &inner.id } else { written });
         }
-        places(leg, self.reader).into_iter().for_each(|to| self.to(to, written));
+        self.places(leg).into_iter().for_each(|to| self.to(to, written));
+    }
+
+    /// As [`places`]; of an outline the corner that is nearest to where the way has come.
+    fn places(&self, leg: &Leg) -> Vec<LatLon> {
+        let far = |corner: &LatLon| corner.distance_m(self.at);
+        match area(leg) {
+            Some(Area::Polygon { corners, .. }) => {
+                corners.iter().copied().min_by(|a, b| far(a).total_cmp(&far(b))).into_iter().collect()
+            }
+            _ => places(leg, self.reader),
+        }
     }
 
     fn to(&mut self, to: LatLon, leg: &Id) {
@@ -166,21 +230,41 @@ impl Trace<'_, '_> {
     }
 }
 
+/// The places that calls lead over.
+pub(super) fn called(reader: &Reader<'_>) -> Vec<LatLon> {
+    let mut calls = Calls::of(reader.plan);
+    let mut found = Vec::new();
+    for context in reader.plan.all_legs() {
+        calls.body(context.leg).iter().for_each(|leg| add_places(leg, reader, &mut found));
+    }
+    found
+}
+
+fn add_places(leg: &Leg, reader: &Reader<'_>, found: &mut Vec<LatLon>) {
+    found.extend(places(leg, reader));
+    leg.body().iter().for_each(|inner| add_places(inner, reader, found));
+}
+
 /// The places that a leg leads over: of an area its middle.
 fn places(leg: &Leg, reader: &Reader<'_>) -> Vec<LatLon> {
-    let area = match &leg.kind {
-        LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => area,
-        LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. }) => {
-            return route.iter().filter_map(|place| reader.place(place)).collect();
-        }
-        _ => return reader.place_of(leg).into_iter().collect(),
+    if let LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. }) = &leg.kind {
+        return route.iter().filter_map(|place| reader.place(place)).collect();
+    }
+    let place = match area(leg) {
+        None => reader.place_of(leg),
+        Some(Area::Circle { centre, .. }) => reader.place(centre),
+        Some(Area::Polygon { corners, .. }) => middle(corners),
+        Some(Area::Expression(source)) => reader.polygon(source).and_then(|ring| middle(&ring)),
     };
-    let middle = match area {
-        Area::Circle { centre, .. } => reader.place(centre),
-        Area::Polygon { corners, .. } => middle(corners),
-        Area::Expression(source) => reader.polygon(source).and_then(|ring| middle(&ring)),
-    };
-    middle.into_iter().collect()
+    place.into_iter().collect()
+}
+
+/// What a leg covers, if it is an area.
+fn area(leg: &Leg) -> Option<&Area> {
+    match &leg.kind {
+        LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => Some(area),
+        _ => None,
+    }
 }
 
 fn middle(ring: &[LatLon]) -> Option<LatLon> {
@@ -190,4 +274,66 @@ fn middle(ring: &[LatLon]) -> Option<LatLon> {
 fn last_place(leg: &Leg, reader: &Reader<'_>) -> Option<LatLon> {
     let inside = leg.body().iter().rev().find_map(|leg| last_place(leg, reader));
     inside.or_else(|| places(leg, reader).pop())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Sketch;
+    use super::*;
+    use crate::forecast::{Passage, Point};
+    use flight_plan::Variables;
+
+    const PLAN: &str = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer">
+        <procedures><procedure id="look" reference="46.9 9.0"><TF id="p1" lat="46.9" lon="9.0"/></procedure></procedures><mainPlan>
+        <stage id="m" type="mission"><scan id="s" spacing="300"><area>
+          <corner lat="46.0" lon="9.0"/><corner lat="46.0" lon="9.02"/><corner lat="46.02" lon="9.02"/><corner lat="46.02" lon="9.0"/></area></scan>
+          <intersection id="f" default="on"><branch id="on"/><branch id="skip" next="merge"/></intersection>
+          <TF id="n" lat="46.1" lon="9.0"/><call id="c" procedure="look"/><intersection id="merge"/></stage>
+        <stage id="a" type="arrival"><DF id="home" lat="46.2" lon="9.1"/></stage></mainPlan></flightPlan>"#;
+
+    fn sketch() -> Sketch {
+        let reading = flight_plan::read(PLAN);
+        assert!(!reading.has_errors(), "{:?}", reading.problems);
+        Sketch::new(&reading.plan, &Variables::initial(&reading.plan))
+    }
+
+    #[test]
+    fn a_way_that_ends_its_stage_leads_to_the_next_one() {
+        let sketch = sketch();
+        let ends: Vec<_> =
+            sketch.ways.iter().map(|way| (way.label.as_str(), way.lines.last().unwrap().to)).collect();
+        let home = LatLon::new(46.2, 9.1);
+        assert_eq!(ends, [("on", home), ("skip", home)]);
+    }
+
+    #[test]
+    fn a_way_behind_an_area_begins_where_the_flight_leaves_that() {
+        let mut sketch = sketch();
+        let point = |lat: f64, passage| Point {
+            time_s: 0.0,
+            distance_m: 0.0,
+            position: LatLon::new(lat, 9.0),
+            altitude_amsl_m: 500.0,
+            ground_amsl_m: None,
+            passage,
+        };
+        let scanned = Passage {
+            leg: "s".into(),
+            stage: "m".into(),
+            passes: Vec::new(),
+            reverse: false,
+            first: 0,
+            end: 1,
+            energy_left: 1.0,
+            clearance_m: None,
+        };
+        let points = vec![point(46.0, 0), point(46.02, 1)];
+        sketch.begin_ways(&Forecast { points, passages: vec![scanned], ..Forecast::default() });
+        assert!(sketch.ways.iter().all(|way| way.lines[0].from == LatLon::new(46.02, 9.0)));
+    }
+
+    #[test]
+    fn what_procedures_lead_over_is_among_the_places() {
+        assert!(sketch().places().contains(&LatLon::new(46.9, 9.0)));
+    }
 }

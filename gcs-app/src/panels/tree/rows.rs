@@ -348,6 +348,8 @@ pub fn leg_tag(kind: &LegKind) -> &'static str {
         LegKind::Fa { .. } => "FA",
         LegKind::Hm { .. } => "HM",
         LegKind::Iterative { .. } => "LOOP",
+        // ways end at it, and none parts from it
+        LegKind::Intersection { branches, .. } if branches.is_empty() => "MEET",
         LegKind::Intersection { .. } => "FORK",
         LegKind::Scan(_) => "SCAN",
         LegKind::Orbit { .. } => "ORB",
