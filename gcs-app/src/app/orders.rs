@@ -241,7 +241,10 @@ impl App {
             }
             ViewCommand::SelectBranch(branch) => self.view.select_branch(branch),
             ViewCommand::StepPanel(by) => self.view.panel_step = by,
-            ViewCommand::ShowPanel(panel, shown) => self.dock.show_panel(panel, shown),
+            ViewCommand::ShowPanel(panel, shown) => {
+                self.view.wanted_panel = Some(panel).filter(|_| shown && self.vehicles.shown().is_airborne());
+                self.dock.show_panel(panel, shown);
+            }
             ViewCommand::Maps(open) => self.view.maps = open,
             ViewCommand::Edge(edge) => self.view.edge = edge,
             ViewCommand::ResetLayout => self.dock.reset(&self.panels),

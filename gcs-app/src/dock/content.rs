@@ -4,7 +4,7 @@ use super::stops::Stop;
 use super::{GAP, MAP, TAB_BAR};
 use crate::command::Queue;
 use crate::map::MapState;
-use crate::panels::{Panel, PanelId, Place, Scene, tour};
+use crate::panels::{Panel, PanelId, Place, Scene, tour, what_if};
 use crate::theme;
 use egui::{
     Align, Color32, Frame, Layout, Margin, PointerButton, Rect, Response, RichText, Sense, Stroke, Style, Ui,
@@ -78,6 +78,12 @@ impl<'a> Content<'a> {
     /// One of those that the plan is edited in, on the left unless the operator has put it elsewhere.
     pub(super) fn is_of_the_plan(&self, id: PanelId) -> bool {
         self.panel(id).is_some_and(|panel| matches!(panel.place(), Place::Left { .. }))
+    }
+
+    /// One that the flight's values need the room of: it was open when the aircraft took off, and nobody has asked for it since.
+    pub(super) fn gives_way_to_flight(&self, id: PanelId) -> bool {
+        let is_wanted = self.scene.view.wanted_panel == Some(id);
+        id == what_if::ID && self.scene.vehicle.is_airborne() && !is_wanted
     }
 
     fn panel(&self, id: PanelId) -> Option<&dyn Panel> {

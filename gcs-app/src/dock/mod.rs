@@ -26,6 +26,8 @@ const STORAGE_KEY: &str = "layout";
 const GAP: f32 = 1.0;
 /// A dock that is narrower has no room for a map that is read and panels on both sides of it, screen points.
 const ROOMY: f32 = 1016.0;
+/// In a dock that is lower a flight has no room for panels that it does not need, screen points.
+const HIGH: f32 = 560.0;
 /// Height of the titles, screen points.
 const TAB_BAR: f32 = 26.0;
 
@@ -104,8 +106,10 @@ impl Dock {
     pub fn show(&mut self, ui: &mut Ui, content: &mut Content<'_>, is_read: bool) -> Option<Rect> {
         self.grown = grow::grown(&mut self.tree, ui.available_width(), self.grown, &self.wanted);
         let is_tight = is_read && ui.available_width() < ROOMY;
+        let is_low = ui.available_height() < HIGH;
         for (tile, panel) in self.panes() {
-            let is_aside = is_tight && content.is_of_the_plan(panel);
+            let is_aside =
+                (is_tight && content.is_of_the_plan(panel)) || (is_low && content.gives_way_to_flight(panel));
             let is_shown = self.shows(panel) && content.is_relevant(panel) && !is_aside;
             self.tree.set_visible(tile, is_shown);
         }

@@ -32,10 +32,13 @@ impl Panel for Flight {
         scene.vehicle.received_s.is_some()
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
-        // where the display takes all the room, alarms come first: nobody scrolls for what he does not expect
+        // where the display takes all the room, alarms and the vital values come first: nobody scrolls for what he does not expect
         let is_low = ui.available_height() < pfd::HEIGHT + ROOM_FOR_ALARMS;
         if is_low {
             raised(ui, scene);
+            dense(ui);
+            VITAL.iter().for_each(|row| row(ui, scene));
+            ui.add_space(4.0);
         } else {
             pfd::show(ui, scene);
             ui.add_space(4.0);
@@ -47,10 +50,15 @@ impl Panel for Flight {
                 alarms::show(ui, scene);
             }
             ui.add_space(4.0);
-            values(ui, scene);
+            values(ui, scene, is_low);
         });
     }
 }
+
+/// A row of values.
+type Row = fn(&mut Ui, &Scene<'_>);
+/// What nobody flies without: in sight at every size. That of the link is in the bar.
+const VITAL: [Row; 4] = [leg, next, above_ground, battery];
 
 /// The alarms, in a part of a low panel.
 fn raised(ui: &mut Ui, scene: &Scene<'_>) {
@@ -59,42 +67,75 @@ fn raised(ui: &mut Ui, scene: &Scene<'_>) {
     ui.add_space(4.0);
 }
 
-/// What the vehicle does now.
-fn values(ui: &mut Ui, scene: &Scene<'_>) {
+/// Nothing there is clicked: rows hardly higher than their text.
+fn dense(ui: &mut Ui) {
     ui.spacing_mut().item_spacing.y = 1.0;
-    // nothing here is clicked: rows hardly higher than their text
     ui.spacing_mut().interact_size.y = 17.0;
-    plan_rows(ui, scene);
+}
+
+/// What the vehicle does now; without the vital rows where they stand above.
+fn values(ui: &mut Ui, scene: &Scene<'_>, is_low: bool) {
+    dense(ui);
+    let unless_above = |ui: &mut Ui, row: Row| {
+        if !is_low {
+            row(ui, scene);
+        }
+    };
+    unless_above(ui, leg);
+    iterations(ui, scene);
+    alternate(ui, scene);
+    unless_above(ui, next);
+    off_track(ui, scene);
     ui.add_space(4.0);
     buffer(ui, scene);
     ui.add_space(4.0);
-    air_rows(ui, scene);
-    systems_rows(ui, scene);
+    above_home(ui, scene);
+    unless_above(ui, above_ground);
+    over_ground(ui, scene);
+    climb(ui, scene);
+    unless_above(ui, battery);
+    engine(ui, scene);
+    gps(ui, scene);
 }
 
-fn plan_rows(ui: &mut Ui, scene: &Scene<'_>) {
+fn leg(ui: &mut Ui, scene: &Scene<'_>) {
     let status = &scene.vehicle.status;
-    let age = age_of(status, scene.now_s);
-    let place = status.as_ref().and_then(|s| s.value.place.as_ref());
     let name = |id| scene.vehicle.name_of(id);
+    let place = status.as_ref().and_then(|s| s.value.place.as_ref());
     let leg = place.map_or_else(|| "–".to_owned(), |p| format!("{} ▸ {}", name(&p.stage), name(&p.leg)));
-    value_with_age(ui, "Leg", &leg, age);
+    value_with_age(ui, "Leg", &leg, age_of(status, scene.now_s));
+}
+
+fn iterations(ui: &mut Ui, scene: &Scene<'_>) {
+    let status = &scene.vehicle.status;
+    let place = status.as_ref().and_then(|s| s.value.place.as_ref());
     if let Some(place) = place.filter(|p| !p.iterations.is_empty()) {
         let loops: Vec<String> = place.iterations.iter().map(|i| iteration(i, scene.vehicle)).collect();
-        value_with_age(ui, "Iteration", &loops.join(" ▸ "), age);
+        value_with_age(ui, "Iteration", &loops.join(" ▸ "), age_of(status, scene.now_s));
     }
+}
+
+fn alternate(ui: &mut Ui, scene: &Scene<'_>) {
+    let status = &scene.vehicle.status;
     if let Some(alternate) = status.as_ref().and_then(|s| s.value.emergency_in_force.as_ref()) {
-        value_with_age(ui, "Alternate", &name(alternate), age);
+        value_with_age(ui, "Alternate", &scene.vehicle.name_of(alternate), age_of(status, scene.now_s));
     }
+}
+
+fn next(ui: &mut Ui, scene: &Scene<'_>) {
     let navigation = &scene.vehicle.navigation;
-    let u = scene.units();
-    let next = navigation
-        .as_ref()
-        .map(|n| format!("{} · {}", u.distance().show(n.value.distance_m), units::duration(n.value.eta_s)));
+    let next = navigation.as_ref().map(|n| {
+        let far = scene.units().distance().show(n.value.distance_m);
+        format!("{far} · {}", units::duration(n.value.eta_s))
+    });
     value_with_age(ui, "Next", &next.unwrap_or_default(), age_of(navigation, scene.now_s));
+}
+
+fn off_track(ui: &mut Ui, scene: &Scene<'_>) {
+    let navigation = &scene.vehicle.navigation;
     let off = navigation.as_ref().map(|n| {
         let side = if n.value.cross_track_m < 0.0 { "left" } else { "right" };
-        format!("{} {side}", u.length().show(n.value.cross_track_m.abs()))
+        format!("{} {side}", scene.units().length().show(n.value.cross_track_m.abs()))
     });
     value_with_age(ui, "Off track", &off.unwrap_or_default(), age_of(navigation, scene.now_s));
 }
@@ -123,43 +164,59 @@ fn buffer(ui: &mut Ui, scene: &Scene<'_>) {
     }
 }
 
-fn air_rows(ui: &mut Ui, scene: &Scene<'_>) {
-    let u = scene.units();
+fn above_home(ui: &mut Ui, scene: &Scene<'_>) {
     let position = &scene.vehicle.position;
-    let age = age_of(position, scene.now_s);
-    let home =
-        position.as_ref().map(|v| format!("{} above home", u.altitude().show(v.value.altitude_home_m)));
-    value_with_age(ui, "Height", &home.unwrap_or_default(), age);
-    let agl = scene.vehicle.watch.agl_m.map(|m| format!("{} above the ground", u.altitude().show(m)));
-    value_with_age(ui, "AGL", agl.as_deref().unwrap_or("ground not known"), age);
-    let ground = position.as_ref().map(|v| {
-        format!("{} · track {}", u.speed().show(v.value.ground_speed_mps), units::bearing(v.value.track_deg))
-    });
-    value_with_age(ui, "Ground", &ground.unwrap_or_default(), age);
-    let climb = position.as_ref().map(|v| u.climb().show(-v.value.velocity_down_mps));
-    value_with_age(ui, "Climb", &climb.unwrap_or_default(), age);
+    let altitude = scene.units().altitude();
+    let home = position.as_ref().map(|v| format!("{} above home", altitude.show(v.value.altitude_home_m)));
+    value_with_age(ui, "Height", &home.unwrap_or_default(), age_of(position, scene.now_s));
 }
 
-fn systems_rows(ui: &mut Ui, scene: &Scene<'_>) {
-    let v = scene.vehicle;
-    let power = v.power.as_ref().map(|p| {
+fn above_ground(ui: &mut Ui, scene: &Scene<'_>) {
+    let agl_m = scene.vehicle.watch.agl_m;
+    let agl = agl_m.map(|m| format!("{} above the ground", scene.units().altitude().show(m)));
+    let age = age_of(&scene.vehicle.position, scene.now_s);
+    value_with_age(ui, "AGL", agl.as_deref().unwrap_or("ground not known"), age);
+}
+
+fn over_ground(ui: &mut Ui, scene: &Scene<'_>) {
+    let position = &scene.vehicle.position;
+    let ground = position.as_ref().map(|v| {
+        let speed = scene.units().speed().show(v.value.ground_speed_mps);
+        format!("{speed} · track {}", units::bearing(v.value.track_deg))
+    });
+    value_with_age(ui, "Ground", &ground.unwrap_or_default(), age_of(position, scene.now_s));
+}
+
+fn climb(ui: &mut Ui, scene: &Scene<'_>) {
+    let position = &scene.vehicle.position;
+    let climb = position.as_ref().map(|v| scene.units().climb().show(-v.value.velocity_down_mps));
+    value_with_age(ui, "Climb", &climb.unwrap_or_default(), age_of(position, scene.now_s));
+}
+
+fn battery(ui: &mut Ui, scene: &Scene<'_>) {
+    let power = &scene.vehicle.power;
+    let text = power.as_ref().map(|p| {
         format!("{:.0} % · {:.1} V · {:.1} A", p.value.battery * 100.0, p.value.voltage_v, p.value.current_a)
     });
-    value_with_age(ui, "Battery", &power.unwrap_or_default(), age_of(&v.power, scene.now_s));
-    let engine = v.engine.as_ref().map(|e| {
-        format!(
-            "{:.0} rpm · {:.0} °C · {:.0} %",
-            e.value.rpm,
-            e.value.temperature_c,
-            e.value.throttle * 100.0
-        )
+    value_with_age(ui, "Battery", &text.unwrap_or_default(), age_of(power, scene.now_s));
+}
+
+fn engine(ui: &mut Ui, scene: &Scene<'_>) {
+    let engine = &scene.vehicle.engine;
+    let text = engine.as_ref().map(|e| {
+        let (rpm, temperature) = (e.value.rpm, e.value.temperature_c);
+        format!("{rpm:.0} rpm · {temperature:.0} °C · {:.0} %", e.value.throttle * 100.0)
     });
-    value_with_age(ui, "Engine", &engine.unwrap_or_default(), age_of(&v.engine, scene.now_s));
-    let gps = v.gps.as_ref().map(|g| {
+    value_with_age(ui, "Engine", &text.unwrap_or_default(), age_of(engine, scene.now_s));
+}
+
+fn gps(ui: &mut Ui, scene: &Scene<'_>) {
+    let gps = &scene.vehicle.gps;
+    let text = gps.as_ref().map(|g| {
         let fix = if g.value.fix_3d { "3D fix" } else { "NO FIX" };
         format!("{fix} · {} sats · HDOP {:.1}", g.value.satellites, g.value.hdop)
     });
-    value_with_age(ui, "GPS", &gps.unwrap_or_default(), age_of(&v.gps, scene.now_s));
+    value_with_age(ui, "GPS", &text.unwrap_or_default(), age_of(gps, scene.now_s));
 }
 
 /// The strip of commands; each is there when it makes sense. Without a link none of them would arrive.

@@ -175,6 +175,8 @@ pub struct ViewState {
     pub rename: Option<tree::Renamed>,
     /// By how much altitudes are raised is about to be typed.
     pub raise: bool,
+    /// The panel that was asked for last: it gives way to nothing.
+    pub wanted_panel: Option<PanelId>,
     /// What is selected.
     pub selection: Option<Selection>,
     /// Legs, stages, fixes, zones and runways that are selected besides one of these.

@@ -46,6 +46,7 @@ mod reading;
 mod recovering;
 mod recreating;
 mod replacing;
+mod small;
 mod states;
 mod store;
 mod table;

@@ -1,0 +1,34 @@
+//! A flight in a small window, or one that shows everything larger: what nobody flies without is in sight.
+
+use super::emergency::in_emergency;
+use super::vehicle::position;
+use egui::vec2;
+use egui_kittest::kittest::Queryable;
+use gcs_app::link::Telemetry;
+use usal::contract::{Alarm, Power, Severity, Stamped};
+
+#[test]
+fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_for() {
+    // the second: 960 by 600 at 112 %, or a laptop at 150 %
+    for size in [vec2(960.0, 600.0), vec2(853.0, 533.0)] {
+        let mut window = in_emergency();
+        window.receive(position(2.0, 500.0, true));
+        window.click("What if");
+        window.harness.set_size(size);
+        window.receive(position(3.0, 500.0, false));
+        let value = Power { voltage_v: 24.1, current_a: 9.0, battery: 0.71, fuel: None };
+        window.receive(Telemetry::Power(Stamped { time_s: 3.0, validity_s: 5.0, value }));
+        let (id, source, advice) = ("energy-low".into(), "gateway".into(), "Land soon.".into());
+        window.receive_gateway(vec![Alarm { id, severity: Severity::Caution, source, advice, cause: None }]);
+        window.steps(3);
+        let bottom = window.harness.get_by_label("⏸ Hold").rect().top();
+        let vital = ["ENERGY LOW", "r-approach ▸ r1", "above the ground", "71 % · 24.1 V"];
+        for text in vital {
+            let rect = window.harness.get_by_label_contains(text).rect();
+            assert!(rect.bottom() < bottom, "{size}: {text} is at {rect}, the panel ends at {bottom}");
+        }
+        assert!(!window.shows("Coverage of the whole path"), "{size}");
+        window.click("What if");
+        assert!(window.shows("Coverage of the whole path"), "{size}: it was asked for");
+    }
+}
