@@ -19,6 +19,10 @@ pub fn open(scene: &Scene<'_>) -> Option<(DecisionRequest, f64)> {
     Some((request, left.max(0.0)))
 }
 
+fn left(share: f32) -> String {
+    format!("{:.0} % of the time to decide is left", share * 100.0)
+}
+
 /// Draws the choices, and takes keys 1 to 9 while nothing is being typed.
 pub fn show(ui: &mut Ui, request: &DecisionRequest, left_s: f64, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
@@ -33,8 +37,9 @@ pub fn show(ui: &mut Ui, request: &DecisionRequest, left_s: f64, scene: &Scene<'
             ui.label(RichText::new(format!("{} · {distance}", units::duration(left_s))).monospace());
         });
     });
-    let share = (left_s / request.time_left_s.max(1.0)).clamp(0.0, 1.0) as f32;
-    ui.add(egui::ProgressBar::new(share).desired_height(4.0).fill(p.active));
+    let share = (left_s / scene.vehicle.decision_s.max(1.0)).clamp(0.0, 1.0) as f32;
+    let bar = ui.add(egui::ProgressBar::new(share).desired_height(4.0).fill(p.active));
+    bar.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ProgressIndicator, true, left(share)));
     let typing = ui.ctx().text_edit_focused();
     for (i, BranchOption { branch, label, .. }) in request.options.iter().enumerate() {
         let key = KEYS.get(i);

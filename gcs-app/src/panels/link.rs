@@ -46,6 +46,12 @@ fn style(vehicle: &Vehicle, now_s: f64, p: &Palette) -> (&'static str, String, C
         (LinkState::Connected(_), Some(age)) if age > LINK_CAUTION_S => {
             ("⚠", format!("Silent for {}", units::age(age)), p.caution)
         }
+        // something is heard, and not where the aircraft is
+        (LinkState::Connected(_), Some(age))
+            if vehicle.position.as_ref().is_some_and(|p| p.is_expired(now_s)) =>
+        {
+            ("⚠", format!("Link {}, values old", units::age(age)), p.caution)
+        }
         (LinkState::Connected(_), Some(age)) => ("●", format!("Link {}", units::age(age)), p.good),
     }
 }

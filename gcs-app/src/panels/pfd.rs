@@ -13,6 +13,9 @@ use tape::Side;
 /// Of the display, points.
 pub const HEIGHT: f32 = 204.0;
 
+/// Of the height above the ground at the foot of the altitude's tape, points.
+const AGL: f32 = 20.0;
+
 /// Draws the display over the full width.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
     let size = vec2(ui.available_width(), HEIGHT);
@@ -37,9 +40,13 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
     );
     let altitude = live(&scene.vehicle.position, scene.now_s).map(|v| v.altitude_amsl_m);
     let unit = scene.units().altitude();
-    tape::draw(&painter, right, Side::Right, altitude.map(|v| unit.from_si(v)), tape_step(unit), p);
+    let agl_m = scene.vehicle.watch.agl_m;
+    // the tape ends above what stands at its foot
+    let foot = if agl_m.is_some() { AGL } else { 0.0 };
+    let above = painter.with_clip_rect(rect.with_max_y(right.bottom() - foot));
+    tape::draw(&above, right, Side::Right, altitude.map(|v| unit.from_si(v)), tape_step(unit), p);
     heads(&painter, scene, left, right, p);
-    if let Some(agl_m) = scene.vehicle.watch.agl_m {
+    if let Some(agl_m) = agl_m {
         let at = right.center_bottom() - vec2(0.0, 4.0);
         label(&painter, at, Align2::CENTER_BOTTOM, &format!("AGL {}", unit.number(agl_m)), 9.5);
     }

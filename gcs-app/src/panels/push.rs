@@ -96,10 +96,22 @@ fn verdict(ui: &mut Ui, proposal: &Proposal, p: &Palette) {
     ui.label(RichText::new(text).strong().color(colour));
 }
 
+/// `1 stage and 2 legs`: a take-off or a landing is a stage without legs.
+fn counted(plan: &FlightPlan, parts: &[Id]) -> String {
+    let stages = parts.iter().filter(|id| plan.leg(id).is_none() && plan.stage(id).is_some()).count();
+    let of = |count: usize, what: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {what}")),
+        _ => Some(format!("{count} {what}s")),
+    };
+    let counts = [of(stages, "stage"), of(parts.len() - stages, "leg")];
+    counts.into_iter().flatten().collect::<Vec<_>>().join(" and ")
+}
+
 /// Legs of which the same is told. Many of them are the first and the last one until all are asked for.
 fn difference(ui: &mut Ui, sign: &str, what: &str, plan: &FlightPlan, legs: &[Id], colour: Color32) {
     let (Some(first), Some(last)) = (legs.first(), legs.last()) else { return };
-    let count = if legs.len() == 1 { "1 leg".to_owned() } else { format!("{} legs", legs.len()) };
+    let count = counted(plan, legs);
     let title = |mark: &str| RichText::new(format!("{mark}{sign} {count} {what}:")).strong().color(colour);
     if legs.len() <= FEW_LEGS {
         ui.horizontal_wrapped(|ui| {
@@ -142,7 +154,8 @@ fn next(ui: &mut Ui, proposal: &Proposal, scene: &Scene<'_>, p: &Palette) {
         ui.label(RichText::new("The aircraft would fly next:").color(p.weak));
         ui.label(RichText::new(format!("{leg}{place}{}", in_so_far(way, units))).strong().color(p.active));
     });
-    if let Some(way) = report.differs_in_m.zip(report.differs_in_s) {
+    // on the ground none is flown
+    if let Some(way) = report.differs_in_m.zip(report.differs_in_s).filter(|_| scene.vehicle.is_airborne()) {
         ui.label(RichText::new(differs(way, units)).color(p.weak));
     }
 }

@@ -100,6 +100,8 @@ pub struct Vehicle {
     pub unread: VecDeque<String>,
     /// The emergency that was raised last.
     pub raised: Option<Raised>,
+    /// How long there was for the decision that is asked for when it was asked, seconds.
+    pub decision_s: f64,
     /// The emergency plan with which the flight ended, instead of the main plan.
     pub ended_in: Option<Id>,
     /// What was lost of its messages.
@@ -241,6 +243,12 @@ impl Vehicle {
     fn follow(&mut self, status: &Status) {
         if self.emergency() != status.emergency.as_ref() {
             self.outlook.way_changed();
+        }
+        if let Some(asked) = &status.decision {
+            let before = self.status.as_ref().and_then(|before| before.value.decision.as_ref());
+            let is_same = before.is_some_and(|before| before.leg == asked.leg);
+            self.decision_s =
+                if is_same { self.decision_s.max(asked.time_left_s) } else { asked.time_left_s };
         }
         if status.phase != Phase::Finished {
             self.ended_in = None;

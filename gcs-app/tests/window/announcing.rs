@@ -2,8 +2,9 @@
 
 use super::Window;
 use super::flying::flying;
+use super::vehicle::decision;
 use egui_kittest::kittest::Queryable;
-use flight_exec::{Event, Phase};
+use flight_exec::{DecisionRequest, Event, Phase};
 use gcs_app::link::{LinkEvent, LinkId, LinkState, Numbered, Telemetry};
 use usal::contract::Stamped;
 
@@ -62,4 +63,16 @@ fn of_many_announcements_the_latest_are_shown() {
             && is_announced(&window, "Nobody decided at fork47")
     );
     assert!(!is_announced(&window, "Nobody decided at fork46"), "the rest is in the log");
+}
+
+#[test]
+fn bar_of_a_decision_runs_down_from_when_it_was_asked() {
+    let (mut window, mut value) = flying();
+    for (time_left_s, left) in
+        [(36.0, "100 % of the time"), (18.0, "50 % of the time"), (9.0, "25 % of the time")]
+    {
+        value.decision = Some(DecisionRequest { time_left_s, ..decision(None) });
+        window.receive_status(value.clone());
+        assert!(window.shows(left), "{time_left_s} s");
+    }
 }

@@ -14,10 +14,15 @@ fn many_legs_are_told_by_the_first_and_the_last_until_all_are_asked_for() {
     window.click("Push");
     let (ticket, _) = window.asked().unwrap();
     let added = ["side1", "side2", "side3", "side4"].map(Into::into).to_vec();
-    let report =
-        ProposalReport { added, differs_in_m: Some(0.0), differs_in_s: Some(0.0), ..report(&hash, true) };
+    let changed = vec!["side2".into(), "circuit".into()];
+    let (differs_in_m, differs_in_s) = (Some(0.0), Some(0.0));
+    let report = ProposalReport { added, changed, differs_in_m, differs_in_s, ..report(&hash, true) };
     window.answer(ticket, Ok(Reply::Proposal(Box::new(report))));
-    assert!(window.shows("side1 … side4") && window.shows("It leaves the path that is flown now at once"));
+    assert!(window.shows("side1 … side4") && window.shows("1 stage and 1 leg changed"));
+    let at_once = "It leaves the path that is flown now at once";
+    assert!(!window.shows(at_once), "it stands");
+    window.receive_position(false);
+    assert!(window.shows(at_once));
     let names = |window: &Window| window.harness.query_all_by_label("side3").count();
     let before = names(&window);
     let at = window.harness.get_by_label_contains("4 legs added").rect().center();
