@@ -10,10 +10,10 @@ use flight_plan::create::{self, Approach, Drawn, LegChoice};
 use flight_plan::template::Extent;
 use flight_plan::{
     Area, Edit, Fix, FlightPlan, Leg, LegKind, Pattern, Place, Scan, Spacing, Spot, Thing, Value, Zone,
-    ZoneKind, ZoneShape,
+    ZoneKind,
 };
 use geometry::LatLon;
-use interchange::{Areas, Feature, Format, Shape};
+use interchange::{Areas, DrawnZone, Feature, Format, Shape};
 use std::path::Path;
 
 /// Most figures that are pasted at once.
@@ -56,14 +56,16 @@ pub fn add(
     let mut with = plan.clone();
     let (mut flown, mut edits, mut things) = (Vec::new(), Vec::new(), Vec::new());
     for feature in features.iter().filter(|feature| !is_of_a_flight(feature)) {
-        match thing(feature, choices.areas, &with) {
-            Some(thing) => {
-                let edit = Edit::Add(Box::new(thing.clone()));
-                with = edit.apply(&with).map_err(|error| error.to_string())?;
-                edits.push(edit);
-                things.push(thing);
-            }
-            None => flown.extend(flown_as(feature, choices.lines)),
+        let parts = parts(feature, choices.areas);
+        if parts.is_empty() {
+            flown.extend(flown_as(feature, choices.lines));
+        }
+        for part in parts {
+            let thing = part.thing(&with);
+            let edit = Edit::Add(Box::new(thing.clone()));
+            with = edit.apply(&with).map_err(|error| error.to_string())?;
+            edits.push(edit);
+            things.push(thing);
         }
     }
     if flown.is_empty() {
@@ -82,10 +84,14 @@ pub fn may_add(features: &[Feature], choices: &Choices) -> Result<(), String> {
     if features.len() > MOST {
         return Err(format!("It has {} figures, and {MOST} can be added to a plan at once.", features.len()));
     }
-    let legs: usize = features.iter().filter(|f| is_line(f)).map(|line| points(line, choices.lines)).sum();
-    match legs {
-        0..=MOST => Ok(()),
-        has => Err(format!(
+    let counts = counts(features, choices);
+    let of = |what: &str| counts.iter().find(|(_, name)| *name == what).map_or(0, |(count, _)| *count);
+    match (of("leg"), of("zone")) {
+        (0..=MOST, 0..=MOST) => Ok(()),
+        (0..=MOST, has) => Err(format!(
+            "Its areas and their holes come to {has} zones, and {MOST} can be added at once: take it as a new plan."
+        )),
+        (has, _) => Err(format!(
             "Its lines have {has} points, and {MOST} legs can be added at once: take them as corridors."
         )),
     }
@@ -100,27 +106,21 @@ fn is_line(feature: &Feature) -> bool {
     matches!(feature.shape, Shape::Line(_)) && !is_of_a_flight(feature)
 }
 
-/// So many legs a line comes to.
-fn points(line: &Feature, lines: Lines) -> usize {
-    match (&line.shape, lines) {
-        (Shape::Line(vertices), Lines::Tracks) => vertices.len(),
-        _ => 1,
-    }
-}
-
 /// What comes of a drawing that is added, counted: of each sort its name and how many.
 pub fn counts(features: &[Feature], choices: &Choices) -> [(usize, &'static str); 5] {
     let mut counts = [(0, "fix"), (0, "corridor"), (0, "leg"), (0, "scan"), (0, "zone")];
     for feature in features.iter().filter(|feature| !is_of_a_flight(feature)) {
-        let what = match (&feature.shape, choices.lines) {
-            (Shape::Point(_), _) => "fix",
-            (Shape::Line(_), Lines::Corridors) => "corridor",
-            (Shape::Line(_), Lines::Tracks) => "leg",
-            (Shape::Area { .. }, _) if zone_kind(feature, choices.areas).is_some() => "zone",
-            (Shape::Area { .. }, _) => "scan",
+        let (more, what) = match (&feature.shape, choices.lines) {
+            (Shape::Point(_), _) => (1, "fix"),
+            (Shape::Line(_), Lines::Corridors) => (1, "corridor"),
+            (Shape::Line(vertices), Lines::Tracks) => (vertices.len(), "leg"),
+            (Shape::Area { .. }, _) => match zones(feature, choices.areas).len() {
+                0 => (1, "scan"),
+                zones => (zones, "zone"),
+            },
         };
         let count = counts.iter_mut().find(|(_, name)| *name == what);
-        count.into_iter().for_each(|(count, _)| *count += points(feature, choices.lines));
+        count.into_iter().for_each(|(count, _)| *count += more);
     }
     counts
 }
@@ -161,20 +161,39 @@ fn zone_kind(feature: &Feature, areas: Areas) -> Option<ZoneKind> {
     }
 }
 
-/// `None`: it is flown.
-fn thing(feature: &Feature, areas: Areas, plan: &FlightPlan) -> Option<Thing> {
-    let name = feature.name.trim().to_owned();
-    match &feature.shape {
-        Shape::Point(vertex) => {
-            let description = feature.description.clone();
-            Some(Thing::Fix(Fix { name, description, ..create::fix(plan, vertex.position) }))
+/// A part of a plan that is not flown.
+enum Part<'a> {
+    Fix(&'a Feature, LatLon),
+    Zone(DrawnZone),
+}
+
+impl Part<'_> {
+    /// In a plan, at the end of its list.
+    fn thing(self, plan: &FlightPlan) -> Thing {
+        match self {
+            Part::Fix(feature, at) => {
+                let (name, description) = (feature.name.trim().to_owned(), feature.description.clone());
+                Thing::Fix(Fix { name, description, ..create::fix(plan, at) })
+            }
+            Part::Zone(DrawnZone { name, kind, shape, .. }) => {
+                Thing::Zone(Zone { name: name.trim().to_owned(), ..create::zone(plan, kind, shape) })
+            }
         }
-        Shape::Area { outer, .. } => {
-            let shape = ZoneShape::Polygon(outer.clone());
-            Some(Thing::Zone(Zone { name, ..create::zone(plan, zone_kind(feature, areas)?, shape) }))
-        }
-        Shape::Line(_) => None,
     }
+}
+
+/// The fix or the zones that a figure becomes; none: it is flown.
+fn parts(feature: &Feature, areas: Areas) -> Vec<Part<'_>> {
+    match &feature.shape {
+        Shape::Point(vertex) => vec![Part::Fix(feature, vertex.position)],
+        Shape::Area { .. } => zones(feature, areas).into_iter().map(Part::Zone).collect(),
+        Shape::Line(_) => Vec::new(),
+    }
+}
+
+/// The zones that an area becomes; none: it is scanned.
+fn zones(feature: &Feature, areas: Areas) -> Vec<DrawnZone> {
+    zone_kind(feature, areas).map_or(Vec::new(), |kind| interchange::zones_of(feature, kind))
 }
 
 /// Figures as legs, one behind the other. The sentence says why that can't be.

@@ -172,6 +172,31 @@ fn drawing_is_added_to_the_plan_that_is_open_by_one_step() {
     }
 }
 
+/// A field with a hole around a house: whoever flies above the house is told, as in a plan that is imported.
+#[test]
+fn the_holes_of_an_area_to_stay_inside_of_are_zones_in_the_plan_that_is_open_too() {
+    const FIELD: &str = r#"{"type": "Feature", "properties": {"name": "Field"}, "geometry": {"type": "Polygon", "coordinates": [
+        [[-84.20, 36.30], [-84.10, 36.30], [-84.10, 36.38], [-84.20, 36.38], [-84.20, 36.30]],
+        [[-84.16, 36.33], [-84.16, 36.34], [-84.15, 36.34], [-84.15, 36.33], [-84.16, 36.33]]]}}"#;
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("field.geojson");
+    std::fs::write(&file, FIELD).unwrap();
+    let mut window = window(SQUARE);
+    let before = window.plan().zones.len();
+    drop_file(&mut window, &file);
+    until_imported(&mut window);
+    window.click("zones to stay inside of");
+    window.until("the areas", |app| {
+        app.view().imported.as_ref().is_some_and(|i| i.choices.areas == interchange::Areas::KeepIn)
+    });
+    assert!(window.shows("2 zones"), "the dialog counts them");
+    window.click("Into this plan");
+    let plan = window.plan();
+    let zones: Vec<_> = plan.zones[before..].iter().map(|zone| (zone.name.as_str(), zone.kind)).collect();
+    let kinds = [flight_plan::ZoneKind::KeepIn, flight_plan::ZoneKind::KeepOut];
+    assert_eq!(zones, [("Field", kinds[0]), ("Field, hole", kinds[1])]);
+}
+
 /// What is said of the choice is what comes of it.
 #[test]
 fn a_line_is_a_corridor_or_legs_as_was_chosen_and_the_dialog_says_which() {

@@ -26,7 +26,7 @@ mod track;
 mod wpl;
 mod xml;
 
-pub use drawing::{Feature, Shape, Vertex};
+pub use drawing::{DrawnZone, Feature, Shape, Vertex, zones_of};
 pub use note::Note;
 pub use synthetic::{Areas, Assumptions, KnownRunway};
 pub use track::{RecordedFlight, TrackEvent, TrackPoint, write_flights};

@@ -1,5 +1,6 @@
 //! A drawing as a plan.
 
+use super::zones::{self, DrawnZone};
 use super::{Drawing, Feature, LABEL, Shape, Vertex, ends};
 use crate::mission::SAME_M;
 use crate::mission::placed::{leg, waypoint};
@@ -10,7 +11,7 @@ use crate::xml::held;
 use crate::{Error, Import, MAX_ITEMS};
 use flight_plan::{
     Altitude, AltitudeReference, Area, Fix, FlightPlan, Id, LegKind, Runway, Scan, ScanEntry, ScanOrder,
-    ScanStyle, Spacing, Stage, StageKind, Value, Zone, ZoneKind, ZoneShape,
+    ScanStyle, Spacing, Stage, StageKind, Value, Zone, ZoneKind,
 };
 use geometry::LatLon;
 
@@ -86,16 +87,12 @@ impl Importer<'_> {
             ("path", Shape::Point(at)) => self.line(&feature, std::slice::from_ref(at)),
             (_, Shape::Point(at)) => self.fix(&feature, at),
             (_, Shape::Line(line)) => self.line(&feature, line),
-            ("keep-in", Shape::Area { outer, holes, .. }) => {
-                self.zone(&feature, ZoneKind::KeepIn, outer, holes)
-            }
-            ("keep-out", Shape::Area { outer, holes, .. }) => {
-                self.zone(&feature, ZoneKind::KeepOut, outer, holes)
-            }
+            ("keep-in", Shape::Area { .. }) => self.zone(&feature, ZoneKind::KeepIn),
+            ("keep-out", Shape::Area { .. }) => self.zone(&feature, ZoneKind::KeepOut),
             (_, Shape::Area { outer, holes, altitude }) => match self.assumptions.areas {
                 Areas::Scan => self.area(&feature, outer, holes, altitude.as_ref()),
-                Areas::KeepIn => self.area_as_zone(&feature, ZoneKind::KeepIn, outer, holes),
-                Areas::KeepOut => self.area_as_zone(&feature, ZoneKind::KeepOut, outer, holes),
+                Areas::KeepIn => self.area_as_zone(&feature, ZoneKind::KeepIn),
+                Areas::KeepOut => self.area_as_zone(&feature, ZoneKind::KeepOut),
             },
         }
     }
@@ -229,50 +226,35 @@ impl Importer<'_> {
         })
     }
 
-    fn zone(&mut self, feature: &Feature, kind: ZoneKind, outer: &[LatLon], holes: &[Vec<LatLon>]) {
-        let centre = feature.position("centre_lat", "centre_lon");
-        let shape = match (centre, feature.number("radius_m").filter(|r| *r > 0.0)) {
-            (Some(centre), Some(radius_m)) => ZoneShape::Circle { centre, radius_m },
-            _ => ZoneShape::Polygon(outer.to_vec()),
-        };
-        let id = self.names.take(&feature.name, "zone");
-        // those of ours have the identifier as name, and the name as description
-        let ours = feature.mark("legwork").is_some();
-        let name = if ours { &feature.description } else { &feature.name }.clone();
-        self.plan.zones.push(at_every_height(id, name, kind, shape));
-        self.holes(feature, kind, holes);
-    }
-
-    /// The holes of a zone, which has none itself: those of a zone to stay inside of are zones to keep out of, inside it.
-    fn holes(&mut self, feature: &Feature, kind: ZoneKind, holes: &[Vec<LatLon>]) {
-        if holes.is_empty() {
-            return;
+    fn zone(&mut self, feature: &Feature, kind: ZoneKind) {
+        for drawn in zones::of(feature, kind) {
+            let (stem, default) = if drawn.is_hole {
+                (format!("{}-hole", feature.name), "hole")
+            } else {
+                (feature.name.clone(), "zone")
+            };
+            let id = self.names.take(&stem, default);
+            self.plan.zones.push(at_every_height(id, drawn));
         }
-        let message = match kind {
-            ZoneKind::KeepIn => "the holes of this zone become zones to keep out of",
-            ZoneKind::KeepOut => "the holes of this zone are left out: nobody flies inside of them either",
-        };
-        self.notes.push("zone-holes", &feature.place, message);
-        if kind == ZoneKind::KeepOut {
-            return;
-        }
-        for hole in holes {
-            let id = self.names.take(&format!("{}-hole", feature.name), "hole");
-            let name =
-                if feature.name.is_empty() { String::new() } else { format!("{}, hole", feature.name) };
-            let shape = ZoneShape::Polygon(hole.clone());
-            self.plan.zones.push(at_every_height(id, name, ZoneKind::KeepOut, shape));
+        if matches!(&feature.shape, Shape::Area { holes, .. } if !holes.is_empty()) {
+            let message = match kind {
+                ZoneKind::KeepIn => "the holes of this zone become zones to keep out of",
+                ZoneKind::KeepOut => {
+                    "the holes of this zone are left out: nobody flies inside of them either"
+                }
+            };
+            self.notes.push("zone-holes", &feature.place, message);
         }
     }
 
-    fn area_as_zone(&mut self, feature: &Feature, kind: ZoneKind, outer: &[LatLon], holes: &[Vec<LatLon>]) {
+    fn area_as_zone(&mut self, feature: &Feature, kind: ZoneKind) {
         let message = match kind {
             ZoneKind::KeepIn => "an area becomes a zone to stay inside of, at every height",
             ZoneKind::KeepOut => "an area becomes a zone to keep out of, at every height",
         };
         self.notes.again("area-as-zone", &feature.place, message);
         self.undescribed(feature);
-        self.zone(feature, kind, outer, holes);
+        self.zone(feature, kind);
     }
 
     fn area(&mut self, feature: &Feature, outer: &[LatLon], holes: &[Vec<LatLon>], drawn: Option<&Altitude>) {
@@ -317,7 +299,8 @@ impl Importer<'_> {
     }
 }
 
-fn at_every_height(id: Id, name: String, kind: ZoneKind, shape: ZoneShape) -> Zone {
+fn at_every_height(id: Id, drawn: DrawnZone) -> Zone {
+    let DrawnZone { name, kind, shape, .. } = drawn;
     Zone { id, name, kind, shape, floor: None, ceiling: None, active: Vec::new() }
 }
 

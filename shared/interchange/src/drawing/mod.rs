@@ -6,9 +6,11 @@
 mod ends;
 mod import;
 mod of_plan;
+mod zones;
 
 pub use import::read;
 pub use of_plan::of;
+pub use zones::{DrawnZone, of as zones_of};
 
 use crate::note::Notes;
 use crate::xml::held;
