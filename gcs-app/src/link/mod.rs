@@ -5,6 +5,8 @@ mod outlet;
 mod session;
 mod subscriptions;
 
+pub(crate) use outlet::may_be_two;
+
 use crate::state::{ActivePlan, Level, Ticket, VehicleName};
 use flight_exec::{Command as PlanCommand, Event, Foresight, ProposalReport, Status};
 use std::collections::BTreeSet;
@@ -84,7 +86,7 @@ pub enum LinkEvent {
     Telemetry(Telemetry),
     /// Something was lost, and will not come again.
     Lost(Loss),
-    /// So many messages of others than the service in whose name they came; they are ignored.
+    /// So many messages of others than the service in whose name they came. They are ignored, but for those of a second FP Manager.
     Strangers {
         /// In whose name.
         service: &'static str,

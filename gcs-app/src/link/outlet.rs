@@ -5,6 +5,7 @@ use crate::state::VehicleName;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use tokio::sync::mpsc;
+use usal::topics::FP_MANAGER;
 use usal::{Gate, Senders};
 
 /// Where a link's messages go.
@@ -35,9 +36,17 @@ impl Outlet {
         Self { link, vehicle, messages, left_out, is_foreign, senders, wake }
     }
 
-    /// Lets in what comes from the session that is this service.
+    /// Lets in what comes from the session that is this service; of a service that may be there twice what comes from both.
     pub(super) fn gate(&self, service: &'static str) -> Gate {
-        self.senders.gate(service)
+        let gate = self.senders.gate(service);
+        if !may_be_two(service) {
+            return gate;
+        }
+        Arc::new(move |from| {
+            // it is counted and told all the same
+            let _ = gate(from);
+            true
+        })
     }
 
     /// Tells what others sent in the name of the vehicle's services.
@@ -91,5 +100,33 @@ impl Outlet {
 
     fn message(&self, event: LinkEvent) -> LinkMessage {
         LinkMessage { link: self.link, vehicle: self.vehicle.clone(), event }
+    }
+}
+
+/// Which of two FP Managers flies the plan only the gateway knows. The first to answer may be the other one, so what both say counts,
+/// and the operator is told that there are two.
+pub(crate) fn may_be_two(service: &str) -> bool {
+    service == FP_MANAGER
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Instant;
+    use usal::Instance;
+    use usal::topics::GATEWAY;
+
+    /// The one that flies may answer later than one that was started by mistake.
+    #[test]
+    fn of_two_fp_managers_neither_is_dropped_and_both_are_told() {
+        let outlet = Outlet::new(LinkId(1), "uav1".into(), mpsc::channel(1).0, Arc::new(|| {}));
+        let instance = |text: &str| -> Option<Instance> { Some(text.parse().unwrap()) };
+        for (service, other_counts) in [(FP_MANAGER, true), (GATEWAY, false)] {
+            outlet.senders.described(service, instance("b2"), Instant::now());
+            let gate = outlet.gate(service);
+            assert!(gate(instance("b2")));
+            assert_eq!(gate(instance("a1")), other_counts, "{service}");
+            assert_eq!(outlet.senders.take_strange(), [(service, 1)]);
+        }
     }
 }
