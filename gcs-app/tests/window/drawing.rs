@@ -126,6 +126,25 @@ fn an_area_that_crosses_itself_is_said_to() {
     assert!(!window.shows("crosses itself") && !window.is_enabled("Undo"));
 }
 
+/// Before it is in the plan: the words at the tool tell why, the figure that it is so.
+#[test]
+fn a_circle_that_is_too_tight_to_be_flown_is_red_while_it_is_drawn() {
+    let red = gcs_app::theme::palette(true).warning;
+    let mut window = window();
+    window.press(Key::O);
+    let at = free(&window);
+    window.click_at(at);
+    let mut drawn_to = |rim: Vec2| {
+        window.harness.hover_at(at + rim);
+        window.steps(3);
+        (window.lines_within("Map", red), window.shows("It can't be flown so"))
+    };
+    assert_eq!(drawn_to(vec2(90.0, 0.0)), (0, false));
+    let (lines, is_said) = drawn_to(vec2(6.0, 0.0));
+    assert!(lines >= 2 && is_said, "the circle and its middle: {lines}");
+    assert_eq!(drawn_to(vec2(90.0, 0.0)), (0, false), "one that is wider is as any other");
+}
+
 #[test]
 fn fixes_runways_and_zones_are_drawn_on_the_map() {
     let mut window = window();

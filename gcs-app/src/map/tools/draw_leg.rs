@@ -199,6 +199,7 @@ impl Tool for DrawLeg {
         if let Some(from) = self.pen.pointer() {
             bands::paint(painter, canvas, from.at, &self.bands, p);
         }
-        self.pen.paint(painter, canvas, p);
+        let is_bad = self.trials.get().is_some_and(|trial| trial.fault.is_some());
+        self.pen.paint(painter, canvas, is_bad, p);
     }
 }

@@ -116,6 +116,6 @@ impl Tool for DrawEmergency {
         if let Some(from) = self.pen.pointer() {
             bands::paint(painter, canvas, from.at, &self.bands, p);
         }
-        self.pen.paint(painter, canvas, p);
+        self.pen.paint(painter, canvas, false, p);
     }
 }

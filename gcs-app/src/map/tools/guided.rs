@@ -123,7 +123,7 @@ impl Tool for Guided {
 
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
         if self.drawing != Some(Drawing::Place) {
-            self.pen.paint(painter, canvas, p);
+            self.pen.paint(painter, canvas, false, p);
         }
     }
 }

@@ -190,12 +190,12 @@ impl Pen {
         self.pointer.as_ref()
     }
 
-    /// Draws what there is, red if it can't be.
-    pub fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
+    /// Draws what there is, red if it can't be. `is_bad`: what comes of it could not be flown.
+    pub fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, is_bad: bool, p: &Palette) {
         let Some(first) = self.marks.first() else {
             return self.paint_snap(painter, canvas, p);
         };
-        let colour = if self.fault.is_some() { p.warning } else { p.accent };
+        let colour = if is_bad || self.fault.is_some() { p.warning } else { p.accent };
         let parts = polyline::visible_parts(&self.outline(first.at), canvas.view);
         polyline::draw(painter, &parts, Stroke::new(2.0, colour), Style::Dashed, p.halo);
         for mark in &self.marks {

@@ -183,6 +183,6 @@ impl Tool for PlaceProcedure {
         // it begins and ends about its anchor
         let anchor = self.pen.last().or(self.pen.pointer().map(|mark| mark.at));
         anchor.into_iter().for_each(|from| bands::paint(painter, canvas, from, &self.bands, p));
-        self.pen.paint(painter, canvas, p);
+        self.pen.paint(painter, canvas, false, p);
     }
 }

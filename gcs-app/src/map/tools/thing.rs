@@ -116,7 +116,7 @@ impl Tool for DrawRunway {
     }
 
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
-        self.pen.paint(painter, canvas, p);
+        self.pen.paint(painter, canvas, false, p);
     }
 }
 
@@ -253,6 +253,6 @@ impl Tool for DrawZone {
     }
 
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
-        self.pen.paint(painter, canvas, p);
+        self.pen.paint(painter, canvas, false, p);
     }
 }
