@@ -4,6 +4,7 @@ use super::{App, Now};
 use crate::document::Document;
 use crate::forecast::{Analysis, Question};
 use crate::link::{BACKLOG, Call};
+use crate::panels::problems;
 use crate::state::{LOOK_AHEAD, READ_ABOARD, VehicleName};
 
 impl App {
@@ -62,6 +63,7 @@ impl App {
         if self.analysis.document != document {
             self.analysis = Analysis::default();
         }
+        self.select_first_error(ctx);
         self.drain_layers(ctx);
         self.worker.ask(Question {
             document,
@@ -71,6 +73,22 @@ impl App {
             alarm: self.view.alarm_at_cursor(),
             coverage: self.view.coverage,
         });
+    }
+
+    /// In a plan that was opened or imported with errors, what the gravest one is of, once that is known.
+    fn select_first_error(&mut self, ctx: &egui::Context) {
+        let (analysis, document) = (&self.analysis, &self.document);
+        let is_known = (analysis.document, analysis.version) == (document.id(), document.version());
+        if self.looked_through == document.id() || !is_known || !analysis.reviewed {
+            return;
+        }
+        self.looked_through = document.id();
+        // one that was drawn here, or is shown as it is aboard, was not brought
+        let is_brought = !document.is_nobodys() && !document.can_undo();
+        if is_brought && self.view.selection.is_none() {
+            let first = problems::first_in_error(&self.scene(Now::read(ctx)));
+            self.view.select(first);
+        }
     }
 
     /// A window without a plan of its own shows the one that is aboard, also when another changes it there.

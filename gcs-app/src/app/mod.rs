@@ -94,6 +94,8 @@ pub struct App {
     tour_seen: bool,
     /// What a demo tells, and where it had come to in the last frame.
     story: Option<(Story, Chapter)>,
+    /// The document whose first error was selected, if it has one; 0: none.
+    looked_through: u64,
 }
 
 impl std::fmt::Debug for App {
@@ -178,6 +180,7 @@ impl App {
             screenshot: None,
             tour_seen: remembered.tour_seen,
             story: None,
+            looked_through: 0,
         };
         app.map.fit();
         Ok(app)

@@ -4,7 +4,7 @@ use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme;
 use egui::text::{LayoutJob, TextWrapping};
-use egui::{FontId, RichText, ScrollArea, Sense, Shape, TextFormat, Ui, UiBuilder, vec2};
+use egui::{FontId, Response, RichText, ScrollArea, Sense, Shape, TextFormat, Ui, UiBuilder, vec2};
 use flight_plan::{Edit, FlightPlan, Id, Problem, Verdict, diff};
 
 /// The panel.
@@ -12,6 +12,8 @@ use flight_plan::{Edit, FlightPlan, Id, Problem, Verdict, diff};
 pub struct Problems {
     /// The problem that is shown with all that there is to say of it.
     open: Option<String>,
+    /// What was selected when it was last drawn.
+    selected: Option<Selection>,
 }
 
 impl Panel for Problems {
@@ -33,7 +35,9 @@ impl Panel for Problems {
         }
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        list(ui, scene, &mut self.open, queue);
+        let is_news = self.selected != scene.view.selection;
+        self.selected.clone_from(&scene.view.selection);
+        list(ui, scene, &mut self.open, is_news, queue);
     }
 }
 
@@ -45,15 +49,21 @@ const ROWS: usize = 2;
 /// So many changes of a remedy are told before it is made.
 const MOST_CHANGES: usize = 8;
 
-fn list(ui: &mut Ui, scene: &Scene<'_>, open: &mut Option<String>, queue: &mut Queue) {
-    let mut problems: Vec<&Problem> = scene.problems().collect();
-    problems.sort_by_key(|problem| problem.rank());
+/// `is_news`: something else was selected than in the last frame; the first problem with it comes into view.
+fn list(ui: &mut Ui, scene: &Scene<'_>, open: &mut Option<String>, mut is_news: bool, queue: &mut Queue) {
+    let problems = ranked(scene);
     verdict(ui, scene, &problems);
     let mut pointed = None;
     ScrollArea::vertical().id_salt("problems").auto_shrink(false).show(ui, |ui| {
         for (number, problem) in problems.iter().take(MOST).enumerate() {
-            if row(ui, scene, (number, problem), open, queue) {
+            let response = row(ui, scene, (number, problem), open, queue);
+            if response.hovered() {
                 pointed.clone_from(&problem.subject);
+            }
+            let is_selected = || subject(scene, problem).is_some_and(|of| scene.is_selected(&of));
+            if is_news && is_selected() {
+                response.scroll_to_me(None);
+                is_news = false;
             }
         }
         if let Some(more) = problems.len().checked_sub(MOST).filter(|more| *more > 0) {
@@ -63,6 +73,23 @@ fn list(ui: &mut Ui, scene: &Scene<'_>, open: &mut Option<String>, queue: &mut Q
     if scene.view.pointed != pointed {
         queue.view(ViewCommand::PointOut(pointed));
     }
+}
+
+/// The problems of the plan, the gravest first.
+fn ranked<'a>(scene: &Scene<'a>) -> Vec<&'a Problem> {
+    let mut problems: Vec<&Problem> = scene.problems().collect();
+    problems.sort_by_key(|problem| problem.rank());
+    problems
+}
+
+/// What is in error, by the gravest error of the plan that is of something.
+pub fn first_in_error(scene: &Scene<'_>) -> Option<Selection> {
+    ranked(scene).into_iter().filter(|problem| problem.is_error()).find_map(|problem| subject(scene, problem))
+}
+
+/// What a problem is with.
+fn subject(scene: &Scene<'_>, problem: &Problem) -> Option<Selection> {
+    find(scene.document.plan(), problem.subject.as_ref()?)
 }
 
 /// Whether the plan can be flown: green only if nothing at all is to be considered first.
@@ -84,18 +111,18 @@ fn is_reviewed(scene: &Scene<'_>) -> bool {
     scene.analysis.version == scene.document.version() && scene.analysis.reviewed
 }
 
-/// Whether the pointer is on it.
+/// The whole of it.
 fn row(
     ui: &mut Ui,
     scene: &Scene<'_>,
     (number, problem): (usize, &Problem),
     open: &mut Option<String>,
     queue: &mut Queue,
-) -> bool {
+) -> Response {
     let p = theme::of(ui);
     let plan = scene.document.plan();
     let message = told(plan, problem);
-    let selection = problem.subject.as_ref().and_then(|id| find(plan, id));
+    let selection = subject(scene, problem);
     let is_selected = selection.as_ref().is_some_and(|selection| scene.is_selected(selection));
     let whole = UiBuilder::new().id_salt(("problem", number)).sense(Sense::click());
     let shown = ui.scope_builder(whole, |ui| {
@@ -119,7 +146,7 @@ fn row(
     {
         queue.view(ViewCommand::JumpTo(selection));
     }
-    response.hovered()
+    response
 }
 
 /// Its symbol, its headline or all of its text, and below that its remedy. True: that is asked for.

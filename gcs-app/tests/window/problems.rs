@@ -1,5 +1,6 @@
 //! What is wrong with a plan, as people read and find it.
 
+use super::filing::window_on;
 use super::{SQUARE, Window};
 use egui::vec2;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -117,6 +118,27 @@ fn the_button_in_a_problem_is_not_the_problem() {
     assert_eq!(window.app().view().selection, before);
     let altitude = window.plan().leg(&"side2".into()).unwrap().leg.altitude.clone().unwrap();
     assert_eq!(altitude.reference.name(), "home");
+}
+
+#[test]
+fn the_first_error_of_a_plan_that_is_opened_is_selected_and_problems_follow_the_selection() {
+    let folder = tempfile::tempdir().unwrap();
+    let legs: String = (0..10).map(|i| format!(r#"<TF id="bad{i}" fix="NOWHERE{i}"/>"#)).collect();
+    let side = r#"<TF id="side2" fix="B"/>"#;
+    let bad = SQUARE.replacen(side, &format!("{side}{legs}"), 1);
+    let mut window = window_on(&folder.path().join("bad.xml"), &bad);
+    window.until_analysed();
+    assert_eq!(window.selected(), "bad0");
+    let bottom = |window: &Window| {
+        window.harness.query_all_by_label_contains("Problem: bad9").next().unwrap().rect().bottom()
+    };
+    assert!(bottom(&window) > 800.0, "it is out of view: {}", bottom(&window));
+    window.click("TF bad9");
+    // it scrolls there step by step
+    window.steps(30);
+    assert!(bottom(&window) < 800.0, "{}", bottom(&window));
+    window.press(egui::Key::Escape);
+    assert_eq!(window.selected(), "", "it is selected once");
 }
 
 /// On the map and on the profile; what is in order has no red.
