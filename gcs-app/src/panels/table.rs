@@ -6,6 +6,7 @@ mod rows;
 pub(super) mod typed;
 
 use super::in_place::{InPlace, Typed};
+use super::tree::menu;
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::theme;
@@ -247,8 +248,8 @@ impl Table {
                     Some(Row::Stage(stage)) => heading(&mut row, whole, scene, stage, queue),
                     other => {
                         if let Some(entry) = other.and_then(|other| other.entry(scene.forecast())) {
-                            done =
-                                self.leg(&mut row, whole, scene, &entry).map(|d| (index, d)).or(done.take());
+                            let drawn = self.leg(&mut row, whole, scene, &entry, queue);
+                            done = drawn.map(|done| (index, done)).or(done.take());
                         }
                     }
                 }
@@ -266,10 +267,12 @@ impl Table {
         whole: Rect,
         scene: &Scene<'_>,
         entry: &Entry<'_>,
+        queue: &mut Queue,
     ) -> Option<(Column, Done)> {
         let index = row.index();
         let said = self.said_of(scene, entry);
-        row.set_selected(scene.is_selected(&part(scene, entry)));
+        let part = part(scene, entry);
+        row.set_selected(scene.is_selected(&part));
         let mut done = None;
         let mut columns = Column::ALL.into_iter();
         for (number, text) in cells(scene, entry, &said).into_iter().enumerate() {
@@ -294,6 +297,7 @@ impl Table {
                     let is_current = (self.cursor.row, self.cursor.column) == (index, column);
                     let name = format!("{} of {}", column.name(), entry.leg);
                     let response = cell(ui, (index, column), is_current, text, &name);
+                    response.context_menu(|ui| menu::show(ui, scene, &part, queue));
                     if response.double_clicked() {
                         done = Some((column, Done::Edited));
                     } else if response.clicked() {
@@ -305,7 +309,9 @@ impl Table {
                 }
             });
         }
-        if done.is_none() && row.response().clicked() {
+        let response = row.response();
+        response.context_menu(|ui| menu::show(ui, scene, &part, queue));
+        if done.is_none() && response.clicked() {
             done = Some((self.cursor.column, Done::Chosen));
         }
         done

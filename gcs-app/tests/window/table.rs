@@ -95,6 +95,26 @@ fn names_altitudes_and_speeds_are_typed_into_the_table() {
 }
 
 #[test]
+fn a_right_click_on_a_row_offers_what_one_in_the_tree_does() {
+    let mut window = opened(SQUARE);
+    for (role, at, entry) in
+        [(Role::Button, "Altitude of side2", "Put into a loop"), (Role::Label, "Stage circuit", "Rename")]
+    {
+        let at = window.harness.get_by_role_and_label(role, at).rect().center();
+        window.right_click_at(at);
+        assert!(window.shows(entry) && window.shows("Move up"), "{entry}");
+        window.press(Key::Escape);
+    }
+    let time = window.harness.get_by_role_and_label(Role::Label, "ETE").rect().center().x;
+    window.right_click_at(Pos2::new(time, window.cell("Airspeed of side2").y));
+    window.click_beginning("Duplicate");
+    window.steps(3);
+    assert_eq!(window.plan().stage(&"circuit".into()).unwrap().legs.len(), 5, "where nothing is typed too");
+    window.click("Undo");
+    assert!(!window.is_enabled("Undo"), "one step");
+}
+
+#[test]
 fn legs_that_are_selected_are_changed_together_by_keyboard() {
     let mut window = opened(SQUARE);
     let before = window.plan();

@@ -5,7 +5,7 @@ use super::rows::Why;
 use super::typed::Column;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::panels::Scene;
-use crate::panels::tree::title;
+use crate::panels::tree::{menu, title};
 use crate::theme;
 use egui::{Align2, FontId, Id as WidgetId, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui};
 use egui_extras::TableRow;
@@ -54,7 +54,8 @@ pub(super) fn heading(
     stage: &Id,
     queue: &mut Queue,
 ) {
-    row.set_selected(scene.is_selected(&Selection::Stage(stage.clone())));
+    let part = Selection::Stage(stage.clone());
+    row.set_selected(scene.is_selected(&part));
     let name = scene.document.plan().stage(stage).map_or("", |stage| stage.name.as_str());
     let name = title(name, stage.as_str());
     row.col(|ui| {
@@ -68,7 +69,9 @@ pub(super) fn heading(
     for _ in 1..Column::COUNT {
         row.col(|_| {});
     }
-    if row.response().clicked() {
-        queue.view(ViewCommand::Select(Some(Selection::Stage(stage.clone()))));
+    let response = row.response();
+    response.context_menu(|ui| menu::show(ui, scene, &part, queue));
+    if response.clicked() {
+        queue.view(ViewCommand::Select(Some(part)));
     }
 }
