@@ -118,19 +118,8 @@ fn here(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) ->
 
 /// What can be done with a thing.
 fn with(ui: &mut Ui, scene: &Scene<'_>, thing: &Selection, queue: &mut Queue) {
-    let plan = scene.document.plan();
     if !scene.is_selected(thing) && ui.button("Select it").clicked() {
         queue.view(ViewCommand::Select(Some(thing.clone())));
-    }
-    let variable = match thing {
-        Selection::Fix(fix) => create::variable_of_fix(plan, fix),
-        _ => None,
-    };
-    if let Some((made, edit)) = variable
-        && ui.button("Make its place a variable").on_hover_text("Services can move it in flight").clicked()
-    {
-        queue.edit(edit);
-        queue.view(ViewCommand::Select(Some(Selection::Variable(made))));
     }
     tree_menu::show(ui, scene, thing, queue);
 }

@@ -68,7 +68,8 @@ fn what_is_under_the_pointer_has_its_own_menu() {
     let entry = window.harness.get_all_by_label("Fix A").last().unwrap();
     entry.click();
     window.steps(3);
-    window.click("Make its place a variable");
+    window.click_beginning("Make its place a variable");
+    window.steps(3);
     assert_eq!(window.selected(), "at_a");
     let plan = window.plan();
     assert!(plan.fix(&"A".into()).is_none() && plan.variable(&"at_a".into()).is_some());
@@ -80,6 +81,24 @@ fn what_is_under_the_pointer_has_its_own_menu() {
     assert_eq!(window.errors(), Vec::<String>::new());
     window.click("Undo");
     assert!(window.plan().fix(&"A".into()).is_some(), "one step");
+}
+
+#[test]
+fn the_place_of_a_fix_is_made_a_variable_from_tree_and_palette_too() {
+    for by_palette in [false, true] {
+        let mut window = window();
+        match by_palette {
+            false => window.row_menu(("FIX A", 0), "Make its place a variable"),
+            true => {
+                window.select_row(("FIX A", 0));
+                window.ask_for("make its place a variable");
+                window.press(Key::Enter);
+            }
+        }
+        window.steps(3);
+        assert_eq!(window.selected(), "at_a", "by palette: {by_palette}");
+        assert!(window.plan().fix(&"A".into()).is_none());
+    }
 }
 
 #[test]

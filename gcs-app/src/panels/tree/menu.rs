@@ -186,12 +186,22 @@ pub fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
             Entry::shifting("Move down", "Ctrl+Down", create::shift_stage(plan, stage, 1)),
             Entry::new("Delete", "Del", create::remove(plan, stage)),
         ],
-        other => vec![
-            Entry::shifting("Move up", "Ctrl+Up", create::shift_thing(plan, other.id(), -1)),
-            Entry::shifting("Move down", "Ctrl+Down", create::shift_thing(plan, other.id(), 1)),
-            Entry::new("Delete", "Del", create::remove(plan, other.id())),
-        ],
+        Selection::Fix(fix) => {
+            let made = create::variable_of_fix(plan, fix);
+            let bind = Entry::making("Make its place a variable", made, Selection::Variable, GONE);
+            std::iter::once(bind).chain(of_thing(plan, fix)).collect()
+        }
+        other => of_thing(plan, other.id()).into(),
     }
+}
+
+/// Of what is in a list of the plan and is not flown itself.
+fn of_thing(plan: &FlightPlan, thing: &Id) -> [Entry; 3] {
+    [
+        Entry::shifting("Move up", "Ctrl+Up", create::shift_thing(plan, thing, -1)),
+        Entry::shifting("Move down", "Ctrl+Down", create::shift_thing(plan, thing, 1)),
+        Entry::new("Delete", "Del", create::remove(plan, thing)),
+    ]
 }
 
 /// Of several legs that are selected.
