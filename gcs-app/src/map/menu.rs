@@ -13,7 +13,7 @@ use crate::units;
 use egui::containers::menu::menu_style;
 use egui::{Layout, Popup, PopupAnchor, PopupKind, Pos2, RichText, Ui, ViewportCommand};
 use flight_plan::create::{self, Drawn, LegChoice};
-use flight_plan::{Edit, Id, Place, Thing, Value};
+use flight_plan::{Edit, Id, Place, Thing, Value, Variable, VariableValue};
 use geometry::LatLon;
 use new_leg::{Aim, Side};
 
@@ -112,6 +112,7 @@ fn here(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) ->
     }
     ui.separator();
     what_happens_here(ui, canvas, opened.at, queue);
+    place_is_here(ui, canvas.scene, opened.place, queue);
     what_is_here(ui, canvas, opened.place);
     pastes
 }
@@ -155,6 +156,25 @@ fn what_happens_here(ui: &mut Ui, canvas: &Canvas<'_>, at: Pos2, queue: &mut Que
             if ui.button(cause_name(cause)).clicked() {
                 queue.preview(PreviewCommand::Scrub(Some(time_s)));
                 queue.preview(PreviewCommand::Raise(Some(cause)));
+                queue.view(ViewCommand::ShowPanel(what_if::ID, true));
+            }
+        }
+    });
+}
+
+/// A place that the plan gets from a variable is here, in another world than the plan's.
+fn place_is_here(ui: &mut Ui, scene: &Scene<'_>, at: LatLon, queue: &mut Queue) {
+    let is_place = |variable: &&Variable| matches!(variable.initial, VariableValue::Position(_));
+    let mut places = scene.document.plan().variables.iter().filter(is_place).peekable();
+    if places.peek().is_none() {
+        return;
+    }
+    ui.menu_button("What if here is", |ui| {
+        for variable in places {
+            if ui.button(variable.name.as_str()).clicked() {
+                let mut world = scene.view.what_if.clone();
+                what_if::set_variable(&mut world, variable, VariableValue::Position(at));
+                queue.preview(PreviewCommand::WhatIf(Box::new(world)));
                 queue.view(ViewCommand::ShowPanel(what_if::ID, true));
             }
         }

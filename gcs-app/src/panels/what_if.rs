@@ -2,10 +2,13 @@
 //! unless that is asked for.
 
 mod here;
+mod variables;
+mod wind;
 mod words;
 mod world;
 
 pub use here::{CAUSES, cause_name, reach_name};
+pub use variables::set as set_variable;
 pub use words::{alarm as alarm_in_words, diversion, winds, world as in_words};
 
 use super::{Panel, PanelId, Place, Scene, timeline};

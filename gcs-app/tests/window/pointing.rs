@@ -102,6 +102,20 @@ fn the_place_of_a_fix_is_made_a_variable_from_tree_and_palette_too() {
 }
 
 #[test]
+fn a_place_of_the_plan_is_tried_where_the_menu_was_opened() {
+    let mut window = Window::open(super::whatif::FIRE_WATCH);
+    window.until_analysed();
+    let before = window.plan();
+    let here = window.centre("Map") + vec2(90.0, 60.0);
+    window.right_click_at(here);
+    window.click("What if here is");
+    window.click("fire_centre");
+    let tried = &window.app().view().what_if.variables;
+    assert!(matches!(tried[&Id::new("fire_centre")], flight_plan::VariableValue::Position(_)), "{tried:?}");
+    assert_eq!(window.plan(), before);
+}
+
+#[test]
 fn a_click_on_several_things_asks_which_is_meant() {
     let mut window = window();
     let at = window.centre("Map") + vec2(90.0, 60.0);

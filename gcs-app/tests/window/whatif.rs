@@ -7,7 +7,7 @@ use egui::vec2;
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::rehearse::{Act, Options, Reach, Scenario, Start, Trigger, When};
 use flight_exec::{Command, preview};
-use flight_plan::{Cause, VariableValue, compile};
+use flight_plan::{Cause, Id, VariableValue, compile};
 use gcs_app::app::App;
 use gcs_app::forecast::Coverage;
 use gcs_app::panels::what_if::{CAUSES, cause_name};
@@ -268,14 +268,53 @@ fn another_wind_aloft_changes_the_preview_and_says_so() {
     slide(&mut window, "Altitude aloft, AMSL", 400.0);
     slide(&mut window, "Wind aloft from", 240.0);
     slide(&mut window, "Wind aloft speed", 12.0);
-    let (amsl_m, wind) = window.app().view().what_if.aloft.unwrap();
+    let (amsl_m, wind) = window.app().view().what_if.aloft[0];
     assert!(amsl_m == 400.0 && (wind.speed_mps() - 12.0).abs() < 1e-6);
-    assert!((duration_s(&window) - calm_s).abs() > 5.0);
+    let with_one_s = duration_s(&window);
+    assert!((with_one_s - calm_s).abs() > 5.0);
     assert!(window.shows("calm at the runway, 12.0 m/s from 240° at 400 m AMSL"));
-    assert_eq!(window.plan(), before);
     choose(&mut window, "Another wind aloft");
+    slide(&mut window, "Altitude aloft 2, AMSL", 450.0);
+    slide(&mut window, "Wind aloft 2 speed", 2.0);
+    assert!(window.shows("12.0 m/s from 240° at 400 m AMSL, 2.0 m/s from 240° at 450 m AMSL"));
+    assert!((duration_s(&window) - with_one_s).abs() > 5.0);
+    assert_eq!(window.plan(), before);
+    choose(&mut window, "Give up the wind aloft");
+    assert_eq!(window.app().view().what_if.aloft.len(), 1);
+    choose(&mut window, "Give up the wind aloft");
     window.until("calm again", is_current);
     assert_eq!(duration_s(&window), calm_s);
+}
+
+#[test]
+fn texts_places_and_areas_are_tried_without_changing_the_plan() {
+    const OWN: &str = r#"</runways><variables>
+        <variable name="fire" type="position" initial="36.3200 -84.1500"/>
+        <variable name="field" type="polygon" initial="36.32 -84.15, 36.32 -84.14, 36.33 -84.14"/>
+        <variable name="crew" type="text" initial="north"/></variables>"#;
+    let text = SQUARE.replacen("</runways>", OWN, 1).replacen(r#"fix="B"/>"#, r#"at="= fire"/>"#, 1);
+    let mut window = opened(&text);
+    assert_eq!(window.errors(), Vec::<String>::new());
+    let (before, short_m) = (window.plan(), window.app().analysis().forecast.length_m());
+    assert_eq!(before.variables.len(), 3);
+    for (name, typed) in [
+        ("fire", "090° 900 m from A"),
+        ("field", "36.32 -84.15; 36.32 -84.14; 36.34 -84.14; 36.34 -84.15"),
+        ("crew", "south"),
+    ] {
+        window.harness.get_by_role_and_label(Role::TextInput, name).scroll_to_me();
+        window.steps(10);
+        window.fill_in(Role::TextInput, name, typed);
+    }
+    window.until("the other world", is_current);
+    let chosen = &window.app().view().what_if.variables;
+    assert_eq!(chosen.len(), 3, "{chosen:?}");
+    assert_eq!(chosen[&Id::new("crew")], VariableValue::Text("south".into()));
+    assert!(matches!(&chosen[&Id::new("field")], VariableValue::Polygon(corners) if corners.len() == 4));
+    assert_ne!(window.app().analysis().forecast.length_m(), short_m);
+    window.fill_in(Role::TextInput, "field", "36.32 -84.15; nowhere");
+    assert!(window.app().view().notice.as_ref().is_some_and(|why| why.contains("nowhere")));
+    assert_eq!(window.plan(), before);
 }
 
 #[test]

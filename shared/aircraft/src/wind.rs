@@ -50,25 +50,43 @@ impl Wind {
     }
 }
 
-/// The wind by height: one at a lower altitude, one at a higher; in between in proportion, beyond them as there.
+/// Most altitudes at which the wind is told.
+const MOST: usize = 8;
+
+/// The wind by height: at some altitudes one each; between two in proportion, below the lowest and above the highest as there.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Winds {
-    /// Altitude, metres AMSL, and the wind there.
-    low: (f64, Wind),
-    high: (f64, Wind),
+    /// Altitudes, metres AMSL, from below, and the winds there; the highest one fills what is left.
+    levels: [(f64, Wind); MOST],
 }
 
 impl Winds {
-    /// Two winds, each at its altitude, metres AMSL, in either order.
-    pub fn between(one: (f64, Wind), other: (f64, Wind)) -> Self {
-        if one.0 <= other.0 { Self { low: one, high: other } } else { Self { low: other, high: one } }
+    /// Most altitudes at which the wind is told.
+    pub const MOST: usize = MOST;
+
+    /// Winds, each at its altitude, metres AMSL, in any order; calm air where there is none. Of several at one altitude the first counts,
+    /// and those behind the first [`Winds::MOST`] are left out.
+    pub fn by_height(winds: impl IntoIterator<Item = (f64, Wind)>) -> Self {
+        let mut known: Vec<(f64, Wind)> = winds.into_iter().take(Self::MOST).collect();
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        known.dedup_by_key(|(altitude_amsl_m, _)| *altitude_amsl_m);
+        let highest = known.last().copied().unwrap_or_default();
+        let mut levels = [highest; Self::MOST];
+        levels.iter_mut().zip(known).for_each(|(level, wind)| *level = wind);
+        Self { levels }
     }
 
     /// The wind at an altitude, metres AMSL.
     pub fn at(&self, altitude_amsl_m: f64) -> Wind {
-        let (low, high) = (self.low.1, self.high.1);
-        let depth_m = self.high.0 - self.low.0;
-        let share = if depth_m > 0.0 { (altitude_amsl_m - self.low.0) / depth_m } else { 0.0 };
+        let above = self.levels.iter().skip(1);
+        let mut layers = self.levels.iter().zip(above);
+        let [.., (_, highest)] = self.levels;
+        let Some(((low_m, low), (high_m, high))) = layers.find(|(_, (high_m, _))| altitude_amsl_m < *high_m)
+        else {
+            return highest;
+        };
+        let depth_m = high_m - low_m;
+        let share = if depth_m > 0.0 { (altitude_amsl_m - low_m) / depth_m } else { 0.0 };
         let share = share.clamp(0.0, 1.0);
         Wind {
             east_mps: low.east_mps + share * (high.east_mps - low.east_mps),
@@ -80,7 +98,7 @@ impl Winds {
 impl From<Wind> for Winds {
     /// The same at every height.
     fn from(wind: Wind) -> Self {
-        Self { low: (0.0, wind), high: (0.0, wind) }
+        Self { levels: [(0.0, wind); Self::MOST] }
     }
 }
 
@@ -103,18 +121,38 @@ mod tests {
     #[test]
     fn between_two_heights_the_wind_is_in_between() {
         let (calm, west) = (Wind::CALM, Wind::from_direction(270.0, 8.0));
-        for winds in
-            [Winds::between((300.0, calm), (700.0, west)), Winds::between((700.0, west), (300.0, calm))]
-        {
+        for winds in [[(300.0, calm), (700.0, west)], [(700.0, west), (300.0, calm)]].map(Winds::by_height) {
             for (altitude_amsl_m, mps) in
                 [(-100.0, 0.0), (300.0, 0.0), (400.0, 2.0), (600.0, 6.0), (700.0, 8.0), (1e6, 8.0)]
             {
                 assert!((winds.at(altitude_amsl_m).speed_mps() - mps).abs() < 1e-9, "{altitude_amsl_m}");
             }
         }
-        for winds in [Winds::from(west), Winds::between((300.0, west), (300.0, calm))] {
+        for winds in [Winds::from(west), Winds::by_height([(300.0, west), (300.0, calm)])] {
             assert_eq!((winds.at(0.0), winds.at(300.0), winds.at(5e3)), (west, west, west));
         }
+    }
+
+    #[test]
+    fn the_wind_is_in_between_of_the_two_heights_beside_it() {
+        let west = |mps| Wind::from_direction(270.0, mps);
+        let winds = Winds::by_height([(1000.0, west(12.0)), (300.0, west(2.0)), (500.0, west(8.0))]);
+        for (altitude_amsl_m, mps) in [
+            (0.0, 2.0),
+            (300.0, 2.0),
+            (400.0, 5.0),
+            (500.0, 8.0),
+            (750.0, 10.0),
+            (1000.0, 12.0),
+            (1e4, 12.0),
+            (f64::NAN, 12.0),
+        ] {
+            let found = winds.at(altitude_amsl_m).speed_mps();
+            assert!((found - mps).abs() < 1e-9, "{altitude_amsl_m}: {found}");
+        }
+        let many = (0..100).map(|i| (f64::from(i), west(f64::from(i))));
+        assert!((Winds::by_height(many).at(1e4).speed_mps() - 7.0).abs() < 1e-9, "no more than it holds");
+        assert_eq!(Winds::by_height([]), Winds::default());
     }
 
     #[test]

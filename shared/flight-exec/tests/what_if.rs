@@ -50,7 +50,7 @@ fn wind_energy_values_and_decisions_change_the_flight_and_not_the_plan() {
     let standard = flown(&plan, &nothing);
     assert!(nothing.is_nothing() && standard.landed);
     let low = WhatIf { wind: Wind::from_direction(240.0, 8.0), ..WhatIf::default() };
-    let aloft = WhatIf { aloft: Some((1300.0, Wind::from_direction(240.0, 8.0))), ..WhatIf::default() };
+    let aloft = WhatIf { aloft: vec![(1300.0, Wind::from_direction(240.0, 8.0))], ..WhatIf::default() };
     let (all, high) = (flown(&plan, &low), flown(&plan, &aloft));
     assert!(all.time_s > standard.time_s + 10.0 && high.time_s > standard.time_s + 10.0);
     assert!((all.time_s - high.time_s).abs() > 1.0, "calm at the runway is another wind");

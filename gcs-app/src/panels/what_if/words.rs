@@ -19,19 +19,22 @@ fn wind(wind: Wind, units: Units) -> String {
 /// The winds by height.
 pub fn winds(what_if: &WhatIf, units: Units) -> String {
     let low = wind(what_if.wind, units);
-    match what_if.aloft {
-        Some((amsl_m, aloft)) => {
-            format!("{low} at the runway, {} at {} AMSL", wind(aloft, units), units.altitude().show(amsl_m))
-        }
-        None => low,
+    if what_if.aloft.is_empty() {
+        return low;
     }
+    let mut aloft = what_if.aloft.clone();
+    aloft.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let said = |(amsl_m, aloft): (f64, Wind)| {
+        format!(", {} at {} AMSL", wind(aloft, units), units.altitude().show(amsl_m))
+    };
+    std::iter::once(format!("{low} at the runway")).chain(aloft.into_iter().map(said)).collect()
 }
 
 /// Everything that is otherwise than the plan says, in one line; empty: nothing is.
 pub fn world(what_if: &WhatIf, plan: &FlightPlan, units: Units) -> String {
     let standard = WhatIf::default();
     let mut parts = Vec::new();
-    if (what_if.wind, what_if.aloft) != (standard.wind, standard.aloft) {
+    if what_if.wind != standard.wind || what_if.aloft != standard.aloft {
         parts.push(format!("wind {}", winds(what_if, units)));
     }
     if let Some(start) = what_if.start_unix_s.and_then(|s| jiff::Timestamp::from_second(s).ok()) {
@@ -144,8 +147,9 @@ mod tests {
         let expected =
             "wind 8.0 m/s from 240° · start 06:00 UTC · 80 % energy at the start · size 700.0 · ask: close";
         assert_eq!(words(&what_if), expected);
-        let aloft = WhatIf { aloft: Some((900.0, what_if.wind)), ..WhatIf::default() };
-        assert_eq!(words(&aloft), "wind calm at the runway, 8.0 m/s from 240° at 900 m AMSL");
+        let aloft = WhatIf { aloft: vec![(900.0, what_if.wind), (600.0, Wind::CALM)], ..WhatIf::default() };
+        let expected = "wind calm at the runway, calm at 600 m AMSL, 8.0 m/s from 240° at 900 m AMSL";
+        assert_eq!(words(&aloft), expected, "from below");
     }
 
     #[test]

@@ -1,41 +1,24 @@
 //! Wind, energy and start time; values and branches.
 
-use super::{remark, reset_button};
+use super::{remark, reset_button, variables, wind};
 use crate::command::{PreviewCommand, Queue};
 use crate::panels::problems::told;
 use crate::panels::{Scene, field, group_title};
 use crate::theme;
 use crate::units::Unit;
-use aircraft::Wind;
 use egui::{RichText, Slider, Ui};
 use flight_exec::rehearse::WhatIf;
-use flight_plan::{FlightPlan, Id, LegKind, Section, Variable, VariableValue};
+use flight_plan::{FlightPlan, Id, LegKind, Section};
 use std::ops::RangeInclusive;
 
-/// Strongest wind that can be chosen, m/s.
-const MAX_WIND_MPS: f64 = 30.0;
-/// Another wind aloft begins so far above the runway, metres; it can be chosen up to [`HIGHEST_M`] above it.
-const ALOFT_M: f64 = 500.0;
-const HIGHEST_M: f64 = 4000.0;
 const MINUTES_OF_DAY: i64 = 24 * 60;
 const PERCENT: Unit = Unit { symbol: "%", per_si: 100.0, decimals: 0 };
-const DEGREES: Unit = Unit { symbol: "°", per_si: 1.0, decimals: 0 };
 
 /// Wind, energy and start time.
 pub fn air(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     group_title(ui, "Air and energy");
     let mut chosen = scene.view.what_if.clone();
-    wind(ui, scene, "Wind", &mut chosen.wind);
-    let ground_m = scene.document.plan().home().map_or(0.0, |runway| runway.elevation_amsl_m);
-    let mut by_height = chosen.aloft.is_some();
-    if ui.checkbox(&mut by_height, "Another wind aloft").changed() {
-        chosen.aloft = by_height.then(|| ((ground_m + ALOFT_M).round(), chosen.wind));
-    }
-    if let Some((amsl_m, aloft)) = &mut chosen.aloft {
-        let heights = ground_m + 50.0..=ground_m + HIGHEST_M;
-        si_slider(ui, "Altitude aloft, AMSL", amsl_m, heights, scene.units().altitude());
-        wind(ui, scene, "Wind aloft", aloft);
-    }
+    wind::show(ui, scene, &mut chosen);
     let mut percent = chosen.energy_share * 100.0;
     let energy = Slider::new(&mut percent, 10.0..=100.0).suffix(" %").fixed_decimals(0);
     if slider(ui, energy.text("Energy at start"), PERCENT) {
@@ -54,7 +37,13 @@ fn send(scene: &Scene<'_>, chosen: WhatIf, queue: &mut Queue) {
 }
 
 /// A slider for a value in SI that is shown in a unit.
-fn si_slider(ui: &mut Ui, name: &str, si: &mut f64, range: RangeInclusive<f64>, unit: Unit) -> bool {
+pub(super) fn si_slider(
+    ui: &mut Ui,
+    name: &str,
+    si: &mut f64,
+    range: RangeInclusive<f64>,
+    unit: Unit,
+) -> bool {
     let shown = unit.from_si(*range.start())..=unit.from_si(*range.end());
     let mut value = unit.from_si(*si);
     let bar = Slider::new(&mut value, shown).suffix(format!(" {}", unit.symbol));
@@ -66,7 +55,7 @@ fn si_slider(ui: &mut Ui, name: &str, si: &mut f64, range: RangeInclusive<f64>, 
 }
 
 /// A slider whose number can be typed in any unit of its kind; true: it has another value.
-fn slider(ui: &mut Ui, slider: Slider<'_>, unit: Unit) -> bool {
+pub(super) fn slider(ui: &mut Ui, slider: Slider<'_>, unit: Unit) -> bool {
     slider_reading(ui, slider, |text| unit.read(text))
 }
 
@@ -76,28 +65,6 @@ fn slider_reading(ui: &mut Ui, slider: Slider<'_>, read: impl Fn(&str) -> Result
     let response = ui.add(slider);
     typed.tell(ui, &response);
     response.changed()
-}
-
-fn wind(ui: &mut Ui, scene: &Scene<'_>, name: &str, wind: &mut Wind) {
-    let (mut speed_mps, mut from_deg) = (wind.speed_mps(), direction(ui, name, *wind));
-    let unit = scene.units().speed();
-    let mut changed = si_slider(ui, &format!("{name} speed"), &mut speed_mps, 0.0..=MAX_WIND_MPS, unit);
-    let from = Slider::new(&mut from_deg, 0.0..=359.0).suffix("°").fixed_decimals(0);
-    changed |= slider(ui, from.text(format!("{name} from")), DEGREES);
-    if changed {
-        *wind = Wind::from_direction(from_deg, speed_mps);
-        ui.data_mut(|d| d.insert_temp(direction_id(name), from_deg));
-    }
-}
-
-/// Where it comes from; calm air keeps the direction that was chosen.
-fn direction(ui: &Ui, name: &str, wind: Wind) -> f64 {
-    let kept = || ui.data(|d| d.get_temp(direction_id(name))).unwrap_or(0.0);
-    if wind.speed_mps() > 1e-6 { wind.direction_from_deg().round() % 360.0 } else { kept() }
-}
-
-fn direction_id(name: &str) -> egui::Id {
-    egui::Id::unique(("wind from", name.to_owned()))
 }
 
 /// The time of day matters for zones that are not always active.
@@ -141,7 +108,7 @@ fn problems(ui: &mut Ui, scene: &Scene<'_>) {
     let new: Vec<_> = found.iter().filter(|problem| !known(&problem.message)).collect();
     let p = theme::of(ui);
     let world = &scene.view.what_if;
-    let is_reviewed = world.aloft.is_none() && world.energy_share >= 1.0 && world.decisions.is_empty();
+    let is_reviewed = world.aloft.is_empty() && world.energy_share >= 1.0 && world.decisions.is_empty();
     if new.is_empty() && is_reviewed {
         return remark(ui, "✔ The review finds nothing more in this world.");
     }
@@ -164,7 +131,7 @@ pub fn choices(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let mut chosen = scene.view.what_if.clone();
     group_title(ui, "Variables");
     for variable in &plan.variables {
-        self::variable(ui, variable, &mut chosen);
+        variables::show(ui, scene, variable, &mut chosen, queue);
     }
     if plan.variables.is_empty() {
         remark(ui, "This plan has none.");
@@ -175,42 +142,6 @@ pub fn choices(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
     send(scene, chosen, queue);
     take(ui, scene, queue);
-}
-
-fn variable(ui: &mut Ui, variable: &Variable, chosen: &mut WhatIf) {
-    let value = chosen.variables.get(&variable.name).unwrap_or(&variable.initial);
-    let name = variable.name.as_str();
-    let new = match value {
-        VariableValue::Number(number) => {
-            let mut number = *number;
-            let range = range_of(variable, number);
-            let bar = Slider::new(&mut number, range).max_decimals(2).text(name);
-            let suffix = if variable.unit.is_empty() { String::new() } else { format!(" {}", variable.unit) };
-            let changed = slider(ui, bar.suffix(suffix), Unit::of_symbol(&variable.unit));
-            changed.then_some(VariableValue::Number(number))
-        }
-        VariableValue::Bool(yes) => {
-            let mut yes = *yes;
-            ui.checkbox(&mut yes, name).changed().then_some(VariableValue::Bool(yes))
-        }
-        VariableValue::Text(_) | VariableValue::Position(_) | VariableValue::Polygon(_) => {
-            remark(ui, &format!("{name}: a {}, changed on the map or in the inspector", value.type_name()));
-            None
-        }
-    };
-    match new {
-        Some(new) if new == variable.initial => drop(chosen.variables.remove(&variable.name)),
-        Some(new) => drop(chosen.variables.insert(variable.name.clone(), new)),
-        None => {}
-    }
-}
-
-/// Its bounds; where it has none, as far again as its value is from zero.
-fn range_of(variable: &Variable, number: f64) -> RangeInclusive<f64> {
-    let initial = if let VariableValue::Number(initial) = variable.initial { initial } else { number };
-    let reach = initial.abs().max(10.0);
-    let (low, high) = (variable.min.unwrap_or(initial - reach), variable.max.unwrap_or(initial + reach));
-    low.min(number)..=high.max(number)
 }
 
 /// Which branch is taken at each fork of the main plan; false: there is none.
@@ -281,14 +212,5 @@ mod tests {
         for bad in ["", "6", "24:00", "12:60", "a:b", "-1:00"] {
             assert_eq!(minutes_of(bad), None, "{bad}");
         }
-    }
-
-    #[test]
-    fn a_slider_keeps_within_the_bounds_of_its_variable() {
-        let mut size = Variable::new("size".into(), VariableValue::Number(600.0));
-        assert_eq!(range_of(&size, 600.0), 0.0..=1200.0);
-        (size.min, size.max) = (Some(100.0), Some(900.0));
-        assert_eq!(range_of(&size, 600.0), 100.0..=900.0);
-        assert_eq!(range_of(&size, 950.0), 100.0..=950.0, "a value that is there is shown");
     }
 }

@@ -12,8 +12,9 @@ use std::sync::Arc;
 pub struct WhatIf {
     /// The wind at the runway, and up to any height unless there is another one aloft.
     pub wind: Wind,
-    /// Another wind at an altitude (metres AMSL) and above; in between in proportion.
-    pub aloft: Option<(f64, Wind)>,
+    /// Other winds at altitudes (metres AMSL), in any order, [`WhatIf::MOST_ALOFT`] at most; in between in proportion, above the
+    /// highest as there.
+    pub aloft: Vec<(f64, Wind)>,
     /// When the flight starts, seconds since 1970-01-01T00:00:00Z; `None`: zones are taken as always active.
     pub start_unix_s: Option<i64>,
     /// Share of the energy that is there at the start, 0..=1.
@@ -28,7 +29,7 @@ impl Default for WhatIf {
     fn default() -> Self {
         Self {
             wind: Wind::CALM,
-            aloft: None,
+            aloft: Vec::new(),
             start_unix_s: None,
             energy_share: 1.0,
             variables: BTreeMap::new(),
@@ -38,6 +39,9 @@ impl Default for WhatIf {
 }
 
 impl WhatIf {
+    /// Most winds aloft.
+    pub const MOST_ALOFT: usize = Winds::MOST - 1;
+
     /// Nothing is otherwise than the plan says.
     pub fn is_nothing(&self) -> bool {
         *self == Self::default()
@@ -46,12 +50,7 @@ impl WhatIf {
     /// The winds of a flight from a plan's home.
     pub fn winds(&self, plan: &FlightPlan) -> Winds {
         let ground_amsl_m = plan.home().map_or(0.0, |runway| runway.elevation_amsl_m);
-        match self.aloft {
-            Some((altitude_amsl_m, wind)) => {
-                Winds::between((ground_amsl_m, self.wind), (altitude_amsl_m, wind))
-            }
-            None => self.wind.into(),
-        }
+        Winds::by_height(std::iter::once((ground_amsl_m, self.wind)).chain(self.aloft.iter().copied()))
     }
 
     /// What is done on the way.
