@@ -347,6 +347,18 @@ fn window_with_unsaved_changes_asks_before_it_closes() {
     assert!(!window.shows("The window is about to close"));
 }
 
+#[test]
+fn a_new_mission_begins_where_the_vehicle_is() {
+    let mut window = Window::open(EMPTY);
+    window.steps(3);
+    assert!(!window.shows("Where the vehicle is"), "there is none");
+    window.connect();
+    window.steps(3);
+    window.click("Where the vehicle is");
+    let vehicle = window.app().vehicle().position.as_ref().unwrap().value.position;
+    assert_eq!(guide(&window).threshold, Some(vehicle));
+}
+
 /// No elevations are loaded there.
 #[test]
 fn an_airport_gives_the_runway_and_the_ground_of_a_new_mission() {

@@ -3,9 +3,11 @@
 use super::dock::Memory;
 use super::reach::Missing as Dropped;
 use super::{SQUARE, Window};
+use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, vec2};
 use std::path::Path;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 fn window() -> Window {
     let mut window = Window::open(SQUARE);
@@ -143,6 +145,30 @@ fn elevations_that_are_dropped_are_what_the_plan_is_looked_at_over() {
     assert!(window.shows("1 tile, 1 unreadable and left out"));
     window.click("hills");
     window.until("the shipped ground", |app| app.analysis().problems.iter().all(|p| !p.is_error()));
+}
+
+/// They say where one looks before there is any plan.
+#[test]
+fn cities_and_airports_have_their_names_on_the_map() {
+    let mut window = Window::open(super::creating::EMPTY);
+    window.steps(3);
+    assert_eq!(window.colour_within("Map", "Innsbruck"), None, "it is too small for the map of the world");
+    window.fill_in(Role::TextInput, "Place", "47.26 11.37");
+    window.steps(3);
+    for name in ["Innsbruck", "LOWI"] {
+        assert!(window.colour_within("Map", name).is_some(), "{name}");
+    }
+}
+
+#[test]
+fn the_ground_is_shaded_where_its_elevations_are_known() {
+    let mut window = Window::open(SQUARE);
+    let deadline = Instant::now() + Duration::from_secs(20);
+    while window.pictures_within("Map") == 0 {
+        assert!(Instant::now() < deadline, "the ground has no shades");
+        window.steps(1);
+        std::thread::yield_now();
+    }
 }
 
 #[test]

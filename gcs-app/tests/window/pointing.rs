@@ -5,7 +5,7 @@ use super::{SQUARE, Window};
 use egui::{Key, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_plan::create::LegChoice;
-use flight_plan::{Id, Place, Value};
+use flight_plan::{Cause, Id, Place, Value};
 
 #[test]
 fn a_right_click_puts_a_leg_where_the_pointer_is() {
@@ -99,6 +99,35 @@ fn the_place_of_a_fix_is_made_a_variable_from_tree_and_palette_too() {
         assert_eq!(window.selected(), "at_a", "by palette: {by_palette}");
         assert!(window.plan().fix(&"A".into()).is_none());
     }
+}
+
+/// Where the cursor of the preview is, as a share of the way from B to C.
+fn share_of_side3(window: &Window) -> f64 {
+    let cursor_s = window.app().view().cursor_s.unwrap();
+    let at = window.app().analysis().forecast.at(cursor_s).unwrap().position;
+    let [b, c] = ["B", "C"].map(|fix| window.plan().fix(&fix.into()).unwrap().position);
+    b.distance_m(at) / b.distance_m(c)
+}
+
+#[test]
+fn what_happens_at_a_place_is_asked_on_the_map_and_a_click_on_the_path_moves_it() {
+    let mut window = window();
+    let on_path = |window: &Window, share| window.centre("Fix B").lerp(window.centre("Fix C"), share);
+    let at = on_path(&window, 0.3);
+    window.right_click_at(at);
+    window.click("What happens here");
+    window.click("Link lost");
+    assert_eq!(window.app().view().alarm, Some(Cause::Link));
+    assert!((share_of_side3(&window) - 0.3).abs() < 0.05, "{}", share_of_side3(&window));
+    window.until("the way out", |app| app.analysis().diversion().is_some());
+    assert!(window.shows("Link lost: return"));
+    let at = on_path(&window, 0.6);
+    window.click_at(at);
+    assert!((share_of_side3(&window) - 0.6).abs() < 0.05, "{}", share_of_side3(&window));
+    // where no path is there is nothing to happen
+    let beside = window.centre("Map") + vec2(90.0, 60.0);
+    window.right_click_at(beside);
+    assert!(!window.shows("What happens here"));
 }
 
 #[test]

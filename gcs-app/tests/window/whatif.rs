@@ -176,6 +176,7 @@ fn the_way_out_goes_with_its_banner_and_with_its_cursor() {
         assert!(window.colour_within("Map", "glide").is_some(), "the legend says what the dashes are");
         let chip = window.harness.get_by_label_contains("What if: Engine failure at ").rect();
         let north = window.places_of(|text| text == "N");
+        assert!(!north.is_empty(), "the compass is on the map");
         assert!(north.iter().all(|north| !north.intersects(chip.expand(8.0))), "{north:?} {chip}");
         window.click(close);
         assert_eq!(window.colour_within("Map", "Engine failure: return, "), None, "{close}");
