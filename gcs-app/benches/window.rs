@@ -9,24 +9,33 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use gcs_app::app::App;
 use gcs_app::document::Document;
+use gcs_app::files::Disk;
+use gcs_app::forecast::{Forecast, Passage, Point};
 use gcs_app::link::Links;
-use gcs_app::map::polyline::Cached;
-use gcs_app::map::view::{Mercator, View};
+use gcs_app::map::view::View;
 use geometry::LatLon;
 use std::fmt::Write;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::thread::ThreadId;
 use std::time::{Duration, Instant};
-use terrain::Flat;
+use terrain::{Flat, Terrain};
 use walkers::{MapMemory, MercatorProjection, Projector, lat_lon};
 
 const SIZE: Vec2 = vec2(1280.0, 800.0);
 const FRAMES: usize = 60;
+/// Of the largest plan.
+const LEGS: usize = 10_000;
 
 fn main() {
-    println!("{:<44} {:>9} {:>9} {:>12}", "processor time of a frame", "mean", "promised", "naive/ours");
+    let heads = ["mean", "longest", "promised"];
+    let [mean, longest, promised] = heads.map(|head| format!("{head:>9}"));
+    println!("{:<40} {mean} {longest} {promised} {:>12}", "processor time of a frame", "naive/ours");
     plan_of(500, 500, [8.0, 4.0, 4.0]);
-    plan_of(10_000, 1, [16.0; 3]);
+    plan_of(LEGS, 1, [16.0; 3]);
     million_points();
+    at_work();
     idle();
 }
 
@@ -68,29 +77,113 @@ fn clipped(shape: Shape, view: &View) -> ClippedShape {
     }
 }
 
-/// A path that is longer than any preview: as the map's layer draws it, in a view that moves.
+/// A path that is longer than any preview, in the window; its legs are those of a plan.
 fn million_points() {
-    let line: Vec<Mercator> = (0..1_000_000)
-        .map(|i| LatLon::new(36.3 + 1e-5 * f64::from(i % 1000), -84.2 + 1e-6 * f64::from(i / 10)).into())
-        .collect();
-    let ctx = egui::Context::default();
-    let stroke = |parts: &[Vec<Pos2>], view: &View| {
-        let line = |part: &Vec<Pos2>| Shape::line(part.clone(), Stroke::new(2.0, Color32::WHITE));
-        let shapes = parts.iter().map(line).map(|shape| clipped(shape, view));
-        std::hint::black_box(ctx.tessellate(shapes.collect(), 1.0));
+    const POINTS: usize = 1_000_000;
+    let mut window = open(&plan(LEGS, 1));
+    // nothing more comes that would take its place
+    until(&mut window, |app| app.analysis().reviewed);
+    let at = |n: usize| LatLon::new(36.3 + 1e-5 * (n % 1000) as f64, -84.2 + 1e-6 * (n / 10) as f64);
+    let point = |n: usize| Point {
+        time_s: n as f64,
+        distance_m: n as f64 * 25.0,
+        position: at(n),
+        altitude_amsl_m: 500.0,
+        ground_amsl_m: Some(300.0),
+        passage: n / (POINTS / LEGS),
     };
-    // the fonts are loaded in the first frame
-    ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
-    let mut cached = Cached::default();
-    let times = (0..FRAMES).map(|i| {
-        let view = view(10.0 + i as f64 * 1e-3);
-        processor_time(|| stroke(cached.parts(|| line.clone(), 1, &view), &view))
+    let passage = |n: usize| Passage {
+        leg: format!("leg{}", n + 1).as_str().into(),
+        stage: "m".into(),
+        passes: Vec::new(),
+        reverse: false,
+        first: n * (POINTS / LEGS),
+        end: (n + 1) * (POINTS / LEGS),
+        energy_left: 1.0,
+        clearance_m: None,
+    };
+    window.state_mut().show_path(Forecast {
+        points: (0..POINTS).map(point).collect(),
+        passages: (0..LEGS).map(passage).collect(),
+        ..Forecast::default()
     });
-    let times: Vec<Duration> = times.collect();
-    let all = view(10.0);
-    let naive = processor_time(|| stroke(&[line.iter().map(|m| all.screen(*m)).collect()], &all));
-    let times = times.into_iter();
-    report("a million points, in a view that moves", times, naive, 16.0);
+    window.run_steps(5);
+    let path: Vec<LatLon> = (0..POINTS).map(at).collect();
+    let times = drag(&mut window, "Map");
+    report("pan over a path of a million points", times.into_iter(), naive(&window, &path), 16.0);
+}
+
+/// Ground for which everybody but the window's own thread has to wait.
+struct SlowGround(ThreadId);
+
+impl Terrain for SlowGround {
+    fn elevation_m(&self, _at: LatLon) -> Option<f64> {
+        if std::thread::current().id() != self.0 {
+            std::thread::sleep(Duration::from_micros(50));
+        }
+        Some(300.0)
+    }
+}
+
+/// A disk with one long file, that comes a little at a time.
+struct SlowDisk;
+
+impl Disk for SlowDisk {
+    fn length(&self, _path: &Path) -> std::io::Result<Option<u64>> {
+        Ok(Some(60 << 20))
+    }
+
+    fn open(&self, _path: &Path) -> std::io::Result<Box<dyn Read>> {
+        Ok(Box::new(SlowFile))
+    }
+}
+
+struct SlowFile;
+
+impl Read for SlowFile {
+    fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
+        std::thread::sleep(Duration::from_millis(5));
+        let part = into.len().min(4096);
+        into.iter_mut().take(part).for_each(|byte| *byte = b' ');
+        Ok(part)
+    }
+}
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        Err("it is read from the disk".into())
+    }
+}
+
+/// While everything else is slow and at work, no frame waits for it: here the time on the wall counts.
+fn at_work() {
+    let ground = SlowGround(std::thread::current().id());
+    let mut window = begin(&plan(LEGS, 1), Arc::new(ground));
+    window.state_mut().read_from(Arc::new(SlowDisk));
+    let file = std::env::temp_dir().join("slow.xml");
+    window.input_mut().dropped_files.push(Arc::new(Dropped(file)));
+    window.run_steps(10);
+    let from = window.get_all_by_label("Map").next().expect("the map").rect().center();
+    window.hover_at(from);
+    window.drag_at(from);
+    window.step();
+    let times: Vec<Duration> = (0..FRAMES)
+        .map(|i| {
+            window.hover_at(from + 20.0 * Vec2::angled(i as f32 * 0.2));
+            let begun = Instant::now();
+            draw(&mut window);
+            begun.elapsed()
+        })
+        .collect();
+    assert!(!window.state().analysis().reviewed, "it is still being looked at");
+    println!("with a slow disk, slow ground and a preview of {LEGS} legs at work, on the wall");
+    println!("  {:<38} {} {:>6} ms", "pan", told(&times), 50);
 }
 
 /// An idle window draws nothing: nobody asks for another frame, but the clock for one at each full minute.
@@ -108,22 +201,32 @@ fn idle() {
 }
 
 fn open(text: &str) -> Harness<'static, App> {
-    let document = Document::read(text.as_bytes(), None);
-    let (links, far) = Links::pair();
-    // nobody answers
-    std::mem::forget(far);
-    let mut window =
-        Harness::builder().with_size(SIZE).with_step_dt(1.0 / 60.0).build_eframe(move |creation| {
-            App::new(creation, document, links, Arc::new(Flat(300.0))).expect("no threads")
-        });
+    let mut window = begin(text, Arc::new(Flat(300.0)));
+    until(&mut window, |app| app.analysis().version == app.document().version());
+    window
+}
+
+/// Draws until something is found out, and a little on.
+fn until(window: &mut Harness<'_, App>, is_so: impl Fn(&App) -> bool) {
     let deadline = Instant::now() + Duration::from_secs(300);
-    while window.state().analysis().version != window.state().document().version() {
+    while !is_so(window.state()) {
         assert!(Instant::now() < deadline, "the plan was not analysed");
         window.step();
         std::thread::sleep(Duration::from_millis(5));
     }
     window.run_steps(5);
-    window
+}
+
+/// The window as it opens, before anything was found out about its plan.
+fn begin(text: &str, ground: Arc<dyn Terrain>) -> Harness<'static, App> {
+    let document = Document::read(text.as_bytes(), None);
+    let (links, far) = Links::pair();
+    // nobody answers
+    std::mem::forget(far);
+    Harness::builder()
+        .with_size(SIZE)
+        .with_step_dt(1.0 / 60.0)
+        .build_eframe(move |creation| App::new(creation, document, links, ground).expect("no threads"))
 }
 
 /// Presses what has this name, and moves it a little in every frame.
@@ -144,17 +247,26 @@ fn drag(window: &mut Harness<'_, App>, name: &str) -> Vec<Duration> {
 }
 
 fn frame(window: &mut Harness<'_, App>) -> Duration {
-    processor_time(|| {
-        window.step();
-        let output = window.output();
-        std::hint::black_box(window.ctx.tessellate(output.shapes.clone(), output.pixels_per_point));
-    })
+    processor_time(|| draw(window))
 }
 
-fn report(what: &str, times: impl ExactSizeIterator<Item = Duration>, naive: Duration, promised_ms: f64) {
-    let ours = mean(times);
-    let ratio = naive.as_secs_f64() / ours.as_secs_f64();
-    println!("  {what:<42} {:>6.2} ms {promised_ms:>6.0} ms {ratio:>11.2}x", ours.as_secs_f64() * 1e3);
+fn draw(window: &mut Harness<'_, App>) {
+    window.step();
+    let output = window.output();
+    std::hint::black_box(window.ctx.tessellate(output.shapes.clone(), output.pixels_per_point));
+}
+
+fn report(what: &str, times: impl Iterator<Item = Duration>, naive: Duration, promised_ms: f64) {
+    let times: Vec<Duration> = times.collect();
+    let ratio = naive.as_secs_f64() / mean(times.iter().copied()).as_secs_f64();
+    println!("  {what:<38} {} {promised_ms:>6.0} ms {ratio:>11.2}x", told(&times));
+}
+
+/// The mean and the longest of frames.
+fn told(times: &[Duration]) -> String {
+    let ms = |time: Duration| time.as_secs_f64() * 1e3;
+    let longest = times.iter().copied().max().unwrap_or_default();
+    format!("{:>6.2} ms {:>6.2} ms", ms(mean(times.iter().copied())), ms(longest))
 }
 
 /// The kernel counts in ticks of milliseconds: one frame says little, all of them together do.

@@ -2,10 +2,11 @@
 
 use super::{App, Now};
 use crate::document::Document;
-use crate::forecast::{Analysis, Question};
+use crate::forecast::{Analysis, Forecast, Question};
 use crate::link::{BACKLOG, Call};
 use crate::panels::problems;
 use crate::state::{LOOK_AHEAD, READ_ABOARD, VehicleName};
+use std::sync::Arc;
 
 impl App {
     /// Takes in all that has come since the last frame, and asks for what is wanted next.
@@ -73,6 +74,12 @@ impl App {
             alarm: self.view.alarm_at_cursor(),
             coverage: self.view.coverage,
         });
+    }
+
+    /// Shows a path in the place of the one that was found out, until the plan or its world changes.
+    pub fn show_path(&mut self, forecast: Forecast) {
+        // no worker counts so far
+        (self.analysis.forecast, self.analysis.forecast_version) = (Arc::new(forecast), u64::MAX);
     }
 
     /// In a plan that was opened or imported with errors, what the gravest one is of, once that is known.

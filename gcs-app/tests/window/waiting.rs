@@ -1,5 +1,6 @@
 //! The window never waits: whatever is slow (the ground, a server) is held fast here, and frames go on.
 
+use super::filing::window_on;
 use super::interchange::drop_file;
 use super::{SQUARE, Window};
 use egui::vec2;
@@ -97,12 +98,17 @@ fn longest_frame(window: &mut Window) -> (Duration, Duration) {
     (longest, began.elapsed())
 }
 
+/// Almost as long as one may be that is pasted, of far more points than may be.
+fn large_drawing() -> String {
+    let point =
+        "<Placemark><name>n</name><Point><coordinates>-84.15,36.33,0</coordinates></Point></Placemark>";
+    format!("<kml>{}</kml>", point.repeat((4 << 20) / point.len() - 1))
+}
+
 /// As long as it takes to read it, measured here, on whatever machine.
 #[test]
 fn no_frame_waits_for_a_large_drawing_that_is_pasted() {
-    let point =
-        "<Placemark><name>n</name><Point><coordinates>-84.15,36.33,0</coordinates></Point></Placemark>";
-    let text = format!("<kml>{}</kml>", point.repeat((4 << 20) / point.len() - 1));
+    let text = large_drawing();
     let began = Instant::now();
     interchange::features(interchange::Format::Kml, text.as_bytes()).unwrap();
     let takes = began.elapsed();
@@ -190,6 +196,32 @@ fn frames_and_edits_go_on_while_the_disk_is_slow() {
         }
         assert!(file == "long.xml" || reads.load(Ordering::SeqCst) as u64 > PARTS);
     }
+}
+
+/// A pipe that nobody reads takes nothing: whoever writes into it waits.
+#[cfg(unix)]
+#[test]
+fn frames_and_edits_go_on_while_a_plan_is_being_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("plan.xml");
+    let mut window = window_on(&path, SQUARE);
+    let pipe = folder.path().join("pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    std::fs::rename(&pipe, &path).unwrap();
+    let says = |window: &mut Window, words: &'static str| {
+        window.until(words, |app| app.view().notice.as_ref().is_some_and(|why| why.contains(words)));
+    };
+    window.press_ctrl(egui::Key::S);
+    says(&mut window, "was changed by another program");
+    window.press_ctrl(egui::Key::S);
+    // none of these frames can wait for the pipe: it takes nothing before they are over
+    window.steps(60);
+    window.click("TF side2");
+    window.press(egui::Key::Delete);
+    assert!(window.plan().leg(&"side2".into()).is_none());
+    let written = std::fs::read_to_string(&path).unwrap();
+    assert!(written.contains("side2"), "as it was when it was saved");
+    says(&mut window, "edits made meanwhile are not in it yet");
 }
 
 #[test]
