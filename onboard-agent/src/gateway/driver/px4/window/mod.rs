@@ -307,15 +307,21 @@ impl Window {
         match self.chain.at(position) {
             Some(waypoint) if position < self.end => {
                 let item = ring::item_of(waypoint);
-                // a landing that is left for something else does not end the list
                 let is_left = item.kind == ItemKind::Land && !self.ends_at(position);
-                Some(if is_left { ring::passing(item) } else { item })
+                Some(if is_left { self.instead_of_landing(position, item) } else { item })
             }
             _ => {
                 let before = self.chain.before(position).or_else(|| self.aboard(position))?;
                 Some(before.end_loiter())
             }
         }
+    }
+
+    /// A landing that is left for something else does not end the list, and is not flown any more. What led to it stands in its place:
+    /// if the same landing comes next, PX4 wants to see that it is come to from above.
+    fn instead_of_landing(&self, position: u64, landing: Item) -> Item {
+        let before = self.chain.before(position).filter(|item| item.kind != ItemKind::Land);
+        ring::passing(before.unwrap_or(landing))
     }
 
     /// How far on board the chain should reach: extended in large steps, so that there are few lists.

@@ -75,6 +75,29 @@ fn a_landing_that_is_left_for_other_waypoints_ends_no_list() {
     assert_eq!(rig.window.target(), Target::End);
 }
 
+/// The FP Manager joins again on the approach, and feeds its landing anew. PX4 takes no list in which a landing is not come to from
+/// above: it would circle, with nobody in command.
+#[test]
+fn a_landing_that_is_fed_anew_is_come_to_from_where_the_old_one_was() {
+    for before in 1..90 {
+        let mut rig = launched(whole_flight(before));
+        for _ in 0..=before {
+            rig.reach();
+            rig.settle();
+        }
+        let land = before + 2;
+        assert_eq!(rig.window.target(), Target::Waypoint(Serial(land)), "on the approach");
+        let anew = waypoint(land + 1, Action::Land { heading_deg: 0.0 });
+        rig.window.feed(Serial(0), vec![Fed { serial: Serial(land + 1), waypoint: anew }]);
+        rig.settle();
+        assert_eq!(rig.window.target(), Target::Waypoint(Serial(land + 1)), "{before}");
+        let list = &rig.autopilot.list;
+        let at = list.iter().position(|item| item.kind == ItemKind::Land).unwrap();
+        let approach = Item::of(&waypoint(land - 1, Action::Fly));
+        assert!(matches(&list[at - 1], &approach), "{before}: {:?}", list[at - 1]);
+    }
+}
+
 #[test]
 fn waypoints_behind_a_landing_wait_for_it() {
     let mut plan = whole_flight(5);
