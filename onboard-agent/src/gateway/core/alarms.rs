@@ -77,7 +77,7 @@ impl Alarms {
     }
 
     /// The engine has failed, or seems to have.
-    pub fn tell_of_engine(&self) -> bool {
+    pub fn engine_has_failed(&self) -> bool {
         self.raised.iter().any(|watch| matches!(watch, Watch::EngineOut | Watch::EngineSuspected))
     }
 

@@ -39,6 +39,8 @@ pub struct Control {
     pub safe_since: Option<Time>,
     /// Safe mode was commanded, or the FP Manager could not fly on: only a command ends it.
     pub safe_until_command: bool,
+    /// The way home was chosen for an aircraft without an engine.
+    pub glides_home: bool,
     /// What the driver said of this autopilot.
     pub capability: Option<Result<(), String>>,
     /// Place and height of a direct command.
@@ -73,6 +75,7 @@ impl Default for Control {
             retry_at: None,
             safe_since: None,
             safe_until_command: false,
+            glides_home: false,
             capability: None,
             direct: None,
             direct_due: false,

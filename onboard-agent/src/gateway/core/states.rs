@@ -27,7 +27,7 @@ pub enum Trigger {
     PilotTook,
     /// Safe mode has to act.
     SafeNeeded,
-    /// Safe.Hold has lasted T2.
+    /// Safe.Hold has lasted T2, or the engine has failed.
     ReturnDue,
     /// The FP Manager is back and has waypoints aboard.
     Recovered,
@@ -191,7 +191,7 @@ mod tests {
             Trigger::SafeNeeded => {
                 "FP Manager silent (T1), waypoints run dry, its waypoints do not come (T2), or by command"
             }
-            Trigger::ReturnDue => "Safe.Hold has lasted T2",
+            Trigger::ReturnDue => "Safe.Hold has lasted T2, or the engine has failed",
             Trigger::Recovered => "the FP Manager is back and has waypoints aboard",
             Trigger::RecoveredDry => "the FP Manager is back and has to send waypoints first",
             Trigger::Terminated => "by command, confirmed with the vehicle's name",

@@ -7,7 +7,7 @@ use super::{Gateway, seconds};
 use crate::gateway::order::Time;
 use std::time::Duration;
 use usal::Instance;
-use usal::contract::{GatewayState, SafeParameters, Token};
+use usal::contract::{GatewayState, SafeParameters, Token, Waypoint};
 
 /// Height above the take-off place from which a climbing aircraft may circle, metres.
 const CLEAR_M: f64 = 40.0;
@@ -140,9 +140,13 @@ impl Gateway {
             GatewayState::TakeOff | GatewayState::Approach => self.supervise_low(now, out),
             GatewayState::SafeHold => {
                 let due = self.control.safe_since.is_some_and(|s| now >= s + seconds(self.safe.t2_s));
-                if due {
+                // height that is circled away is missing before the runway
+                if due || self.alarms.engine_has_failed() {
                     self.return_home(out);
                 }
+            }
+            GatewayState::SafeReturn if self.alarms.engine_has_failed() && !self.control.glides_home => {
+                self.glide_home(out);
             }
             GatewayState::Off | GatewayState::Stop => self.fp_manager.expected_since = None,
             _ => {}
@@ -199,16 +203,34 @@ impl Gateway {
 
     fn return_home(&mut self, out: &mut Vec<Output>) {
         self.control.safe_since = None;
-        let Some(situation) = self.situation() else { return self.return_by_itself(out) };
-        let Some(landing) = safe::choose(&self.runways, &self.safe, &situation) else {
-            return self.return_by_itself(out);
-        };
-        let cause = format!("{} to {landing}", if situation.glides { "gliding" } else { "returning" });
-        let path = safe::path(&landing, &self.safe, &situation);
-        self.feed_driver(Some(Token(0)), path, out);
-        self.control.set_intent(Intent::Fly, self.telemetry.mode);
+        self.control.glides_home = self.alarms.engine_has_failed();
+        let Some((cause, way)) = self.way_home() else { return self.return_by_itself(out) };
+        self.fly_home(way, out);
         self.change(Trigger::ReturnDue, &cause, out);
+    }
+
+    /// The engine failed on the way home, which was chosen for a flight with it. Without a runway that a glide reaches, that
+    /// way stays.
+    fn glide_home(&mut self, out: &mut Vec<Output>) {
+        self.control.glides_home = true;
+        if let Some((cause, way)) = self.way_home() {
+            self.fly_home(way, out);
+            self.cause = cause;
+        }
+    }
+
+    fn fly_home(&mut self, way: Vec<Waypoint>, out: &mut Vec<Output>) {
+        self.feed_driver(Some(Token(0)), way, out);
+        self.control.set_intent(Intent::Fly, self.telemetry.mode);
         out.push(Output::Save);
+    }
+
+    /// The way to the best runway, and which that is in words.
+    fn way_home(&self) -> Option<(String, Vec<Waypoint>)> {
+        let situation = self.situation()?;
+        let landing = safe::choose(&self.runways, &self.safe, &situation)?;
+        let cause = format!("{} to {landing}", if situation.glides { "gliding" } else { "returning" });
+        Some((cause, safe::path(&landing, &self.safe, &situation)))
     }
 
     /// Where the aircraft is, for the choice of a runway.
@@ -218,7 +240,7 @@ impl Gateway {
             position: fix.position,
             altitude_amsl_m: fix.altitude_amsl_m,
             track_deg: fix.east_mps.atan2(fix.north_mps).to_degrees(),
-            glides: self.alarms.tell_of_engine(),
+            glides: self.alarms.engine_has_failed(),
             air: self.telemetry.air.map(|(_, a)| a),
             battery: self.telemetry.battery(),
             profile: &self.settings.profile,

@@ -1,5 +1,6 @@
 //! Safe mode's own flight: which runway, and the waypoints to it. Needs no other service.
 
+mod gliding;
 mod ranking;
 mod way;
 

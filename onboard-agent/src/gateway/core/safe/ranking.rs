@@ -1,16 +1,15 @@
 //! Which runway: of those within reach the one with the least cost, in seconds of flight.
 //!
 //! With its engine an aircraft reaches a runway if the energy lasts for the way in this wind, and if the ground on the way lies
-//! below its ceiling. Gliding, if it comes to the threshold with height to spare, and above all ground on the way, also where it goes down
-//! sooner than it has to: the autopilot leads it straight to the altitude of the approach. The cost is the
-//! time for the way, with the climb over the ground; a lower priority, a tailwind on landing, a short runway and the other end of
+//! below its ceiling. Gliding, if it comes to the threshold with height to spare, and above all ground on the way (`gliding`). The cost
+//! is the time for the way, with the climb over the ground; a lower priority, a tailwind on landing, a short runway and the other end of
 //! one make it worse.
 
+use super::gliding::glide_in;
 use super::way::{gates, ground_to_clear_m};
 use super::{Approach, Landing, Situation, along, is_usable};
-use aircraft::glide::{GlideStart, glide};
 use geometry::LatLon;
-use geometry::near::distance_and_course;
+use geometry::near::{distance_and_course, distance_m};
 use usal::contract::{SafeParameters, SafeRunway};
 
 /// Share of the energy left that may be planned with.
@@ -23,8 +22,6 @@ const TAILWIND_PENALTY_S: f64 = 5.0;
 const SHORT_PENALTY_S: f64 = 60.0;
 /// So much does the end of a runway cost that nobody has named, seconds of flight.
 const REVERSED_PENALTY_S: f64 = 40.0;
-/// Height above the threshold that a glide comes there with, and above the ground on the way, metres.
-const GLIDE_SPARE_M: f64 = 15.0;
 /// The ground before the other end of a runway stays below this share of the final approach's height, and a few metres
 /// that elevation models are wrong by.
 const CLEAR_SHARE: f64 = 0.5;
@@ -88,9 +85,11 @@ fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Optio
 
 /// Time of the way to a landing, seconds; `None`: out of reach.
 fn time_s(runway: &SafeRunway, approach: Approach, safe: &SafeParameters, s: &Situation) -> Option<f64> {
+    if s.glides {
+        return glide_in(runway, approach, safe, s).map(|glide| glide.time_s);
+    }
     let [initial, last] = gates(runway, approach, safe);
-    let way = [initial.0, last.0, runway.threshold];
-    if s.glides { gliding_s(runway, &way, initial.1, s) } else { powered_s(runway, &way, s) }
+    powered_s(runway, &[initial.0, last.0, runway.threshold], s)
 }
 
 fn powered_s(runway: &SafeRunway, way: &[LatLon; 3], s: &Situation) -> Option<f64> {
@@ -109,33 +108,6 @@ fn powered_s(runway: &SafeRunway, way: &[LatLon; 3], s: &Situation) -> Option<f6
     time_s += (over_m - s.altitude_amsl_m).max(0.0) / s.profile.max_climb_mps.max(0.1);
     let endurance_s = USABLE * s.battery * s.profile.energy_j / s.profile.cruise_power_w.max(1.0);
     (time_s < endurance_s).then_some(time_s)
-}
-
-/// `told_m`: the altitude that it is told for the approach, metres AMSL.
-fn gliding_s(runway: &SafeRunway, way: &[LatLon; 3], told_m: f64, s: &Situation) -> Option<f64> {
-    let Situation { position, altitude_amsl_m, track_deg: course_deg, .. } = *s;
-    let start = GlideStart { position, altitude_amsl_m, course_deg };
-    let points = glide(s.profile, s.wind().into(), start, way, runway.heading_deg)?;
-    let last = points.last()?;
-    let arrives = last.altitude_amsl_m >= runway.elevation_amsl_m + GLIDE_SPARE_M;
-    let over_ground =
-        points.windows(2).take(points.len().saturating_sub(2)).enumerate().all(|(piece, pair)| {
-            let [from, to] = pair else { return true };
-            let led_from_m = if piece == 0 { altitude_amsl_m } else { told_m };
-            let height_m = |share: f64| {
-                let glides_m = from.altitude_amsl_m + share * (to.altitude_amsl_m - from.altitude_amsl_m);
-                glides_m.min(led_from_m + share * (told_m - led_from_m))
-            };
-            along(from.position, to.position).all(|(share, place)| {
-                let ground_m = s.terrain.and_then(|terrain| terrain.elevation_m(place));
-                ground_m.is_none_or(|ground_m| height_m(share) > ground_m + GLIDE_SPARE_M)
-            })
-        });
-    (arrives && over_ground).then_some(last.time_s)
-}
-
-fn distance_m(a: LatLon, b: LatLon) -> f64 {
-    distance_and_course(a, b).0
 }
 
 #[cfg(test)]
@@ -228,19 +200,19 @@ mod tests {
         let under_it = Situation { terrain: Some(&wall), ..situation(&low) };
         assert_eq!(chosen(&runways, &under_it).as_deref(), Some("runway here"));
         let over_it = Situation { terrain: Some(&wall), battery: 1.0, ..situation(&profile) };
-        assert!(chosen(&runways, &over_it).is_some());
+        assert_eq!(chosen(&runways[..1], &over_it).as_deref(), Some("runway behind"));
     }
 
-    /// It could glide over this hill, but is led down to the approach before it.
+    /// It is told the altitude that the glide has before the runway, not that of a powered approach.
     #[test]
     fn no_glide_is_led_into_a_hill_that_it_could_clear() {
-        let hill = Wall(HOME.lat_deg + 0.043, 650.0);
+        let hill = Wall(HOME.lat_deg + 0.043, 850.0);
         let runways = [runway("behind", 0.0, 8.0, 0.0, 1), runway("here", 180.0, 7.0, 180.0, 2)];
         let profile = Profile::default();
         let s =
             Situation { glides: true, altitude_amsl_m: 1200.0, terrain: Some(&hill), ..situation(&profile) };
         assert_eq!(chosen(&runways, &s).as_deref(), Some("runway here"));
-        let lower = Wall(hill.0, 500.0);
+        let lower = Wall(hill.0, 650.0);
         assert_eq!(
             chosen(&runways, &Situation { terrain: Some(&lower), ..s }).as_deref(),
             Some("runway behind")

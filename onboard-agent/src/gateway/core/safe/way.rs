@@ -1,5 +1,6 @@
 //! The waypoints to a runway.
 
+use super::gliding::{Gate, glide_in};
 use super::{Approach, Landing, Situation, along};
 use aircraft::Profile;
 use geometry::LatLon;
@@ -32,14 +33,29 @@ pub(super) fn gates(runway: &SafeRunway, approach: Approach, safe: &SafeParamete
 /// extended centre line, and the landing. Its tokens are 0: they are not reported.
 pub fn path(landing: &Landing, safe: &SafeParameters, s: &Situation) -> Vec<Waypoint> {
     let runway = &landing.runway;
-    let [initial, last] = gates(runway, landing.approach, safe);
-    let mut way = if s.glides { Vec::new() } else { transit(initial.0, initial.1, s) };
-    way.push(waypoint(initial.0, initial.1, s.profile.cruise_airspeed_mps, Action::Fly));
-    way.push(waypoint(last.0, last.1, approach_speed(s.profile), Action::Fly));
+    let mut way = if s.glides { glided(landing, safe, s) } else { powered(landing, safe, s) };
     let touchdown = runway.threshold.destination(runway.heading_deg, TOUCHDOWN * runway.length_m);
     let landing = Action::Land { heading_deg: runway.heading_deg };
     way.push(waypoint(touchdown, runway.elevation_amsl_m, approach_speed(s.profile), landing));
     way
+}
+
+fn powered(landing: &Landing, safe: &SafeParameters, s: &Situation) -> Vec<Waypoint> {
+    let [initial, last] = gates(&landing.runway, landing.approach, safe);
+    let mut way = transit(initial.0, initial.1, s);
+    way.push(waypoint(initial.0, initial.1, s.profile.cruise_airspeed_mps, Action::Fly));
+    way.push(waypoint(last.0, last.1, approach_speed(s.profile), Action::Fly));
+    way
+}
+
+/// At the speed of the best glide until the landing.
+fn glided(landing: &Landing, safe: &SafeParameters, s: &Situation) -> Vec<Waypoint> {
+    let glide = glide_in(&landing.runway, landing.approach, safe, s);
+    let fly = |gate: Gate| Waypoint {
+        on_arc: gate.on_arc,
+        ..waypoint(gate.position, gate.altitude_amsl_m, s.profile.cruise_airspeed_mps, Action::Fly)
+    };
+    glide.into_iter().flat_map(|glide| glide.gates).map(fly).collect()
 }
 
 /// Where the ground on the way (or our own height) is above the approach height: stay high until

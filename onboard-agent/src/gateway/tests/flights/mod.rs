@@ -339,6 +339,7 @@ pub fn landing() -> Vec<Waypoint> {
 }
 
 mod corners;
+mod gliding;
 mod met_in_flight;
 mod px4;
 mod runways;

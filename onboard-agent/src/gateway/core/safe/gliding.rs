@@ -1,0 +1,257 @@
+//! A glide to a landing: where it leads, and the altitude that it has there. What is checked here is what is fed.
+//!
+//! The autopilot flies straight from altitude to altitude. So it is told at each place the altitude that the glide has there: led
+//! down sooner it would lack that height before the runway. What the rest of the way can't lose is lost in circles where the approach
+//! begins, and what is left of it on the way there.
+
+use super::way::gates;
+use super::{Approach, Situation, along};
+use aircraft::GRAVITY_MPS2;
+use aircraft::glide::{GlidePoint, GlideStart, glide};
+use aircraft::power::glide_sink_mps;
+use geometry::LatLon;
+use geometry::geodesy::normalise_180;
+use std::f64::consts::TAU;
+use usal::contract::{SafeParameters, SafeRunway};
+
+/// Height above the threshold that a glide comes there with, and above the ground on the way, metres.
+const SPARE_M: f64 = 15.0;
+/// Share of the steepest descent that is counted on.
+const STEEP: f64 = 0.7;
+/// Radius of a circle in radii of a planned turn.
+const CIRCLE_RADII: f64 = 1.3;
+/// Waypoints of a circle.
+const CORNERS: u32 = 8;
+/// Most circles: all of their waypoints have to fit into the buffer. Above that it goes down faster in them.
+const MOST_CIRCLES: f64 = 20.0;
+/// A circle may cost this much more height than it should, before the runway is out of reach.
+const CIRCLE_SPARE: f64 = 1.2;
+
+/// A place on the way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Gate {
+    /// Where.
+    pub position: LatLon,
+    /// Metres AMSL.
+    pub altitude_amsl_m: f64,
+    /// A corner of a circle.
+    pub on_arc: bool,
+}
+
+/// A glide that comes to a runway, and above the ground on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Glide {
+    /// From the initial approach point, with its circles, to the last gate before the landing.
+    pub gates: Vec<Gate>,
+    /// Time to the threshold without circles, seconds: these take away nothing but height that is too much.
+    pub time_s: f64,
+}
+
+/// The glide from where the aircraft is; `None`: it does not come there.
+pub(super) fn glide_in(
+    runway: &SafeRunway,
+    approach: Approach,
+    safe: &SafeParameters,
+    s: &Situation,
+) -> Option<Glide> {
+    let [initial, last] = gates(runway, approach, safe).map(|(place, _)| place);
+    let start =
+        GlideStart { position: s.position, altitude_amsl_m: s.altitude_amsl_m, course_deg: s.track_deg };
+    let way = [initial, last, runway.threshold];
+    let points = glide(s.profile, s.wind().into(), start, &way, runway.heading_deg)?;
+    let [.., at_initial, at_last, end] = points.as_slice() else { return None };
+    let told = told(runway, s, [at_initial, at_last, end])?;
+    let right = normalise_180(runway.heading_deg - s.position.bearing_deg(initial)) >= 0.0;
+    let sides = [right, !right].map(|right| {
+        let from_m = at_initial.altitude_amsl_m;
+        let mut gates = circles(initial, runway.heading_deg, right, (from_m, &told), s);
+        gates.push(Gate { position: last, altitude_amsl_m: told.last_m, on_arc: false });
+        gates
+    });
+    let gates = sides.into_iter().find(|gates| is_over_ground(gates, s))?;
+    Some(Glide { gates, time_s: end.time_s })
+}
+
+/// What it is told.
+struct Told {
+    /// So many circles first.
+    circles: u32,
+    /// When the approach begins, metres AMSL.
+    initial_m: f64,
+    /// Where the final descent begins, metres AMSL.
+    last_m: f64,
+}
+
+/// `None`: it comes to the threshold too low.
+fn told(runway: &SafeRunway, s: &Situation, [initial, last, end]: [&GlidePoint; 3]) -> Option<Told> {
+    let too_much_m = end.altitude_amsl_m - (runway.elevation_amsl_m + SPARE_M);
+    if too_much_m < 0.0 {
+        return None;
+    }
+    let (height_m, sinks_m) = (initial.altitude_amsl_m, initial.altitude_amsl_m - last.altitude_amsl_m);
+    let falls_m =
+        |from: &GlidePoint, to: &GlidePoint| STEEP * s.profile.max_descent_mps * (to.time_s - from.time_s);
+    let most_last_m = (last.altitude_amsl_m - too_much_m).max(runway.elevation_amsl_m + falls_m(last, end));
+    let most_initial_m = (height_m - too_much_m).max(most_last_m + falls_m(initial, last));
+    let circle_m = circle_m(s);
+    let circles =
+        if height_m > most_initial_m { (too_much_m / (CIRCLE_SPARE * circle_m)).floor() } else { 0.0 };
+    let circles = circles.clamp(0.0, MOST_CIRCLES);
+    let initial_m = (height_m - circles * circle_m).min(most_initial_m);
+    Some(Told { circles: circles as u32, initial_m, last_m: (initial_m - sinks_m).min(most_last_m) })
+}
+
+fn radius_m(s: &Situation) -> f64 {
+    CIRCLE_RADII * s.profile.turn_radius_m(s.profile.cruise_airspeed_mps)
+}
+
+/// Height that a circle over the ground takes, metres.
+fn circle_m(s: &Situation) -> f64 {
+    let (radius_m, speed_mps) = (radius_m(s), s.profile.cruise_airspeed_mps);
+    // it is banked most where the wind is behind it
+    let wind_mps = s.wind().speed_mps().min(0.8 * speed_mps);
+    let load_factor = ((speed_mps + wind_mps).powi(2) / (GRAVITY_MPS2 * radius_m)).hypot(1.0);
+    let through_air_mps = (speed_mps * speed_mps - wind_mps * wind_mps).sqrt();
+    TAU * radius_m / through_air_mps * glide_sink_mps(s.profile, speed_mps, load_factor)
+}
+
+/// The initial point, and the circles from there and back to it in line with the runway, evenly down.
+fn circles(
+    initial: LatLon,
+    heading_deg: f64,
+    right: bool,
+    (from_m, told): (f64, &Told),
+    s: &Situation,
+) -> Vec<Gate> {
+    let side = if right { 1.0 } else { -1.0 };
+    let centre = initial.destination(heading_deg + 90.0 * side, radius_m(s));
+    let corners = told.circles * CORNERS;
+    let corner = |i: u32| {
+        let turned_deg = 360.0 * f64::from(i % CORNERS) / f64::from(CORNERS);
+        let position = match i % CORNERS {
+            0 => initial,
+            _ => centre.destination(heading_deg + side * (turned_deg - 90.0), radius_m(s)),
+        };
+        let share = if corners == 0 { 1.0 } else { f64::from(i) / f64::from(corners) };
+        let altitude_amsl_m = from_m + share * (told.initial_m - from_m);
+        Gate { position, altitude_amsl_m, on_arc: corners > 0 }
+    };
+    (0..=corners).map(corner).collect()
+}
+
+/// It stays above all ground that is known until the last gate, by the altitudes that it is told.
+fn is_over_ground(gates: &[Gate], s: &Situation) -> bool {
+    let Some(terrain) = s.terrain else { return true };
+    let mut from = (s.position, s.altitude_amsl_m);
+    gates.iter().all(|gate| {
+        let ((start, start_m), end_m) = (from, gate.altitude_amsl_m);
+        from = (gate.position, end_m);
+        along(start, gate.position).all(|(share, place)| {
+            let height_m = start_m + share * (end_m - start_m);
+            terrain.elevation_m(place).is_none_or(|ground_m| height_m > ground_m + SPARE_M)
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{runway, situation};
+    use super::super::{choose, path};
+    use super::*;
+    use aircraft::autopilot::{Action as Does, Guidance, Target};
+    use aircraft::{Aircraft, Profile, Wind};
+    use usal::contract::{Action, Air, Waypoint};
+
+    const LENGTH_M: f64 = 600.0;
+
+    fn target(w: &Waypoint) -> Target {
+        let action = match w.action {
+            Action::Land { heading_deg } => Does::Land { heading_deg },
+            _ => Does::Fly,
+        };
+        let Waypoint { position, altitude_amsl_m, airspeed_mps, fly_over, .. } = *w;
+        Target { position, altitude_amsl_m, airspeed_mps, action, fly_over, acceptance_m: None }
+    }
+
+    /// Flies a way with a dead engine; where it comes down.
+    fn comes_down(way: &[Waypoint], s: &Situation) -> LatLon {
+        let mut aircraft = Aircraft::in_flight(s.profile.clone(), s.position, s.altitude_amsl_m, s.track_deg);
+        aircraft.set_engine_healthy(false);
+        let mut guidance = Guidance::new(s.profile.clone());
+        let mut targets = way.iter().map(target).peekable();
+        guidance.direct(aircraft.state(), targets.next().unwrap());
+        for _ in 0..20_000 {
+            let guided = guidance.step(aircraft.state(), targets.peek());
+            if let Some(next) = guided.reached.then(|| targets.next()).flatten() {
+                guidance.proceed(aircraft.state(), next);
+            }
+            aircraft.step(0.2, &guided.demand, &s.wind());
+            if aircraft.state().on_ground {
+                return aircraft.state().position;
+            }
+            assert!(aircraft.state().altitude_amsl_m > 322.0, "{:?} it is in the ground", guided);
+        }
+        panic!("it never comes down")
+    }
+
+    fn air(wind: Wind) -> Air {
+        let Wind { east_mps: wind_east_mps, north_mps: wind_north_mps } = wind;
+        Air { airspeed_mps: 25.0, wind_east_mps, wind_north_mps, pressure_hpa: 970.0, temperature_c: 20.0 }
+    }
+
+    /// Bearing and distance of the runway, its heading, height above it.
+    const SITUATIONS: [(f64, f64, f64, f64); 7] = [
+        (0.0, 8.0, 0.0, 1200.0),
+        (0.0, 3.0, 0.0, 330.0),
+        (90.0, 3.0, 0.0, 420.0),
+        (180.0, 4.0, 300.0, 900.0),
+        (40.0, 1.0, 220.0, 250.0),
+        (300.0, 0.3, 100.0, 1500.0),
+        (10.0, 5.0, 90.0, 700.0),
+    ];
+
+    #[test]
+    fn every_runway_that_is_chosen_for_a_glide_is_landed_on() {
+        for name in Profile::names() {
+            let profile = Profile::by_name(name).unwrap();
+            let mut landed = 0;
+            for (bearing_deg, km, heading_deg, height_m) in SITUATIONS {
+                let runways = [runway("it", bearing_deg, km, heading_deg, 1)];
+                let wind = Wind::from_direction(heading_deg + 30.0, 0.15 * profile.cruise_airspeed_mps);
+                let s = Situation {
+                    glides: true,
+                    altitude_amsl_m: 322.0 + height_m,
+                    air: Some(air(wind)),
+                    ..situation(&profile)
+                };
+                let Some(landing) = choose(&runways, &SafeParameters::default(), &s) else { continue };
+                let down = comes_down(&path(&landing, &SafeParameters::default(), &s), &s);
+                let threshold = landing.runway.threshold;
+                let off_deg = threshold.bearing_deg(down) - landing.runway.heading_deg;
+                let (distance_m, off_rad) = (threshold.distance_m(down), off_deg.to_radians());
+                let (along_m, aside_m) = (distance_m * off_rad.cos(), distance_m * off_rad.sin());
+                let case = format!("{name}, {bearing_deg}° {km} km, {height_m} m: {landing}");
+                assert!((0.0..LENGTH_M).contains(&along_m), "{case}: {along_m:.0} m behind the threshold");
+                assert!(aside_m.abs() < 40.0, "{case}: {aside_m:.0} m beside it");
+                landed += 1;
+            }
+            assert!(landed >= 4, "{name}: {landed}");
+        }
+    }
+
+    #[test]
+    fn it_is_told_what_the_glide_has_and_loses_the_rest_in_circles() {
+        let profile = Profile::default();
+        let s = Situation { glides: true, altitude_amsl_m: 1522.0, ..situation(&profile) };
+        let runway = runway("it", 0.0, 4.0, 0.0, 1);
+        let glide = glide_in(&runway, Approach::Whole, &SafeParameters::default(), &s).unwrap();
+        let has_m = 1522.0 - s.position.distance_m(glide.gates[0].position) / profile.glide_ratio;
+        assert!((glide.gates[0].altitude_amsl_m - has_m).abs() < 5.0, "{glide:?}");
+        assert!(glide.gates.iter().filter(|gate| gate.on_arc).count() > 16, "{glide:?}");
+        let last = glide.gates.last().unwrap();
+        let needed_m = last.position.distance_m(runway.threshold) / profile.glide_ratio;
+        assert!((needed_m..1.5 * needed_m).contains(&(last.altitude_amsl_m - 322.0)), "{glide:?}");
+        let turned = glide.gates.windows(2).all(|pair| pair[0].altitude_amsl_m > pair[1].altitude_amsl_m);
+        assert!(turned, "nothing is level: {glide:?}");
+    }
+}

@@ -1,0 +1,76 @@
+//! Safe mode without an engine.
+
+use super::*;
+
+/// High up on the way out along the runway's line, with Safe mode to come by command.
+fn high(seed: u64) -> Flight {
+    let mut flight = Flight::new(seed, &[]);
+    let out = |i: usize| HOME.destination(HEADING_DEG, 1500.0 + 500.0 * i as f64);
+    let climb = (0..12).map(|i| waypoint(out(i), GROUND_M + 120.0 + 50.0 * i as f64, Action::Fly));
+    flight.launch(std::iter::once(take_off()).chain(climb).collect());
+    let up = |f: &Flight| height_m(f) > 520.0;
+    flight.run_until(400.0, "high up", up);
+    flight
+}
+
+fn height_m(flight: &Flight) -> f64 {
+    flight.sim.autopilot.aircraft.state().altitude_amsl_m - GROUND_M
+}
+
+fn place(flight: &Flight) -> LatLon {
+    flight.sim.autopilot.aircraft.state().position
+}
+
+fn fail_engine(flight: &mut Flight) {
+    assert!(flight.sim.inject("engine-out".parse().unwrap()));
+}
+
+/// It stands on the runway, of which this is the threshold.
+fn assert_on_runway(flight: &Flight, threshold: LatLon) {
+    let off_rad = (threshold.bearing_deg(place(flight)) - HEADING_DEG).to_radians();
+    let distance_m = threshold.distance_m(place(flight));
+    let (along_m, aside_m) = (distance_m * off_rad.cos(), distance_m * off_rad.sin());
+    assert!((0.0..600.0).contains(&along_m) && aside_m.abs() < 40.0, "{along_m:.0} {aside_m:.0}");
+}
+
+#[test]
+fn a_glide_of_safe_mode_ends_on_the_runway_that_it_chose() {
+    for ahead_m in [4500.0, 2500.0] {
+        let mut flight = high(51);
+        let threshold = place(&flight).destination(HEADING_DEG, ahead_m);
+        flight.ask(GatewayRequest::SetRunways { runways: vec![runway_at(threshold)] }).unwrap();
+        fail_engine(&mut flight);
+        flight.ask(GatewayRequest::Safe).unwrap();
+        flight.run_until(900.0, "down", |f| f.state() == GatewayState::Stop);
+        assert_on_runway(&flight, threshold);
+    }
+}
+
+/// Twenty seconds of circling are forty metres of height.
+#[test]
+fn without_an_engine_safe_mode_does_not_wait_for_the_fp_manager() {
+    let mut flight = high(52);
+    let threshold = place(&flight).destination(HEADING_DEG, 4500.0);
+    flight.ask(GatewayRequest::SetRunways { runways: vec![runway_at(threshold)] }).unwrap();
+    fail_engine(&mut flight);
+    flight.run(5.0);
+    flight.ask(GatewayRequest::Safe).unwrap();
+    flight.run_until(2.0, "Safe.Return", |f| f.state() == GatewayState::SafeReturn);
+}
+
+#[test]
+fn an_engine_that_fails_on_the_way_home_makes_it_choose_again() {
+    let mut flight = high(53);
+    let near = place(&flight).destination(HEADING_DEG, 4500.0);
+    let alternate = SafeRunway { id: "near".into(), priority: 9, ..runway_at(near) };
+    let runways = vec![runway_at(HOME), alternate];
+    flight.ask(GatewayRequest::SetRunways { runways }).unwrap();
+    flight.ask(GatewayRequest::Safe).unwrap();
+    flight.run_until(30.0, "Safe.Return", |f| f.state() == GatewayState::SafeReturn);
+    let cause = |f: &Flight| f.station.gateway().status(f.now).cause;
+    assert!(cause(&flight).contains("returning to runway R05"), "{}", cause(&flight));
+    fail_engine(&mut flight);
+    flight.run_until(10.0, "gliding", |f| cause(f).contains("gliding to runway near"));
+    flight.run_until(900.0, "down", |f| f.state() == GatewayState::Stop);
+    assert_on_runway(&flight, near);
+}
