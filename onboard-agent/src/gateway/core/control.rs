@@ -61,6 +61,8 @@ pub struct Control {
     put_off_since: Option<Time>,
     speed: Option<(OrderId, f64)>,
     adopt: Option<OrderId>,
+    /// The mode in which a flight was met whose list is read.
+    met_in: Option<Mode>,
     /// When a flight was met of which nothing is known.
     met_at: Option<Time>,
 }
@@ -89,6 +91,7 @@ impl Default for Control {
             put_off_since: None,
             speed: None,
             adopt: None,
+            met_in: None,
             met_at: None,
         }
     }
@@ -175,13 +178,12 @@ impl Control {
     }
 
     fn wanted_mode(&self) -> Option<Mode> {
-        match self.intent {
-            Intent::Nothing => None,
-            Intent::Fly => Some(Mode::Waypoints),
-            Intent::Hold => Some(Mode::Hold),
-            Intent::Direct => Some(Mode::Direct),
-            Intent::Return => Some(Mode::Return),
-        }
+        mode_of(self.intent)
+    }
+
+    /// What is wanted of a flight whose list was read: nothing, if somebody has chosen another mode meanwhile.
+    pub fn still_wanted(&self, intent: Intent, mode: Option<Mode>) -> Intent {
+        if mode == self.met_in || mode == mode_of(intent) { intent } else { Intent::Nothing }
     }
 
     /// The autopilot is in the wanted mode.
@@ -207,6 +209,16 @@ impl Control {
         }
         self.retry_at = None;
         true
+    }
+}
+
+fn mode_of(intent: Intent) -> Option<Mode> {
+    match intent {
+        Intent::Nothing => None,
+        Intent::Fly => Some(Mode::Waypoints),
+        Intent::Hold => Some(Mode::Hold),
+        Intent::Direct => Some(Mode::Direct),
+        Intent::Return => Some(Mode::Return),
     }
 }
 
@@ -237,11 +249,12 @@ impl Gateway {
             (Off | Stop, Some(_)) if is_unread => {
                 self.change(Trigger::PilotTook, "met in flight, and what it has aboard can't be read", out);
             }
-            _ if self.control.adopt.is_some() => {}
-            (Off | Stop, Some(Mode::Waypoints | Mode::Hold | Mode::Direct)) => self.ask_what_flies(out),
-            (Off | Stop, Some(_)) => {
+            // also while its list is read
+            (Off | Stop, Some(Mode::Other(_) | Mode::Return)) => {
                 self.change(Trigger::PilotTook, "met in flight under a pilot's control", out);
             }
+            _ if self.control.adopt.is_some() => {}
+            (Off | Stop, Some(_)) => self.ask_what_flies(out),
             // he gives back what an earlier gateway had put aboard
             (Manual, Some(Mode::Waypoints)) if self.adopting.is_some() => self.ask_what_flies(out),
             _ => {}
@@ -253,6 +266,7 @@ impl Gateway {
         self.control.adopting = self.buffer.number(known);
         let order = Order::Adopt(self.control.adopting.clone());
         self.control.adopt = Some(self.order(order, out));
+        self.control.met_in = self.telemetry.mode;
     }
 
     /// The pilot gave the aircraft back when he switched to the waypoints: they are what is wanted again.

@@ -44,6 +44,9 @@ const COME_DOWN_AFTER: Duration = Duration::from_secs(3600);
 const NOT_OURS: &str = "met in flight: nothing that it has aboard is ours";
 /// Why nothing can be begun while the state is `Off`.
 const NOT_HEARD: &str = "The autopilot is not heard; check its link.";
+/// Why an aircraft that flies what is ours is not flown by us.
+const TAKEN_MEANWHILE: &str =
+    "the autopilot was switched to another mode while its list was read, and not by the gateway";
 
 /// The gateway. See the module's text.
 pub struct Gateway {
@@ -217,7 +220,11 @@ impl Gateway {
             waypoints.truncate(count);
             self.buffer.adopt(waypoints);
             self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
-            self.control.set_intent(intent, self.telemetry.mode);
+            let wanted = self.control.still_wanted(intent, self.telemetry.mode);
+            self.control.set_intent(wanted, self.telemetry.mode);
+            if wanted == Intent::Nothing {
+                self.change(Trigger::PilotTook, TAKEN_MEANWHILE, out);
+            }
             out.push(Output::Save);
         } else if self.state == GatewayState::Manual {
             // it took long to read

@@ -308,3 +308,48 @@ fn an_aircraft_whose_list_is_ours_after_all_is_taken_back() {
     core.run(1, &flying(25.0, 25.0));
     assert_ne!(core.gateway.state(), GatewayState::Manual);
 }
+
+/// What was asked to be read.
+fn adoption(core: &Core) -> OrderId {
+    core.orders().into_iter().rev().find(|(_, order)| matches!(order, Order::Adopt(_))).unwrap().0
+}
+
+fn was_steered(core: &Core) -> bool {
+    core.orders().iter().any(|(_, order)| matches!(order, Order::Steer(_)))
+}
+
+#[test]
+fn a_pilot_who_takes_over_while_the_list_is_read_keeps_the_aircraft() {
+    for mode in [Mode::Other(5), Mode::Return, Mode::Hold] {
+        let mut core = Core::new();
+        core.run(2, &flying(25.0, 25.0));
+        let adopt = adoption(&core);
+        let mut by_pilot = flying(25.0, 25.0);
+        by_pilot[0] = beat(mode, true);
+        core.run(2, &by_pilot);
+        core.step(Input::Report(Report::Adopted(adopt, Some(0))));
+        core.step(Input::Report(Report::Course(Course { aboard: true, ready: true, target: Target::End })));
+        core.run(5, &by_pilot);
+        assert_eq!(core.gateway.state(), GatewayState::Manual, "{mode:?}");
+        assert!(!was_steered(&core), "{mode:?}");
+        core.run(2, &flying(25.0, 25.0));
+        assert_ne!(core.gateway.state(), GatewayState::Manual, "{mode:?}: he gave it back");
+    }
+}
+
+#[test]
+fn a_pilot_who_gives_back_and_takes_again_while_the_list_is_read_keeps_the_aircraft() {
+    let mut core = Core::new();
+    let mut by_pilot = flying(25.0, 25.0);
+    by_pilot[0] = beat(Mode::Other(5), true);
+    core.gateway.adopting = Some(Snapshot { intent: Intent::Fly, ..core.gateway.snapshot() });
+    core.run(2, &by_pilot);
+    core.run(2, &flying(25.0, 25.0));
+    let adopt = adoption(&core);
+    core.run(1, &by_pilot);
+    core.step(Input::Report(Report::Adopted(adopt, Some(0))));
+    core.step(Input::Report(Report::Course(Course { aboard: true, ready: true, target: Target::End })));
+    core.run(5, &by_pilot);
+    assert_eq!(core.gateway.state(), GatewayState::Manual);
+    assert!(!was_steered(&core));
+}
