@@ -193,15 +193,21 @@ impl Autopilot {
         let s = self.aircraft.state();
         let nowhere = item.position == LatLon::new(0.0, 0.0);
         let position = if nowhere { s.position } else { item.position };
+        let landing_deg = self.landing_heading_deg(position);
         let action = match item.kind {
             Kind::TakeOff => Action::TakeOff { heading_deg: s.heading_deg() },
             Kind::Loiter { radius_m } => self.circle_action(radius_m),
-            Kind::Land => Action::Land { heading_deg: self.landing_heading_deg(position) },
+            Kind::Land => Action::Land { heading_deg: landing_deg },
             _ => Action::Fly,
         };
         let (fly_over, acceptance_m) = match item.kind {
             Kind::Waypoint { over, acceptance_m } => (over, acceptance_m),
             _ => (false, None),
+        };
+        let short_m = self.rules.lands_short_s * self.airspeed_mps();
+        let position = match item.kind {
+            Kind::Land => position.destination(landing_deg + 180.0, short_m),
+            _ => position,
         };
         Target {
             position,

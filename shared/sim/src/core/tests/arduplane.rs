@@ -504,10 +504,16 @@ fn a_mission_is_flown_where_bare_guidance_flies_it() {
     use aircraft::{Action, Aircraft, Guidance, Target};
     let (wind, home) = (Wind::from_direction(300.0, 5.0), Config::default().home);
     let items = circuit(home.position);
+    let place = |wire: &MISSION_ITEM_INT_DATA| {
+        let place = LatLon::new(f64::from(wire.x) * 1e-7, f64::from(wire.y) * 1e-7);
+        // it flares early
+        let short_m = if wire.command == MavCmd::MAV_CMD_NAV_LAND { 1.6 * 25.0 } else { 0.0 };
+        place.destination(52.0 + 180.0, short_m)
+    };
     let targets: Vec<Target> = items
         .iter()
         .map(|wire| Target {
-            position: LatLon::new(f64::from(wire.x) * 1e-7, f64::from(wire.y) * 1e-7),
+            position: place(wire),
             altitude_amsl_m: 349.0 + f64::from(wire.z),
             airspeed_mps: 25.0,
             action: match wire.command {

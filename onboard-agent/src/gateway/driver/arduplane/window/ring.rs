@@ -52,9 +52,9 @@ pub fn known_on_board(list: &[Item], first: u64, waypoints: Vec<Fed>) -> (usize,
     chain::known_on_board(first, RING, is_at, waypoints)
 }
 
-/// It flares early: ArduPlane 4.7 touched down 31 to 50 m before the place of its landing entry in nine landings of a small trainer
-/// (`assets/docs/flight-tests.md`). It is told a place so far behind, metres.
-const LANDS_SHORT_M: f64 = 60.0;
+/// It flares early: ArduPlane 4.7 touched down 31 to 50 m before the place of its landing entry in nine landings of a small trainer at
+/// 25 m/s (`assets/docs/flight-tests.md`). What it is short by grows with the speed: so many seconds of it, and some metres to spare.
+const LANDS_SHORT_S: f64 = 2.4;
 
 /// The entry of a waypoint to which it flies from another, and goes on to a third.
 pub fn item_between(from: Option<&Waypoint>, waypoint: &Waypoint, onward: Option<&Waypoint>) -> Item {
@@ -79,7 +79,8 @@ pub fn item_of(waypoint: &Waypoint) -> Item {
     let item = Item::of(waypoint);
     match waypoint.action {
         Action::Land { heading_deg } => {
-            Item { position: item.position.destination(heading_deg, LANDS_SHORT_M), ..item }
+            let short_m = LANDS_SHORT_S * waypoint.airspeed_mps;
+            Item { position: item.position.destination(heading_deg, short_m), ..item }
         }
         _ => item,
     }

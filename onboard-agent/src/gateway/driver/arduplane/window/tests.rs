@@ -280,6 +280,17 @@ fn waypoints_are_known_again_whatever_was_told_of_their_turns() {
     assert_eq!(rig.autopilot.steered.len(), steered);
 }
 
+/// It flares early, by its speed: 60 m for all of them were more than a small aircraft's runway.
+#[test]
+fn a_slow_aircraft_is_told_to_land_less_far_behind() {
+    for (airspeed_mps, behind_m) in [(25.0, 60.0), (14.0, 33.6)] {
+        let landing = Waypoint { action: Action::Land { heading_deg: 52.0 }, airspeed_mps, ..waypoint(1) };
+        let told = ring::item_of(&landing).position;
+        assert!((landing.position.distance_m(told) - behind_m).abs() < 0.1);
+        assert!((landing.position.bearing_deg(told) - 52.0).abs() < 0.1);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
     /// Writes that stop anywhere, reached waypoints at any time, cancellations anywhere.

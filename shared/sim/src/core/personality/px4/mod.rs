@@ -49,6 +49,7 @@ const FIXED_WING: Rules = Rules {
     tells_items: false,
     armed_texts: ["Armed", "Disarmed"],
     refusal_text: "Preflight check",
+    lands_short_s: 0.0,
     params: params::fixed_wing,
     habits: |_| Habits::CLOSE,
     streams: &STREAMS,
