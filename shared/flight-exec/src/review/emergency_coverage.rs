@@ -1,6 +1,5 @@
 //! Which emergency plan answers where.
 
-use super::flown::Flown;
 use crate::rehearse::names_engine;
 use flight_plan::{Cause, Id, Program};
 use std::collections::HashMap;
@@ -31,13 +30,12 @@ const POWERED: [Cause; 6] =
     [Cause::Operator, Cause::Payload, Cause::Traffic, Cause::Link, Cause::Gps, Cause::Energy];
 
 impl EmergencyCoverage {
-    /// On the legs of these flights: a plan may have very many that no flight comes to.
-    pub fn of(program: &Program, flights: &[Flown]) -> Self {
+    /// On these legs, which flights come to: a plan may have very many others.
+    pub fn of<'a>(program: &Program, legs: impl IntoIterator<Item = &'a Id>) -> Self {
         let number: HashMap<&Id, usize> =
             program.flown().emergency_plans.iter().enumerate().map(|(i, e)| (&e.id, i)).collect();
         let mut by_leg = HashMap::new();
-        for laid_out in flights.iter().flat_map(|flown| &flown.waypoints) {
-            let leg = &laid_out.waypoint.leg;
+        for leg in legs {
             if !by_leg.contains_key(leg) {
                 by_leg.insert(leg.clone(), Answers::on(leg, program, &number));
             }

@@ -202,6 +202,13 @@ impl Flights {
         self.planned.iter().chain(self.chosen.iter().filter_map(|(_, preview)| preview.as_ref().ok()))
     }
 
+    /// The legs that they come to, one time after the other: what is laid out ends sooner than a preview.
+    pub fn legs(&self) -> impl Iterator<Item = &Id> {
+        let laid_out =
+            self.main.iter().flat_map(|flown| &flown.waypoints).map(|laid_out| &laid_out.waypoint.leg);
+        laid_out.chain(self.whole().flat_map(|preview| &preview.legs).map(|passage| &passage.place.leg))
+    }
+
     fn fly_main(&mut self, given: &Circumstances, beginning: Beginning) {
         let program = given.program;
         let from = given.start_point(beginning).cursor;
@@ -287,7 +294,7 @@ impl Flights {
     /// flown, and not of these.
     fn fly_emergencies(&mut self, given: &Circumstances, used_j: f64) {
         let program = given.program;
-        let emergency_coverage = EmergencyCoverage::of(program, &self.main);
+        let emergency_coverage = EmergencyCoverage::of(program, self.legs());
         for (index, plan) in program.flown().emergency_plans.iter().enumerate().take(MAX_EMERGENCY_PLANS) {
             for (home, leg, worst) in self.worst_for(program, plan, index, &emergency_coverage) {
                 let beginning = Beginning::at(&worst, used_j);

@@ -168,7 +168,7 @@ impl<'a> View<'a> {
         flights: Flights,
     ) -> Self {
         let zones = Zones::of(program, profile, conditions);
-        let emergency_coverage = EmergencyCoverage::of(program, &flights.main);
+        let emergency_coverage = EmergencyCoverage::of(program, flights.legs());
         Self { program, profile, terrain, conditions, variables, flights, zones, emergency_coverage }
     }
 

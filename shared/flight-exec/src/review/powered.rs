@@ -51,7 +51,38 @@ fn lack(missing_j: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::flights::Flights;
     use super::*;
+    use crate::review::Conditions;
+    use aircraft::Profile;
+    use flight_plan::Variables;
+    use std::sync::Arc;
+    use terrain::Terrain;
+
+    /// The bounded layout may end hours before the flight, which is where the least energy is left.
+    #[test]
+    fn a_leg_that_only_the_preview_comes_to_is_looked_at_too() {
+        let document = include_bytes!("../../../../assets/plans/alternates.xml");
+        let terrain: Arc<dyn Terrain> = Arc::new(terrain::Flat(300.0));
+        let usual = Profile::default();
+        let (program, _) =
+            flight_plan::compile_reading(flight_plan::read(document), &usual, terrain.as_ref()).unwrap();
+        let (program, conditions) = (Arc::new(program), Conditions::default());
+        let flights = |profile: &Profile| Flights::of(&program, profile, &terrain, conditions);
+        let planned_j = flights(&usual).planned.unwrap().energy_j;
+        let tired = Profile { energy_j: 1.02 * planned_j, ..usual };
+        let found = |most_waypoints: usize| {
+            let mut flights = flights(&tired);
+            flights.main.iter_mut().for_each(|flown| flown.waypoints.truncate(most_waypoints));
+            let variables = Variables::initial(program.flown());
+            let view = View::new(&program, &tired, terrain.as_ref(), conditions, variables, flights);
+            let mut problems = vec![];
+            check(&view, &mut problems);
+            problems.into_iter().map(|problem| problem.subject).collect::<Vec<_>>()
+        };
+        assert_ne!(found(usize::MAX), []);
+        assert_eq!(found(2), found(usize::MAX));
+    }
 
     #[test]
     fn what_no_energy_reaches_is_said_in_words() {
