@@ -130,15 +130,15 @@ impl Corner {
         (self.angle_rad / FRAC_PI_2).min(1.0)
     }
 
-    /// How far before the target to turn, metres: d = r · tan(A/2), as far as it fits: all of this leg, and half of
-    /// the next, which may need its other half for the turn at its own end. No farther than ArduPlane can be told to: a review
+    /// How far before the target to turn, metres: d = r · tan(A/2), as far as it fits: half of this leg and half of the
+    /// next, whose other halves may be needed for the turns at their other ends. No farther than ArduPlane can be told to: a review
     /// that sees an earlier turn doesn't see the ground that will be flown over.
     pub(super) fn anticipation_m(&self, radius_m: f64, length_m: f64) -> f64 {
         if !(STRAIGHT_RAD..REVERSAL_RAD).contains(&self.angle_rad) {
             return 0.0;
         }
         let ideal_m = radius_m * (0.5 * self.angle_rad).tan();
-        ideal_m.min(length_m).min(0.5 * self.next_length_m).min(GREATEST_ACCEPTANCE_M)
+        ideal_m.min(0.5 * length_m).min(0.5 * self.next_length_m).min(GREATEST_ACCEPTANCE_M)
     }
 }
 

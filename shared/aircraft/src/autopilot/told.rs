@@ -52,12 +52,13 @@ pub fn turn_acceptance_m(from: LatLon, at: LatLon, onward: LatLon, airspeed_mps:
         return Some(FLY_OVER_M + 1.0);
     }
     let radius_m = airspeed_mps * airspeed_mps / (GRAVITY_MPS2 * TURN_BANK_DEG.to_radians().tan());
-    let early_m = corner.anticipation_m(radius_m, 0.5 * before.length()).round();
+    let early_m = corner.anticipation_m(radius_m, before.length()).round();
     (early_m > FLY_OVER_M).then_some(early_m)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::leg::Leg;
     use super::*;
 
     const AT: LatLon = LatLon::new(36.4905, -84.2710);
@@ -84,6 +85,32 @@ mod tests {
             assert_eq!(told(angle_deg, before_m, behind_m), None, "{angle_deg} {before_m} {behind_m}");
         }
         assert_eq!(told(179.0, 900.0, 900.0), Some(6.0));
+    }
+
+    /// A review that sees an earlier turn than is flown looks at other ground.
+    #[test]
+    fn however_short_its_legs_are_a_corner_is_reviewed_as_it_is_told() {
+        let radius_m = 25.0_f64.powi(2) / (GRAVITY_MPS2 * TURN_BANK_DEG.to_radians().tan());
+        for (before_m, behind_m) in [(200.0, 3000.0), (300.0, 600.0), (600.0, 250.0), (3000.0, 3000.0)] {
+            for angle_deg in [60.0, 110.0, 150.0] {
+                let target = |position| super::super::Target {
+                    position,
+                    altitude_amsl_m: 500.0,
+                    airspeed_mps: 25.0,
+                    action: super::super::Action::Fly,
+                    fly_over: false,
+                    acceptance_m: None,
+                };
+                let leg = Leg::new(AT.destination(180.0, before_m), 500.0, target(AT));
+                let corner = leg.corner(&target(AT.destination(angle_deg, behind_m)));
+                let seen_m = corner.anticipation_m(radius_m, leg.length_m);
+                let told_m = told(angle_deg, before_m, behind_m).unwrap();
+                assert!(
+                    (seen_m - told_m).abs() < 1.0,
+                    "{angle_deg} {before_m} {behind_m}: {seen_m} {told_m}"
+                );
+            }
+        }
     }
 
     #[test]
