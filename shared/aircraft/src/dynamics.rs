@@ -182,6 +182,13 @@ impl Aircraft {
         self.battery.energy_left_j = self.battery.capacity_j * share.clamp(0.0, 1.0);
     }
 
+    /// Stands where it is, wherever that is: it came down.
+    pub fn come_down(&mut self) {
+        let s = &mut self.state;
+        (s.airspeed_mps, s.climb_mps, s.bank_rad, s.on_ground) = (0.0, 0.0, 0.0, true);
+        s.ground_velocity_mps = Vec2::default();
+    }
+
     /// Flies (or rolls) for `dt_s` seconds. Made for steps of 0.01 to 0.2 s.
     pub fn step(&mut self, dt_s: f64, demand: &Demand, wind: &Wind) {
         if self.state.on_ground {

@@ -65,6 +65,8 @@ pub struct Autopilot {
     pub gps_ok: bool,
     /// Full throttle is only enough for the slowest airspeed.
     pub iced: bool,
+    /// The aircraft lies where it came down, and its autopilot does not know.
+    pub is_down: bool,
     rules: &'static Rules,
     mode: Mode,
     armed: bool,
@@ -93,6 +95,7 @@ impl Autopilot {
             guided: None,
             gps_ok: true,
             iced: false,
+            is_down: false,
             rules,
             mode: rules.first_mode,
             armed: false,
@@ -298,7 +301,11 @@ impl Autopilot {
         if self.iced {
             demand.airspeed_mps = demand.airspeed_mps.min(self.aircraft.profile().min_airspeed_mps);
         }
-        self.aircraft.step(dt_s, &demand, &self.wind);
+        if self.is_down {
+            self.aircraft.come_down();
+        } else {
+            self.aircraft.step(dt_s, &demand, &self.wind);
+        }
         self.disarm_when_landed(dt_s, &demand);
         self.demanded = demand;
     }

@@ -26,8 +26,14 @@ pub enum Fault {
     Silence,
     /// Nothing says how fast the engine turns.
     NoRpm,
+    /// The message with this number is not sent.
+    NoStream(u32),
     /// Ice: full throttle is only enough for the slowest airspeed.
     Ice,
+    /// It is down where it is: it stands, and its autopilot flies on.
+    Crash,
+    /// Its autopilot starts anew, as after its watchdog: mode, arming and list stay, its clock begins again.
+    Reboot,
 }
 
 impl Fault {
@@ -41,7 +47,10 @@ impl Fault {
             Fault::LowBattery => "low-battery",
             Fault::Silence => "silence",
             Fault::NoRpm => "no-rpm",
+            Fault::NoStream(_) => "no-stream",
             Fault::Ice => "ice",
+            Fault::Crash => "crash",
+            Fault::Reboot => "reboot",
         }
     }
 }
@@ -64,6 +73,9 @@ impl fmt::Display for FaultRequest {
         if let Fault::PacketLoss(share) | Fault::Duplicate(share) | Fault::Reorder(share) = self.fault {
             write!(f, "={share}")?;
         }
+        if let Fault::NoStream(id) = self.fault {
+            write!(f, "={id}")?;
+        }
         if let Some(at) = self.at_s {
             write!(f, "@{at}")?;
         }
@@ -78,7 +90,8 @@ impl fmt::Display for FaultRequest {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{0:?} is no fault; write one of packet-loss=SHARE, duplicate=SHARE, reorder=SHARE (shares from 0 to 1), gps-loss, \
-     engine-out, low-battery, silence, no-rpm, ice, then @SECOND and +SECONDS if it has its time, as in silence@120+10"
+     engine-out, low-battery, silence, no-rpm, no-stream=MESSAGE-NUMBER, ice, crash, reboot, then @SECOND and +SECONDS if it has \
+     its time, as in silence@120+10"
 )]
 pub struct FaultSyntax(String);
 
@@ -111,7 +124,10 @@ impl FromStr for FaultRequest {
             ("low-battery", _, None) => Fault::LowBattery,
             ("silence", _, None) => Fault::Silence,
             ("no-rpm", _, None) => Fault::NoRpm,
+            ("no-stream", _, Some(id)) if id.fract() == 0.0 => Fault::NoStream(id as u32),
             ("ice", _, None) => Fault::Ice,
+            ("crash", _, None) => Fault::Crash,
+            ("reboot", _, None) => Fault::Reboot,
             _ => return Err(bad()),
         };
         Ok(Self { fault, at_s, for_s })
@@ -137,8 +153,14 @@ pub struct Effects {
     pub low_battery: bool,
     /// No message says how fast the engine turns.
     pub no_rpm: bool,
+    /// The message with this number is not sent.
+    pub no_stream: Option<u32>,
     /// Full throttle is only enough for the slowest airspeed.
     pub ice: bool,
+    /// It is down where it is.
+    pub crash: bool,
+    /// It started anew when this began.
+    pub reboot: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -184,7 +206,10 @@ impl Schedule {
                 Fault::LowBattery => effects.low_battery = true,
                 Fault::Silence => effects.silent = true,
                 Fault::NoRpm => effects.no_rpm = true,
+                Fault::NoStream(id) => effects.no_stream = Some(id),
                 Fault::Ice => effects.ice = true,
+                Fault::Crash => effects.crash = true,
+                Fault::Reboot => effects.reboot = true,
             }
         }
         effects
@@ -264,6 +289,9 @@ mod tests {
             "low-battery@1.5+2",
             "silence@120+10",
             "ice@60",
+            "no-stream=24@60",
+            "crash@60",
+            "reboot@60",
         ] {
             let request: FaultRequest = text.parse().unwrap();
             assert_eq!(request.to_string(), text);
@@ -278,6 +306,8 @@ mod tests {
             "packet-loss",
             "packet-loss=2",
             "packet-loss=NaN",
+            "no-stream",
+            "no-stream=0.5",
             "gps-loss=1",
             "silence@-1",
             "silence@1+x",

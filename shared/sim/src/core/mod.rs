@@ -65,6 +65,8 @@ pub struct Simulator {
     peers: BTreeMap<Peer, Streams>,
     schedule: Schedule,
     effects: Effects,
+    /// When its autopilot started last.
+    booted_ns: u64,
     dice: Dice,
     inward: BadLink<(Peer, Frame)>,
     outward: BadLink<Outgoing>,
@@ -99,6 +101,7 @@ impl Simulator {
             peers: BTreeMap::new(),
             schedule: Schedule::default(),
             effects: Effects::default(),
+            booted_ns: 0,
             dice: Dice::new(seed),
             inward: BadLink::default(),
             outward: BadLink::default(),
@@ -206,6 +209,10 @@ impl Simulator {
         self.autopilot.gps_ok = !new.gps_lost;
         self.autopilot.aircraft.set_engine_healthy(!new.engine_out);
         self.autopilot.iced = new.ice;
+        self.autopilot.is_down = new.crash;
+        if new.reboot && !old.reboot {
+            self.booted_ns = self.now_ns;
+        }
         if new.low_battery && !old.low_battery {
             self.autopilot.aircraft.set_battery_share(LOW_BATTERY_SHARE);
         }
@@ -264,11 +271,14 @@ impl Simulator {
     /// A message as it is now; `None`: the autopilot doesn't have it.
     fn message(&self, id: u32) -> Option<MavMessage> {
         let known = self.rules.streams.iter().any(|(known, ..)| *known == id);
-        if !known || (self.effects.no_rpm && telemetry::RPM_MESSAGES.contains(&id)) {
+        if !known
+            || self.effects.no_stream == Some(id)
+            || (self.effects.no_rpm && telemetry::RPM_MESSAGES.contains(&id))
+        {
             return None;
         }
         let own = self.behaviour.message(&self.autopilot, self.now_ns, id);
-        own.or_else(|| telemetry::message(&self.autopilot, self.now_ns, id))
+        own.or_else(|| telemetry::message(&self.autopilot, self.now_ns - self.booted_ns, id))
     }
 
     fn post(&mut self, posts: Vec<Post>) {
