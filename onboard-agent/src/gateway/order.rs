@@ -161,6 +161,8 @@ pub enum Report {
     Links(AutopilotLinks),
     /// The autopilot started anew: nothing that was verified still holds.
     Rebooted,
+    /// Another station put its own list in the place of ours.
+    ListReplaced,
     /// What kind of autopilot it is, and why it can't be flown if it can't.
     Capability(Result<&'static str, String>),
 }

@@ -12,10 +12,11 @@ use usal::contract::{Action, GatewayState};
 const RETRY: Duration = Duration::from_millis(1000);
 /// An aircraft that does not arm yet, while its autopilot still starts up, is ordered to again for so long.
 const ARMS_WITHIN: Duration = Duration::from_secs(20);
-/// What an aircraft has aboard that was met in flight is read within this, or it is in somebody else's hands.
-const READ_WITHIN: Duration = Duration::from_secs(60);
 /// An order of ours that was overtaken by another may still come into effect for so long.
 const OVERTAKEN: Duration = Duration::from_secs(3);
+/// A list that is not ours is flown for so long, where ours is wanted, before the aircraft is made to circle: nothing can be written
+/// while it is flown.
+const NOT_OURS_FOR: Duration = Duration::from_secs(2);
 /// Airspeeds closer than this are the same, m/s.
 const SAME_SPEED_MPS: f64 = 0.1;
 /// A loiter counts as reached within this many radii.
@@ -60,11 +61,14 @@ pub struct Control {
     /// Since when it is to be armed, and puts it off.
     put_off_since: Option<Time>,
     speed: Option<(OrderId, f64)>,
-    adopt: Option<OrderId>,
+    /// The order to read what it has aboard.
+    pub adopt: Option<OrderId>,
+    /// Since when it flies a list that is not ours, though ours is wanted.
+    strays_since: Option<Time>,
     /// The mode in which a flight was met whose list is read.
-    met_in: Option<Mode>,
+    pub met_in: Option<Mode>,
     /// When a flight was met of which nothing is known.
-    met_at: Option<Time>,
+    pub met_at: Option<Time>,
 }
 
 impl Default for Control {
@@ -91,6 +95,7 @@ impl Default for Control {
             put_off_since: None,
             speed: None,
             adopt: None,
+            strays_since: None,
             met_in: None,
             met_at: None,
         }
@@ -236,39 +241,6 @@ impl Gateway {
         self.leave_loiter(out);
     }
 
-    /// A gateway that starts while the aircraft flies: it finds out what is flown before it acts.
-    fn meet_in_flight(&mut self, now: Time, out: &mut Vec<Output>) {
-        use GatewayState::{Manual, Off, Stop};
-        let unknown = !self.buffer.course().aboard && self.control.intent == Intent::Nothing;
-        if !unknown || !self.telemetry.flies(now) {
-            self.control.met_at = None;
-            return;
-        }
-        let is_unread = now.saturating_sub(*self.control.met_at.get_or_insert(now)) >= READ_WITHIN;
-        match (self.state, self.telemetry.mode) {
-            (Off | Stop, Some(_)) if is_unread => {
-                self.change(Trigger::PilotTook, "met in flight, and what it has aboard can't be read", out);
-            }
-            // also while its list is read
-            (Off | Stop, Some(Mode::Other(_) | Mode::Return)) => {
-                self.change(Trigger::PilotTook, "met in flight under a pilot's control", out);
-            }
-            _ if self.control.adopt.is_some() => {}
-            (Off | Stop, Some(_)) => self.ask_what_flies(out),
-            // he gives back what an earlier gateway had put aboard
-            (Manual, Some(Mode::Waypoints)) if self.adopting.is_some() => self.ask_what_flies(out),
-            _ => {}
-        }
-    }
-
-    fn ask_what_flies(&mut self, out: &mut Vec<Output>) {
-        let known = self.adopting.as_ref().map_or_else(Vec::new, |k| k.waypoints.clone());
-        self.control.adopting = self.buffer.number(known);
-        let order = Order::Adopt(self.control.adopting.clone());
-        self.control.adopt = Some(self.order(order, out));
-        self.control.met_in = self.telemetry.mode;
-    }
-
     /// The pilot gave the aircraft back when he switched to the waypoints: they are what is wanted again.
     pub(super) fn take_back(&mut self, out: &mut Vec<Output>) {
         let given_back = self.state == GatewayState::Manual && self.flies_waypoints();
@@ -329,15 +301,31 @@ impl Gateway {
             }
             return;
         }
+        if flies && self.flies_what_is_not_ours(now) {
+            return self.order_steer(Aim::Hold, out);
+        }
         let due = self.telemetry.mode != Some(wanted) || (wanted == Mode::Direct && self.control.direct_due);
         if due
             && !self.is_steering(wanted)
             && let Some(aim) = self.aim()
         {
-            let id = self.order(Order::Steer(aim), out);
-            self.control.mode = Some((id, wanted));
-            self.control.ordered = Some(wanted);
+            self.order_steer(aim, out);
         }
+    }
+
+    fn order_steer(&mut self, aim: Aim, out: &mut Vec<Output>) {
+        let id = self.order(Order::Steer(aim), out);
+        self.control.mode = Some((id, aim.mode()));
+        self.control.ordered = Some(aim.mode());
+    }
+
+    /// For so long that it will not change by itself: it started anew in flight, or another station's list is to be replaced.
+    fn flies_what_is_not_ours(&mut self, now: Time) -> bool {
+        if !self.flies_waypoints() || self.buffer.course().aboard || self.control.mode.is_some() {
+            self.control.strays_since = None;
+            return false;
+        }
+        now >= *self.control.strays_since.get_or_insert(now) + NOT_OURS_FOR
     }
 
     /// An order to steer is in flight. One that was confirmed by the mode need not be waited for by another.

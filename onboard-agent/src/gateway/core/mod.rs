@@ -12,6 +12,7 @@ mod control;
 mod deviation;
 mod feeding;
 mod io;
+mod met;
 mod requests;
 mod safe;
 mod states;
@@ -40,13 +41,8 @@ use usal::contract::{Action, GatewayEvent, GatewayState, SafeParameters, SafeRun
 const OFF_AFTER: Duration = Duration::from_secs(10);
 /// Silent for so long in the air: it has come down by now.
 const COME_DOWN_AFTER: Duration = Duration::from_secs(3600);
-/// Why an aircraft that was met in flight is somebody else's.
-const NOT_OURS: &str = "met in flight: nothing that it has aboard is ours";
 /// Why nothing can be begun while the state is `Off`.
 const NOT_HEARD: &str = "The autopilot is not heard; check its link.";
-/// Why an aircraft that flies what is ours is not flown by us.
-const TAKEN_MEANWHILE: &str =
-    "the autopilot was switched to another mode while its list was read, and not by the gateway";
 
 /// The gateway. See the module's text.
 pub struct Gateway {
@@ -179,6 +175,7 @@ impl Gateway {
             Report::PutOff(id, why) => self.put_off(now, id, why, out),
             Report::Failed(id, why) => self.failed(now, id, why, out),
             Report::Adopted(id, aboard) => self.adopt(id, aboard, out),
+            Report::ListReplaced => self.list_replaced(out),
             Report::Capability(result) => self.control.capability = Some(result.map(|_| ())),
             _ => {}
         }
@@ -205,32 +202,6 @@ impl Gateway {
             self.control.set_intent(Intent::Nothing, self.telemetry.mode);
             self.cause = format!("launch refused by the autopilot: {why}");
             out.push(Output::Save);
-        }
-    }
-
-    /// Takes over a flight that was met in the air, if it flies waypoints of ours.
-    fn adopt(&mut self, id: OrderId, aboard: Option<usize>, out: &mut Vec<Output>) {
-        self.control.forget(id);
-        let mut waypoints = std::mem::take(&mut self.control.adopting);
-        let known = self.adopting.take();
-        let given_back = |intent: &Intent| *intent == Intent::Nothing && self.flies_waypoints();
-        let intent = known.as_ref().map(|k| k.intent).filter(|i| !given_back(i)).unwrap_or(Intent::Fly);
-        self.fp_manager.plan = known.as_ref().and_then(|k| k.plan.clone()).or(self.fp_manager.plan.take());
-        if let Some(count) = aboard {
-            waypoints.truncate(count);
-            self.buffer.adopt(waypoints);
-            self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
-            let wanted = self.control.still_wanted(intent, self.telemetry.mode);
-            self.control.set_intent(wanted, self.telemetry.mode);
-            if wanted == Intent::Nothing {
-                self.change(Trigger::PilotTook, TAKEN_MEANWHILE, out);
-            }
-            out.push(Output::Save);
-        } else if self.state == GatewayState::Manual {
-            // it took long to read
-            self.cause = NOT_OURS.to_owned();
-        } else if !is_flying(self.state) {
-            self.change(Trigger::PilotTook, NOT_OURS, out);
         }
     }
 

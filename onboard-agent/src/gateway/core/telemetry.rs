@@ -72,6 +72,7 @@ fn is_voice(report: &Report) -> bool {
             | Report::Course(_)
             | Report::Links(_)
             | Report::Rebooted
+            | Report::ListReplaced
             | Report::Capability(_)
     )
 }

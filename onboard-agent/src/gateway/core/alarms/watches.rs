@@ -174,7 +174,7 @@ const WORDS: [Words; WATCHES.len()] = [
         id: "not-in-command",
         severity: Severity::Warning,
         source: "autopilot",
-        advice: "A pilot or a failsafe of the autopilot switched to another mode: nobody flies the plan. When it is safe to, resume takes the aircraft back.",
+        advice: "A pilot, another station or a failsafe of the autopilot decides what is flown, and not the plan. When it is safe to, resume takes the aircraft back.",
         cause: None,
         patience: Duration::from_secs(0),
     },

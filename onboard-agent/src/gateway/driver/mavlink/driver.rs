@@ -167,6 +167,12 @@ impl MavlinkDriver {
                 self.list.steers_to(now, seq);
             }
             SessionEvent::Mission(outcome) => self.list_ended(now, outcome),
+            SessionEvent::Replaced => {
+                self.list.lost();
+                // nothing of ours is aboard: that is known before it is said why
+                self.reports.extend(self.list.new_course().map(Report::Course));
+                self.reports.push_back(Report::ListReplaced);
+            }
             SessionEvent::Command(Client::List, Ok(())) => self.list.done(),
             SessionEvent::Command(Client::List, Err(refusal)) => {
                 self.list_ended(now, Outcome::Failed(refusal.why));
@@ -212,7 +218,7 @@ impl MavlinkDriver {
             }
             Report::Fix(fix) => self.list.moved(fix),
             Report::Rebooted => {
-                self.list.rebooted();
+                self.list.lost();
                 self.stirred = true;
             }
             _ => {}

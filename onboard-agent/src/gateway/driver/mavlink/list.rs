@@ -148,8 +148,8 @@ impl List {
         self.adopt = Some((id, known));
     }
 
-    /// The autopilot started anew.
-    pub fn rebooted(&mut self) {
+    /// What is aboard is not ours any more: the autopilot started anew, or another station put its list there.
+    pub fn lost(&mut self) {
         if let Some(window) = &mut self.window {
             window.invalidate();
         }

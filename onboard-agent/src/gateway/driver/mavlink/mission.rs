@@ -53,7 +53,18 @@ pub struct Mission {
     named: Option<u32>,
     /// And the one that this one replaced.
     replaced: Option<u32>,
+    /// What the list that was verified last will be called, if it is named at all.
+    expected: Option<u32>,
+    /// What is aboard was verified or read since something was last done to it.
+    known: bool,
+    /// It tells how long its list is.
+    tells_length: bool,
+    /// So many times in a row it said that another list is in use.
+    foreign: u32,
 }
+
+/// So many times in a row it has to say that another list is in use: a message may be late.
+const FOREIGN_AFTER: u32 = 5;
 
 impl Mission {
     /// Replaces the whole list, and verifies it.
@@ -96,9 +107,37 @@ impl Mission {
             Job::Transfer(transfer) if transfer.is_called(list) => {}
             _ => return None,
         }
+        let before = self.named;
         let outcome = self.finish(Some(Outcome::Verified));
-        self.replaced = self.named.replace(list).filter(|before| *before != list);
+        self.named = Some(list);
+        self.replaced = before.filter(|before| *before != list);
         outcome
+    }
+
+    /// It says which list is in use. True, once: another one than was verified or read last, which another station has
+    /// brought aboard.
+    pub fn is_foreign(&mut self, said: &MISSION_CURRENT_DATA) -> bool {
+        self.tells_length |= (1..u16::MAX).contains(&said.total);
+        if self.expected.is_some_and(|name| name == said.mission_id) {
+            self.named = self.expected;
+        }
+        let is_other = self.is_of_other_length(said.total) || self.is_other(said.mission_id);
+        self.foreign = if is_other && self.known && !self.is_busy() { self.foreign + 1 } else { 0 };
+        let found = self.foreign >= FOREIGN_AFTER;
+        self.known &= !found;
+        found
+    }
+
+    /// Some count the home entry, others don't.
+    fn is_of_other_length(&self, total: u16) -> bool {
+        let ours = self.aboard.entries().len();
+        self.tells_length && ![ours, ours.saturating_sub(1)].contains(&usize::from(total))
+    }
+
+    /// 0: it does not name its list.
+    fn is_other(&self, name: u32) -> bool {
+        let ours = self.named.filter(|_| name != 0 && !self.is_replaced(name));
+        ours.is_some_and(|ours| ours != name)
     }
 
     /// It speaks of the list before the one that is in use: this was sent before that was replaced.
@@ -163,9 +202,13 @@ impl Mission {
     fn finish(&mut self, outcome: Option<Outcome>) -> Option<Outcome> {
         let outcome = outcome?;
         self.aboard.ended(&outcome);
-        self.replaced = None;
+        self.known = !matches!(outcome, Outcome::Failed(_));
+        (self.replaced, self.named, self.expected, self.foreign) = (None, None, None, 0);
         self.link = match self.job.take()? {
-            Job::Transfer(transfer) => transfer.into_rto(),
+            Job::Transfer(transfer) => {
+                self.expected = transfer.name().filter(|_| outcome == Outcome::Verified);
+                transfer.into_rto()
+            }
             Job::Write(write) => write.into_rto(),
         };
         Some(outcome)
@@ -259,9 +302,52 @@ mod tests {
             assert_eq!(mission.in_use(length as u32), Some(Outcome::Verified));
             assert_eq!((0..9).find(|list| mission.is_replaced(*list)), replaced);
         }
-        // read back, and not named by the autopilot: nothing is known of names
+        // given up, and not named by the autopilot: nothing is known of names
         mission.upload(Time::ZERO, vec![Entry::DEFAULT; 5], &RULES, PEER, &mut vec![]);
         mission.break_off("no answer");
         assert!((0..9).all(|list| !mission.is_replaced(list)));
+    }
+
+    fn said(total: u16, mission_id: u32) -> MISSION_CURRENT_DATA {
+        MISSION_CURRENT_DATA { total, mission_id, ..MISSION_CURRENT_DATA::DEFAULT }
+    }
+
+    /// How often it has to be said until it is found to be another list.
+    fn found(mission: &mut Mission, total: u16, mission_id: u32) -> Option<usize> {
+        (1..20).find(|_| mission.is_foreign(&said(total, mission_id)))
+    }
+
+    #[test]
+    fn a_list_of_another_length_or_name_than_ours_is_another_stations() {
+        let of_ours = || {
+            let mut mission = Mission::default();
+            assert_eq!(found(&mut mission, 7, 99), None, "nothing of ours is known");
+            mission.upload(Time::ZERO, vec![Entry::DEFAULT; 5], &RULES, PEER, &mut vec![]);
+            assert_eq!(found(&mut mission, 7, 99), None, "it is being written");
+            assert_eq!(mission.in_use(5), Some(Outcome::Verified));
+            mission
+        };
+        // its own length with and without home, our name and none
+        for (total, name) in [(5, 5), (4, 5), (5, 0), (4, 0)] {
+            assert_eq!(found(&mut of_ours(), total, name), None, "{total} {name}");
+        }
+        for (total, name) in [(9, 5), (5, 77), (0, 0), (u16::MAX, 0)] {
+            assert_eq!(found(&mut of_ours(), total, name), Some(5), "{total} {name}");
+        }
+        let mut once_late = of_ours();
+        assert!((0..4).all(|_| !once_late.is_foreign(&said(9, 0))));
+        assert!(!once_late.is_foreign(&said(5, 5)));
+        assert_eq!(found(&mut once_late, 9, 0), Some(5), "counted anew");
+        assert_eq!(found(&mut once_late, 9, 0), None, "it is told once");
+    }
+
+    #[test]
+    fn a_list_that_was_never_called_as_expected_is_not_judged_by_its_name() {
+        let mut mission = Mission::default();
+        mission.upload(Time::ZERO, vec![Entry::DEFAULT; 5], &RULES, PEER, &mut vec![]);
+        mission.finish(Some(Outcome::Verified));
+        assert_eq!(found(&mut mission, 5, 1234), None);
+        assert!(!mission.is_foreign(&said(5, 5)));
+        assert_eq!(found(&mut mission, 5, 1234), Some(5));
     }
 }

@@ -42,6 +42,8 @@ pub enum SessionEvent {
     Mission(Outcome),
     /// A parameter.
     Parameter(PARAM_VALUE_DATA),
+    /// Another station has put another list in the place of ours.
+    Replaced,
     /// Telemetry.
     Telemetry(Report),
 }
@@ -248,7 +250,9 @@ impl Session {
             }
             MavMessage::MISSION_CURRENT(current) => {
                 events.extend(self.mission.in_use(current.mission_id).map(SessionEvent::Mission));
-                if !self.mission.is_replaced(current.mission_id) {
+                if self.mission.is_foreign(current) {
+                    events.push(SessionEvent::Replaced);
+                } else if !self.mission.is_replaced(current.mission_id) {
                     self.current(now, current.seq, events);
                 }
             }

@@ -99,6 +99,11 @@ impl Transfer {
         self.id == Some(id)
     }
 
+    /// What the autopilot will call the list that is written.
+    pub fn name(&self) -> Option<u32> {
+        self.id
+    }
+
     fn writes(&self) -> bool {
         !self.items.is_empty()
     }

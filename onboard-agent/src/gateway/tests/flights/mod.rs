@@ -263,6 +263,18 @@ impl Flight {
         flight
     }
 
+    /// The same on either autopilot.
+    pub fn in_flight(personality: Personality, seed: u64) -> Self {
+        let mut flight = Self::of(personality, seed, &[]);
+        let is_px4 = personality != Personality::ArduPlane;
+        assert!(!is_px4 || flight.sim.autopilot.params.set("MIS_TKO_LAND_REQ", 0.0));
+        // it is asked for that parameter first
+        flight.run(5.0);
+        flight.launch(std::iter::once(take_off()).chain(zigzag(0, 30, 300.0)).collect());
+        flight.run(20.0);
+        flight
+    }
+
     /// Tells the gateway of the runway at home.
     pub fn store_runway(&mut self) {
         self.ask(GatewayRequest::SetRunways { runways: vec![runway_at(HOME)] }).unwrap();
@@ -342,6 +354,7 @@ mod corners;
 mod gliding;
 mod met_in_flight;
 mod px4;
+mod replaced;
 mod runways;
 mod strangers;
 mod taken_over;

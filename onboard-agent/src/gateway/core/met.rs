@@ -1,0 +1,89 @@
+//! A flight that was met in the air, and one whose list somebody else replaced: is it ours?
+
+use super::Gateway;
+use super::io::{Intent, Output};
+use super::states::{Trigger, is_flying};
+use crate::gateway::order::{Mode, Order, OrderId, Time};
+use std::time::Duration;
+use usal::contract::{GatewayState, Token};
+
+/// What an aircraft has aboard that was met in flight is read within this, or it is in somebody else's hands.
+const READ_WITHIN: Duration = Duration::from_secs(60);
+/// Why an aircraft that was met in flight is somebody else's.
+const NOT_OURS: &str = "met in flight: nothing that it has aboard is ours";
+/// Why an aircraft that flies what is ours is not flown by us.
+const TAKEN_MEANWHILE: &str =
+    "the autopilot was switched to another mode while its list was read, and not by the gateway";
+
+impl Gateway {
+    /// A gateway that starts while the aircraft flies: it finds out what is flown before it acts.
+    pub(super) fn meet_in_flight(&mut self, now: Time, out: &mut Vec<Output>) {
+        use GatewayState::{Manual, Off, Stop};
+        let unknown = !self.buffer.course().aboard && self.control.intent == Intent::Nothing;
+        if !unknown || !self.telemetry.flies(now) {
+            self.control.met_at = None;
+            return;
+        }
+        let is_unread = now.saturating_sub(*self.control.met_at.get_or_insert(now)) >= READ_WITHIN;
+        match (self.state, self.telemetry.mode) {
+            (Off | Stop, Some(_)) if is_unread => {
+                self.change(Trigger::PilotTook, "met in flight, and what it has aboard can't be read", out);
+            }
+            // also while its list is read
+            (Off | Stop, Some(Mode::Other(_) | Mode::Return)) => {
+                self.change(Trigger::PilotTook, "met in flight under a pilot's control", out);
+            }
+            _ if self.control.adopt.is_some() => {}
+            (Off | Stop, Some(_)) => self.ask_what_flies(out),
+            // he gives back what an earlier gateway had put aboard
+            (Manual, Some(Mode::Waypoints)) if self.adopting.is_some() => self.ask_what_flies(out),
+            _ => {}
+        }
+    }
+
+    fn ask_what_flies(&mut self, out: &mut Vec<Output>) {
+        let known = self.adopting.as_ref().map_or_else(Vec::new, |k| k.waypoints.clone());
+        self.control.adopting = self.buffer.number(known);
+        let order = Order::Adopt(self.control.adopting.clone());
+        self.control.adopt = Some(self.order(order, out));
+        self.control.met_in = self.telemetry.mode;
+    }
+
+    /// Takes over a flight that was met in the air, if it flies waypoints of ours.
+    pub(super) fn adopt(&mut self, id: OrderId, aboard: Option<usize>, out: &mut Vec<Output>) {
+        self.control.forget(id);
+        let mut waypoints = std::mem::take(&mut self.control.adopting);
+        let known = self.adopting.take();
+        let given_back = |intent: &Intent| *intent == Intent::Nothing && self.flies_waypoints();
+        let intent = known.as_ref().map(|k| k.intent).filter(|i| !given_back(i)).unwrap_or(Intent::Fly);
+        self.fp_manager.plan = known.as_ref().and_then(|k| k.plan.clone()).or(self.fp_manager.plan.take());
+        if let Some(count) = aboard {
+            waypoints.truncate(count);
+            self.buffer.adopt(waypoints);
+            self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
+            let wanted = self.control.still_wanted(intent, self.telemetry.mode);
+            self.control.set_intent(wanted, self.telemetry.mode);
+            if wanted == Intent::Nothing {
+                self.change(Trigger::PilotTook, TAKEN_MEANWHILE, out);
+            }
+            out.push(Output::Save);
+        } else if self.state == GatewayState::Manual {
+            // it took long to read
+            self.cause = NOT_OURS.to_owned();
+        } else if !is_flying(self.state) {
+            self.change(Trigger::PilotTook, NOT_OURS, out);
+        }
+    }
+
+    /// Somebody else decides what is flown, until he gives it back or the operator takes it.
+    pub(super) fn list_replaced(&mut self, out: &mut Vec<Output>) {
+        const CAUSE: &str = "another station put its own list in the place of the plan's";
+        if self.state == GatewayState::Manual {
+            self.cause = CAUSE.to_owned();
+        } else if is_flying(self.state) {
+            self.control.set_intent(Intent::Nothing, self.telemetry.mode);
+            self.change(Trigger::PilotTook, CAUSE, out);
+            out.push(Output::Save);
+        }
+    }
+}
