@@ -157,6 +157,8 @@ pub enum Report {
     },
     /// Whether it stands on the ground.
     OnGround(bool),
+    /// What it used to say and no longer says; empty: nothing is missing. No sign of life.
+    Stopped(Vec<&'static str>),
     /// How the links to it do; no sign of life.
     Links(AutopilotLinks),
     /// The autopilot started anew: nothing that was verified still holds.

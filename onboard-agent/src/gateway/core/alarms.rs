@@ -68,6 +68,8 @@ pub struct Alarms {
     stands_at: Option<LatLon>,
     /// Messages of another FP Manager that were ignored.
     ignored: u64,
+    /// What the autopilot no longer says.
+    stopped: Vec<&'static str>,
 }
 
 impl Alarms {
@@ -87,6 +89,9 @@ impl Alarms {
         if let (Watch::StandsStill, Some(place)) = (watch, self.stands_at) {
             alarm.advice += &format!(" It is at {:.5}, {:.5}.", place.lat_deg, place.lon_deg);
         }
+        if watch == Watch::StreamStopped {
+            alarm.advice += &format!(" Missing: {}.", self.stopped.join(", "));
+        }
         if watch == Watch::OtherFpManager {
             alarm.advice += &format!(" Ignored since the join: {}.", self.ignored);
         }
@@ -99,6 +104,7 @@ impl Alarms {
             self.stands_at = t.fix.map(|(_, fix)| fix.position);
         }
         self.ignored = inputs.other_fp_manager;
+        self.stopped.clone_from(&t.stopped);
         for watch in WATCHES {
             let raised = self.raised.contains(&watch);
             let wrong = is_wrong(watch, now, t, inputs, raised);
@@ -138,9 +144,15 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::GpsLost => t.gps.is_some_and(|(_, g)| !g.fix_3d),
         Watch::EngineOut => {
             let needed = raised || inputs.sinks_below_target;
-            t.is_airborne() && t.engine.is_some_and(|(_, e)| has_stopped(e, needed))
+            let stands = |e| has_stopped(e, needed);
+            // one that stood when it was last told of stands
+            t.is_airborne() && t.engine(now).map_or(raised, stands)
         }
-        Watch::EngineSuspected => t.is_airborne() && t.engine.is_none() && strains(now, t, inputs, raised),
+        Watch::EngineSuspected => {
+            t.is_airborne() && t.engine(now).is_none() && strains(now, t, inputs, raised)
+        }
+        // if nothing comes at all, that is another alarm
+        Watch::StreamStopped => !t.stopped.is_empty() && age(t.last_received).is_some_and(|a| a < SILENT),
         Watch::Sinks => inputs.sinks,
         Watch::Slow => inputs.slow,
         Watch::StandsStill => inputs.stands_still,
@@ -309,6 +321,29 @@ mod tests {
         assert_eq!(events, [(50, "+slow".into()), (70, "+engine-suspected".into())]);
         let climbing = story(&[(100, sinks, throttle(1.0)), (5, well, moving(-1.0))]);
         assert!(climbing.contains(&(100, "-engine-suspected".into())), "{climbing:?}");
+    }
+
+    #[test]
+    fn an_engine_that_is_no_longer_told_of_is_suspected_like_one_that_never_was() {
+        let sinks = AlarmInputs { sinks: true, ..AlarmInputs::default() };
+        let runs = Report::Engine(Engine { rpm: 5000.0, temperature_c: 80.0, throttle: 1.0 });
+        let events = story(&[(20, AlarmInputs::default(), runs), (200, sinks, Report::Throttle(1.0))]);
+        assert!(events.iter().any(|(_, name)| name == "+engine-suspected"), "{events:?}");
+    }
+
+    #[test]
+    fn what_is_no_longer_said_is_named() {
+        let (mut alarms, mut telemetry) = (Alarms::default(), Telemetry::default());
+        telemetry.take(Duration::ZERO, &Report::Stopped(vec!["GPS", "battery"]));
+        telemetry.take(Duration::ZERO, &Report::Alive);
+        for second in [0, 2] {
+            alarms.update(Duration::from_secs(second), &telemetry, AlarmInputs::default(), &mut vec![]);
+        }
+        let raised = alarms.raised();
+        let told = raised.iter().find(|a| a.id == "stream-stopped").unwrap();
+        assert!(told.advice.ends_with("Missing: GPS, battery."), "{}", told.advice);
+        alarms.update(Duration::from_secs(5), &telemetry, AlarmInputs::default(), &mut vec![]);
+        assert_eq!(alarms.raised().iter().filter(|a| a.id == "stream-stopped").count(), 0, "all is silent");
     }
 
     #[test]

@@ -16,6 +16,9 @@ const STANDING_MPS: f64 = 0.5;
 /// A value that is older says nothing of what happens now.
 pub const FRESH: Duration = Duration::from_secs(2);
 
+/// Nothing is known of what a value is that has not come for so long, though it changes slowly.
+const OUT_OF_DATE: Duration = Duration::from_secs(10);
+
 /// An armed autopilot that has not said for so long whether it stands on the ground will not say it.
 const SAYS_WHERE: Duration = Duration::from_secs(5);
 
@@ -56,6 +59,8 @@ pub struct Telemetry {
     pub home: Option<(LatLon, f64)>,
     /// Stands on the ground, if it says.
     pub on_ground: Option<bool>,
+    /// What it no longer says.
+    pub stopped: Vec<&'static str>,
     /// How the links to it do.
     pub links: Timed<AutopilotLinks>,
 }
@@ -73,6 +78,7 @@ fn is_voice(report: &Report) -> bool {
             | Report::Links(_)
             | Report::Rebooted
             | Report::ListReplaced
+            | Report::Stopped(_)
             | Report::Capability(_)
     )
 }
@@ -97,6 +103,7 @@ impl Default for Telemetry {
             power: None,
             home: None,
             on_ground: None,
+            stopped: vec![],
             links: None,
         }
     }
@@ -135,9 +142,15 @@ impl Telemetry {
                 self.home = Some((*position, *altitude_amsl_m));
             }
             Report::OnGround(v) => self.on_ground = Some(*v),
+            Report::Stopped(what) => self.stopped.clone_from(what),
             Report::Links(v) => self.links = Some((now, v.clone())),
             _ => {}
         }
+    }
+
+    /// What it says of its engine, if it still does.
+    pub fn engine(&self, now: Time) -> Option<Engine> {
+        self.engine.filter(|(at, _)| now.saturating_sub(*at) < OUT_OF_DATE).map(|(_, engine)| engine)
     }
 
     /// In the air, as far as is known.

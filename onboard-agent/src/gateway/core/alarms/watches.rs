@@ -18,6 +18,8 @@ pub enum Watch {
     AutopilotSilent,
     /// The position does not change.
     PositionStale,
+    /// Something that it used to say no longer comes.
+    StreamStopped,
     /// An order is not followed.
     Disobeys,
     /// It sinks below what was commanded.
@@ -57,13 +59,14 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 18] = [
+pub const WATCHES: [Watch; 19] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
     Watch::EnergyLow,
     Watch::AutopilotSilent,
     Watch::PositionStale,
+    Watch::StreamStopped,
     Watch::Disobeys,
     Watch::Sinks,
     Watch::Slow,
@@ -132,6 +135,16 @@ const WORDS: [Words; WATCHES.len()] = [
         advice: "The position no longer changes. Do not trust the map.",
         cause: None,
         patience: Duration::from_secs(0),
+    },
+    Words {
+        watch: Watch::StreamStopped,
+        id: "stream-stopped",
+        severity: Severity::Caution,
+        source: "link",
+        advice: "The autopilot no longer says all that it used to, although it was asked again: what is shown of it is old, and what it would warn of is not seen. Check its parameters and the link's load.",
+        cause: None,
+        // after a silence all comes again, one after the other
+        patience: Duration::from_secs(2),
     },
     Words {
         watch: Watch::Disobeys,

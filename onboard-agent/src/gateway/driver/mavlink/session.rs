@@ -55,6 +55,8 @@ pub struct Session {
     links: Links,
     /// When bytes that were no frames were logged, and how many there were.
     logged: (Time, u64),
+    /// The same of messages that were ignored.
+    logged_ignored: (Time, u64),
     peer: Option<Peer>,
     /// Messages of other systems, and such without sense.
     pub ignored: u64,
@@ -186,6 +188,8 @@ impl Session {
             self.look_at_links(now, events);
         }
         let Some(peer) = self.peer else { return };
+        let stopped = self.streams.stopped(now).map(Report::Stopped);
+        events.extend(stopped.map(SessionEvent::Telemetry));
         self.streams.tick(now, peer, self.manner.wind, &mut self.out);
         let ended = self.commands.tick(now, peer, &mut self.out);
         events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));
@@ -199,6 +203,19 @@ impl Session {
             self.links.ask_time(now);
         }
         self.log_garbage(now);
+        self.log_ignored(now);
+    }
+
+    fn log_ignored(&mut self, now: Time) {
+        let (at, before) = self.logged_ignored;
+        if self.ignored > before && now >= at + LOG_EVERY {
+            let messages = self.ignored - before;
+            tracing::warn!(
+                messages,
+                "messages of other systems, or with values that nothing can have, were ignored"
+            );
+            self.logged_ignored = (now, self.ignored);
+        }
     }
 
     fn log_garbage(&mut self, now: Time) {
@@ -239,7 +256,7 @@ impl Session {
         if self.links.take_reboot() {
             events.push(SessionEvent::Telemetry(Report::Rebooted));
         }
-        self.streams.seen(mavlink::Message::message_id(message));
+        self.streams.seen(now, mavlink::Message::message_id(message));
         match message {
             MavMessage::HEARTBEAT(beat) => self.on_heartbeat(now, beat, events),
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => self.synchronise(now, sync.ts1),

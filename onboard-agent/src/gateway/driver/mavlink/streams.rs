@@ -12,23 +12,26 @@ const OBSERVED: Duration = Duration::from_secs(3);
 /// And each time twice as long, up to so many times: an autopilot may have its reasons.
 const MAX_DOUBLINGS: u32 = 5;
 
-/// `(message, interval in milliseconds)`; interval 0: asked for once, until it comes.
-const WANTED: [(u32, u32); 15] = [
-    (GLOBAL_POSITION_INT_DATA::ID, 100),
-    (ATTITUDE_DATA::ID, 100),
-    (MISSION_CURRENT_DATA::ID, 100),
-    (VFR_HUD_DATA::ID, 200),
-    (GPS_RAW_INT_DATA::ID, 400),
-    (SYS_STATUS_DATA::ID, 500),
-    (WIND_DATA::ID, 500),
-    (WIND_COV_DATA::ID, 500),
-    (RPM_DATA::ID, 500),
-    (EFI_STATUS_DATA::ID, 1000),
-    (FUEL_STATUS_DATA::ID, 1000),
-    (SCALED_PRESSURE_DATA::ID, 1000),
-    (SYSTEM_TIME_DATA::ID, 1000),
-    (EXTENDED_SYS_STATE_DATA::ID, 500),
-    (HOME_POSITION_DATA::ID, 0),
+/// What came before and has not for so long has stopped.
+const STOPPED: Duration = Duration::from_secs(10);
+
+/// `(message, interval in milliseconds, what it says)`; interval 0: asked for once, until it comes.
+const WANTED: [(u32, u32, &str); 15] = [
+    (GLOBAL_POSITION_INT_DATA::ID, 100, "position"),
+    (ATTITUDE_DATA::ID, 100, "attitude"),
+    (MISSION_CURRENT_DATA::ID, 100, "place on the list"),
+    (VFR_HUD_DATA::ID, 200, "airspeed"),
+    (GPS_RAW_INT_DATA::ID, 400, "GPS"),
+    (SYS_STATUS_DATA::ID, 500, "battery"),
+    (WIND_DATA::ID, 500, "wind"),
+    (WIND_COV_DATA::ID, 500, "wind"),
+    (RPM_DATA::ID, 500, "engine speed"),
+    (EFI_STATUS_DATA::ID, 1000, "engine"),
+    (FUEL_STATUS_DATA::ID, 1000, "fuel"),
+    (SCALED_PRESSURE_DATA::ID, 1000, "pressure"),
+    (SYSTEM_TIME_DATA::ID, 1000, "time of day"),
+    (EXTENDED_SYS_STATE_DATA::ID, 500, "whether it stands"),
+    (HOME_POSITION_DATA::ID, 0, "home"),
 ];
 
 /// How ArduPilot begins to say that it has no such message; its number and a bracket follow.
@@ -42,6 +45,8 @@ const WINDS: [u32; 2] = [WIND_DATA::ID, WIND_COV_DATA::ID];
 pub struct Streams {
     streams: [Stream; WANTED.len()],
     got_home: bool,
+    /// What was last said of those that have stopped.
+    told: Vec<&'static str>,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -53,6 +58,8 @@ struct Stream {
     in_vain: u32,
     /// The autopilot has said that it has no such message.
     is_lacking: bool,
+    /// When it came last.
+    came: Option<Time>,
 }
 
 impl Stream {
@@ -68,19 +75,20 @@ impl Stream {
         }
         let wanted = looked.as_millis() / u128::from(interval_ms.max(1));
         let missing = self.count == 0 || u128::from(self.count) * 2 < wanted;
-        *self =
-            Self { since: Some(now), count: 0, in_vain: if missing { self.in_vain + 1 } else { 0 }, ..*self };
+        let in_vain = if missing { self.in_vain + 1 } else { 0 };
+        *self = Self { since: Some(now), count: 0, in_vain, ..*self };
         missing
     }
 }
 
 impl Streams {
     /// A message came.
-    pub fn seen(&mut self, id: u32) {
-        let known = WANTED.iter().zip(&mut self.streams).find(|((wanted, _), _)| *wanted == id);
+    pub fn seen(&mut self, now: Time, id: u32) {
+        let known = WANTED.iter().zip(&mut self.streams).find(|((wanted, ..), _)| *wanted == id);
         if let Some((_, stream)) = known {
             stream.count += 1;
             stream.is_lacking = false;
+            stream.came = Some(now);
             self.got_home |= id == HOME_POSITION_DATA::ID;
         }
     }
@@ -98,13 +106,26 @@ impl Streams {
 
     /// Asks for what is missing; of the messages that say the wind, for this one.
     pub fn tick(&mut self, now: Time, peer: Peer, wind: u32, out: &mut Vec<MavMessage>) {
-        for ((id, interval_ms), stream) in WANTED.iter().zip(&mut self.streams) {
+        for ((id, interval_ms, _), stream) in WANTED.iter().zip(&mut self.streams) {
             let other_wind = WINDS.contains(id) && *id != wind;
             let wanted = !other_wind && !stream.is_lacking && (*interval_ms > 0 || !self.got_home);
             if wanted && stream.is_due(now, *interval_ms) {
                 out.push(ask(*id, *interval_ms, peer));
             }
         }
+    }
+
+    /// What no longer comes, if that has changed.
+    pub fn stopped(&mut self, now: Time) -> Option<Vec<&'static str>> {
+        let over = |stream: &Stream| stream.came.is_some_and(|at| now.saturating_sub(at) > STOPPED);
+        let known = WANTED.iter().zip(&self.streams).filter(|((_, interval_ms, _), _)| *interval_ms > 0);
+        let stopped: Vec<_> =
+            known.filter(|(_, stream)| over(*stream)).map(|((.., what), _)| *what).collect();
+        if self.told == stopped {
+            return None;
+        }
+        self.told.clone_from(&stopped);
+        Some(stopped)
     }
 }
 
@@ -155,6 +176,19 @@ mod tests {
         );
     }
 
+    #[test]
+    fn what_came_and_no_longer_comes_is_told_until_it_comes_again() {
+        let (mut streams, at) = (Streams::default(), Duration::from_secs);
+        assert_eq!(streams.stopped(at(60)), None, "it never came");
+        streams.seen(at(60), SYS_STATUS_DATA::ID);
+        streams.seen(at(60), HOME_POSITION_DATA::ID);
+        assert_eq!(streams.stopped(at(70)), None);
+        assert_eq!(streams.stopped(at(71)), Some(vec!["battery"]));
+        assert_eq!(streams.stopped(at(72)), None, "it was told");
+        streams.seen(at(73), SYS_STATUS_DATA::ID);
+        assert_eq!(streams.stopped(at(73)), Some(vec![]));
+    }
+
     /// What is read and never asked for stays away from an autopilot that sends nothing by itself.
     #[test]
     fn whatever_telemetry_reads_is_asked_for() {
@@ -164,7 +198,7 @@ mod tests {
         assert!(names.len() > 10 && names.contains(&"FUEL_STATUS"), "{names:?}");
         for name in names {
             let id = MavMessage::message_id_from_name(name).unwrap();
-            assert!(WANTED.iter().any(|(wanted, _)| *wanted == id), "{name} is read and not asked for");
+            assert!(WANTED.iter().any(|(wanted, ..)| *wanted == id), "{name} is read and not asked for");
         }
     }
 }

@@ -351,6 +351,7 @@ pub fn landing() -> Vec<Waypoint> {
 }
 
 mod corners;
+mod faults;
 mod gliding;
 mod met_in_flight;
 mod px4;
