@@ -7,6 +7,7 @@ use crate::gateway::order::{Fix, Report, Time};
 use geometry::LatLon;
 use geometry::geodesy::normalise_360;
 use mavlink::dialects::ardupilotmega::*;
+use std::ops::RangeInclusive;
 use usal::contract::{Air, Attitude, Engine, Gps, Power};
 
 /// A position that is farther from the last one than this could have been flown, m/s.
@@ -15,6 +16,17 @@ const FASTEST_MPS: f64 = 300.0;
 const JUMP_M: f64 = 500.0;
 /// After so many jumps in a row to about the same place, it is believed.
 const BELIEVED_AFTER: u32 = 10;
+/// What an aircraft and the air around it may be; what lies outside is no measurement.
+const ALTITUDES_M: RangeInclusive<f64> = -500.0..=20_000.0;
+const SPEEDS_MPS: RangeInclusive<f64> = -FASTEST_MPS..=FASTEST_MPS;
+const PRESSURES_HPA: RangeInclusive<f64> = 10.0..=1200.0;
+const TEMPERATURES_C: RangeInclusive<f64> = -100.0..=100.0;
+const ENGINE_TEMPERATURES_C: RangeInclusive<f64> = -100.0..=2000.0;
+const FASTEST_RPM: f32 = 200_000.0;
+/// Its value where nothing is measured: voltage in mV and dilution of precision.
+const NOT_MEASURED: u16 = u16::MAX;
+/// A dilution of precision that nothing can be made of.
+const NO_HDOP: f64 = 99.99;
 /// A time of day before this (2020-01-01, in microseconds since 1970) is none: the autopilot has not received it from a satellite.
 const NO_TIME_BEFORE_US: u64 = 1_577_836_800_000_000;
 
@@ -88,18 +100,23 @@ impl Readings {
 
     fn fix(&mut self, now: Time, m: &GLOBAL_POSITION_INT_DATA) -> Option<Fix> {
         let position = place(m.lat, m.lon)?;
-        self.is_plausible(now, position).then_some(())?;
-        self.last_fix = Some((now, position));
-        self.finer_at = Some(now);
-        self.home_amsl_m = Some((f64::from(m.alt) - f64::from(m.relative_alt)) / 1e3);
-        Some(Fix {
+        let fix = Fix {
             position,
             altitude_amsl_m: f64::from(m.alt) / 1e3,
             altitude_home_m: f64::from(m.relative_alt) / 1e3,
             north_mps: f64::from(m.vx) / 1e2,
             east_mps: f64::from(m.vy) / 1e2,
             down_mps: f64::from(m.vz) / 1e2,
-        })
+        };
+        let altitudes = [fix.altitude_amsl_m, fix.altitude_home_m];
+        let speeds = [fix.north_mps, fix.east_mps, fix.down_mps];
+        let in_range = altitudes.iter().all(|m| ALTITUDES_M.contains(m))
+            && speeds.iter().all(|v| SPEEDS_MPS.contains(v));
+        (in_range && self.is_plausible(now, position)).then_some(())?;
+        self.last_fix = Some((now, position));
+        self.finer_at = Some(now);
+        self.home_amsl_m = Some(fix.altitude_amsl_m - fix.altitude_home_m);
+        Some(fix)
     }
 
     fn is_plausible(&mut self, now: Time, position: LatLon) -> bool {
@@ -118,7 +135,7 @@ impl Readings {
 
     fn hud(&mut self, m: &VFR_HUD_DATA) -> Option<Air> {
         let airspeed = f64::from(m.airspeed);
-        (airspeed.is_finite() && airspeed >= 0.0).then_some(())?;
+        (0.0..=FASTEST_MPS).contains(&airspeed).then_some(())?;
         self.airspeed_mps = airspeed;
         self.throttle = f64::from(m.throttle.min(100)) / 100.0;
         Some(Air {
@@ -147,24 +164,28 @@ impl Readings {
     }
 
     fn pressure(&mut self, m: &SCALED_PRESSURE_DATA) -> Option<()> {
-        m.press_abs.is_finite().then_some(())?;
-        self.pressure_hpa = f64::from(m.press_abs);
-        self.temperature_c = f64::from(m.temperature) / 100.0;
+        let (pressure_hpa, temperature_c) = (f64::from(m.press_abs), f64::from(m.temperature) / 100.0);
+        let in_range = PRESSURES_HPA.contains(&pressure_hpa) && TEMPERATURES_C.contains(&temperature_c);
+        in_range.then_some(())?;
+        (self.pressure_hpa, self.temperature_c) = (pressure_hpa, temperature_c);
         Some(())
     }
 
     fn engine(&mut self, rpm: f32) -> Option<Engine> {
-        (rpm.is_finite() && rpm >= 0.0).then_some(Engine {
+        (0.0..=FASTEST_RPM).contains(&rpm).then_some(Engine {
             rpm: f64::from(rpm),
             temperature_c: self.engine_temperature_c,
             throttle: self.throttle,
         })
     }
 
+    /// Voltage or current that is not measured is 0.
     fn power(&mut self, m: &SYS_STATUS_DATA) -> Option<Power> {
+        let millivolts = if m.voltage_battery == NOT_MEASURED { 0 } else { m.voltage_battery };
+        let centiamperes = if m.current_battery == -1 { 0 } else { m.current_battery };
         let power = (0..=100).contains(&m.battery_remaining).then(|| Power {
-            voltage_v: f64::from(m.voltage_battery) / 1e3,
-            current_a: f64::from(m.current_battery) / 1e2,
+            voltage_v: f64::from(millivolts) / 1e3,
+            current_a: f64::from(centiamperes) / 1e2,
             battery: f64::from(m.battery_remaining) / 100.0,
             fuel: self.fuel,
         });
@@ -180,8 +201,9 @@ impl Readings {
     }
 
     fn efi(&mut self, m: &EFI_STATUS_DATA) -> Option<()> {
-        m.cylinder_head_temperature.is_finite().then_some(())?;
-        self.engine_temperature_c = f64::from(m.cylinder_head_temperature);
+        let temperature_c = f64::from(m.cylinder_head_temperature);
+        ENGINE_TEMPERATURES_C.contains(&temperature_c).then_some(())?;
+        self.engine_temperature_c = temperature_c;
         Some(())
     }
 }
@@ -209,14 +231,15 @@ fn gps(m: &GPS_RAW_INT_DATA, unix_s: Option<i64>) -> Gps {
     Gps {
         fix_3d: m.fix_type as u32 >= GpsFixType::GPS_FIX_TYPE_3D_FIX as u32,
         satellites: m.satellites_visible,
-        hdop: f64::from(m.eph) / 100.0,
+        hdop: if m.eph == NOT_MEASURED { NO_HDOP } else { f64::from(m.eph) / 100.0 },
         unix_s,
     }
 }
 
 fn home(m: &HOME_POSITION_DATA) -> Option<Report> {
     let position = place(m.latitude, m.longitude)?;
-    Some(Report::Home { position, altitude_amsl_m: f64::from(m.altitude) / 1e3 })
+    let altitude_amsl_m = f64::from(m.altitude) / 1e3;
+    ALTITUDES_M.contains(&altitude_amsl_m).then_some(Report::Home { position, altitude_amsl_m })
 }
 
 fn landed(state: MavLandedState) -> Option<Report> {
@@ -224,5 +247,87 @@ fn landed(state: MavLandedState) -> Option<Report> {
         MavLandedState::MAV_LANDED_STATE_UNDEFINED => None,
         MavLandedState::MAV_LANDED_STATE_ON_GROUND => Some(Report::OnGround(true)),
         _ => Some(Report::OnGround(false)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is made of a message; how many were without sense.
+    fn taken(message: MavMessage) -> (Vec<SessionEvent>, u64) {
+        let (mut out, mut ignored) = (vec![], 0);
+        Readings::default().take(Time::ZERO, &message, &mut out, &mut ignored);
+        (out, ignored)
+    }
+
+    fn fix() -> GLOBAL_POSITION_INT_DATA {
+        GLOBAL_POSITION_INT_DATA {
+            lat: 363_000_000,
+            lon: -841_000_000,
+            alt: 500_000,
+            ..GLOBAL_POSITION_INT_DATA::DEFAULT
+        }
+    }
+
+    #[test]
+    fn a_value_that_nothing_can_have_loses_its_message_and_is_counted() {
+        let hud = |airspeed| MavMessage::VFR_HUD(VFR_HUD_DATA { airspeed, ..VFR_HUD_DATA::DEFAULT });
+        let air = |press_abs, temperature| {
+            MavMessage::SCALED_PRESSURE(SCALED_PRESSURE_DATA {
+                press_abs,
+                temperature,
+                ..SCALED_PRESSURE_DATA::DEFAULT
+            })
+        };
+        let position = MavMessage::GLOBAL_POSITION_INT;
+        let good = [position(fix()), hud(25.0), air(960.0, 1500)];
+        for message in good {
+            assert_eq!(taken(message.clone()).1, 0, "{message:?}");
+        }
+        let bad = [
+            position(GLOBAL_POSITION_INT_DATA { lat: 0, lon: 0, ..fix() }),
+            position(GLOBAL_POSITION_INT_DATA { lat: 910_000_000, ..fix() }),
+            position(GLOBAL_POSITION_INT_DATA { alt: i32::MAX, ..fix() }),
+            position(GLOBAL_POSITION_INT_DATA { relative_alt: i32::MIN, ..fix() }),
+            position(GLOBAL_POSITION_INT_DATA { vz: i16::MAX, ..fix() }),
+            hud(f32::NAN),
+            hud(-1.0),
+            hud(1e9),
+            air(-5.0, 1500),
+            air(f32::INFINITY, 1500),
+            air(960.0, i16::MAX),
+            MavMessage::RPM(RPM_DATA { rpm1: 1e9, rpm2: 0.0 }),
+            MavMessage::EFI_STATUS(EFI_STATUS_DATA {
+                cylinder_head_temperature: 1e9,
+                ..EFI_STATUS_DATA::DEFAULT
+            }),
+            MavMessage::HOME_POSITION(HOME_POSITION_DATA {
+                latitude: 1,
+                altitude: i32::MAX,
+                ..HOME_POSITION_DATA::DEFAULT
+            }),
+        ];
+        for message in bad {
+            let (out, ignored) = taken(message.clone());
+            assert_eq!((out, ignored), (vec![], 1), "{message:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_measured_is_no_measurement() {
+        let status = SYS_STATUS_DATA {
+            voltage_battery: u16::MAX,
+            current_battery: -1,
+            battery_remaining: 50,
+            ..SYS_STATUS_DATA::DEFAULT
+        };
+        let (out, _) = taken(MavMessage::SYS_STATUS(status));
+        let [SessionEvent::Telemetry(Report::Power(power))] = out.as_slice() else { panic!("{out:?}") };
+        assert_eq!((power.voltage_v, power.current_a, power.battery), (0.0, 0.0, 0.5));
+        let (out, _) =
+            taken(MavMessage::GPS_RAW_INT(GPS_RAW_INT_DATA { eph: u16::MAX, ..GPS_RAW_INT_DATA::DEFAULT }));
+        let [SessionEvent::Telemetry(Report::Gps(gps))] = out.as_slice() else { panic!("{out:?}") };
+        assert_eq!(gps.hdop, 99.99);
     }
 }
