@@ -39,6 +39,10 @@ pub struct AlarmInputs {
     pub sinks: bool,
     /// It flies far slower than it was told to.
     pub slow: bool,
+    /// It flies far faster than it was told to.
+    pub fast: bool,
+    /// It is far from the altitude that it was told to fly at, and comes no nearer.
+    pub off_altitude: bool,
     /// It ought to fly, and does not move.
     pub stands_still: bool,
     /// Somebody else steers the flying aircraft.
@@ -155,6 +159,8 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::StreamStopped => !t.stopped.is_empty() && age(t.last_received).is_some_and(|a| a < SILENT),
         Watch::Sinks => inputs.sinks,
         Watch::Slow => inputs.slow,
+        Watch::Fast => inputs.fast,
+        Watch::OffAltitude => inputs.off_altitude,
         Watch::StandsStill => inputs.stands_still,
         Watch::NotInCommand => inputs.not_in_command,
         Watch::EnergyLow => {

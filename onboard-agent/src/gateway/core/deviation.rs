@@ -4,7 +4,8 @@ use super::Gateway;
 use super::io::Intent;
 use super::telemetry::FRESH;
 use crate::gateway::order::{Fix, Time};
-use usal::contract::{Action, GatewayState};
+use geometry::near::distance_m;
+use usal::contract::{Action, GatewayState, Waypoint};
 
 /// Below the waypoint's altitude by this, and sinking faster than this, something is missing.
 const MISSING_M: f64 = 3.0;
@@ -12,10 +13,19 @@ const SINKING_MPS: f64 = 0.5;
 /// Below what was commanded by this, and sinking faster than this, it is in trouble: a climb that lags behind rises.
 const TROUBLE_M: f64 = 30.0;
 const TROUBLE_MPS: f64 = 1.0;
+/// So far above or below what was commanded it is off it, metres, unless it comes nearer: by half of what its way asks for, or
+/// by so much, m/s (a climb or a glide that lags behind).
+const OFF_M: f64 = 50.0;
+const CLOSING_SHARE: f64 = 0.5;
+const CLOSING_MPS: f64 = 1.0;
+/// Lower above the take-off place it is rolling, or has just left the ground, metres.
+const ROLLING_M: f64 = 20.0;
 /// A circle is level: it does not sink faster than this, m/s.
 const LEVEL_MPS: f64 = 2.0;
 /// Slower than this share of the airspeed that was commanded, something holds it back: a climb takes less.
 const SLOW: f64 = 0.7;
+/// Faster than this multiple of it, it dives, or its engine does not obey: a descent takes less.
+const FAST: f64 = 1.4;
 /// Unless it still gains more than this, m/s²: it was told to fly faster a moment ago.
 const GAINING_MPS2: f64 = 0.2;
 /// Slower than this nothing with wings flies, neither over the ground nor through the air, m/s.
@@ -39,19 +49,48 @@ impl Gateway {
         }
     }
 
+    /// It is far above or below what it was told to fly at, and does not come nearer. Without an engine it can't help it.
+    pub(super) fn is_off_altitude(&self) -> bool {
+        use GatewayState::{SafeApproach, TakeOff};
+        let Some((fix, wanted_m)) = self.fix().zip(self.commanded_m()) else { return false };
+        let is_steered = self.is_on_its_way() || matches!(self.state, TakeOff | SafeApproach);
+        let flies = is_steered && self.telemetry.is_airborne() && fix.altitude_home_m > ROLLING_M;
+        let missing_m = wanted_m - fix.altitude_amsl_m;
+        let closing_mps = -fix.down_mps * missing_m.signum();
+        let left_s = self.seconds_to_target().unwrap_or(0.0).max(1.0);
+        let asked_mps = (CLOSING_SHARE * missing_m.abs() / left_s).min(CLOSING_MPS);
+        flies && missing_m.abs() > OFF_M && closing_mps < asked_mps && !self.alarms.engine_has_failed()
+    }
+
+    /// It flies far faster through the air than it was told to, and does not slow down.
+    pub(super) fn is_fast(&self, now: Time) -> bool {
+        let Some((airspeed_mps, wanted_mps)) = self.airspeeds(now) else { return false };
+        // some autopilots circle at a speed of their own, whatever they were told
+        let least_mps = match self.state {
+            GatewayState::Hold | GatewayState::SafeHold => self.settings.profile.max_airspeed_mps,
+            _ => 0.0,
+        };
+        let t = &self.telemetry;
+        let is_fast = airspeed_mps > (FAST * wanted_mps).max(least_mps);
+        self.is_on_its_way() && t.is_airborne() && is_fast && t.airspeed.gains_mps2() > -GAINING_MPS2
+    }
+
+    /// The airspeed as it is and as it was told, m/s.
+    fn airspeeds(&self, now: Time) -> Option<(f64, f64)> {
+        let fresh = self.telemetry.air.filter(|(at, _)| now.saturating_sub(*at) < FRESH);
+        Some((fresh?.1.airspeed_mps, self.control.confirmed_speed_mps()?))
+    }
+
     /// It flies far slower through the air than it was told to.
     pub(super) fn is_slow(&self, now: Time) -> bool {
+        let Some((airspeed_mps, wanted_mps)) = self.airspeeds(now) else { return false };
         let t = &self.telemetry;
-        let fresh = t.air.filter(|(at, _)| now.saturating_sub(*at) < FRESH);
-        let (Some((_, air)), Some(wanted_mps)) = (fresh, self.control.confirmed_speed_mps()) else {
-            return false;
-        };
         // some autopilots circle at a speed of their own, whatever they were told: not below the least
         let most_mps = match self.state {
             GatewayState::Hold | GatewayState::SafeHold => self.settings.profile.min_airspeed_mps,
             _ => f64::INFINITY,
         };
-        let is_slow = air.airspeed_mps < (SLOW * wanted_mps).min(most_mps);
+        let is_slow = airspeed_mps < (SLOW * wanted_mps).min(most_mps);
         self.is_on_its_way() && t.is_airborne() && is_slow && t.airspeed.gains_mps2() < GAINING_MPS2
     }
 
@@ -73,13 +112,28 @@ impl Gateway {
 
     /// So far below what it was told to fly at, and sinking so fast.
     fn is_below(&self, metres: f64, mps: f64) -> bool {
-        let commanded = match self.control.intent {
+        let below = |(fix, m): (Fix, f64)| fix.altitude_amsl_m < m - metres && fix.down_mps > mps;
+        self.fix().zip(self.commanded_m()).is_some_and(below)
+    }
+
+    /// The altitude that it was told to fly at, metres AMSL.
+    fn commanded_m(&self) -> Option<f64> {
+        let flies = |w: &&Waypoint| matches!(w.action, Action::Fly | Action::TakeOff { .. });
+        match self.control.intent {
             Intent::Direct => self.control.direct.map(|(_, altitude_amsl_m)| altitude_amsl_m),
-            _ => self.buffer.current().filter(|w| matches!(w.action, Action::Fly)).map(|w| w.altitude_amsl_m),
+            Intent::Fly => self.buffer.current().filter(flies).map(|w| w.altitude_amsl_m),
+            Intent::Nothing | Intent::Hold | Intent::Return => None,
+        }
+    }
+
+    /// How long it still flies to what it steers to, seconds.
+    fn seconds_to_target(&self) -> Option<f64> {
+        let to = match self.control.intent {
+            Intent::Direct => self.control.direct?.0,
+            _ => self.buffer.current()?.position,
         };
-        let below =
-            |fix: Fix| commanded.is_some_and(|m| fix.altitude_amsl_m < m - metres && fix.down_mps > mps);
-        self.fix().is_some_and(below)
+        let fix = self.fix()?;
+        Some(distance_m(fix.position, to) / fix.north_mps.hypot(fix.east_mps).max(1.0))
     }
 
     fn fix(&self) -> Option<Fix> {

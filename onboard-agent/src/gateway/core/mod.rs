@@ -211,6 +211,8 @@ impl Gateway {
             sinks_below_target: self.sinks_below_target(),
             sinks: self.sinks(),
             slow: self.is_slow(now),
+            fast: self.is_fast(now),
+            off_altitude: self.is_off_altitude(),
             stands_still: self.stands_still(),
             not_in_command: self.state == GatewayState::Manual,
             no_safe_runway: self.control.intent == Intent::Return,

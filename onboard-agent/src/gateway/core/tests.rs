@@ -353,3 +353,41 @@ fn a_pilot_who_gives_back_and_takes_again_while_the_list_is_read_keeps_the_aircr
     assert_eq!(core.gateway.state(), GatewayState::Manual);
     assert!(!was_steered(&core));
 }
+
+/// In the air by its waypoints at 470 m, so far above that, and sinking so fast.
+fn at_height(above_m: f64, down_mps: f64) -> [Report; 4] {
+    let Report::Fix(fix) = fix(25.0) else { panic!() };
+    let mut reports = flying(25.0, 25.0);
+    reports[2] = Report::Fix(Fix { altitude_amsl_m: fix.altitude_amsl_m + above_m, down_mps, ..fix });
+    reports
+}
+
+#[test]
+fn far_above_or_below_its_altitude_and_no_nearer_is_told_and_a_lag_is_not() {
+    for (above_m, down_mps, told) in [
+        (120.0, 0.0, true),
+        (-120.0, 0.0, true),
+        (120.0, -0.5, true),
+        (-120.0, 0.5, true),
+        (120.0, 2.0, false),
+        (-120.0, -2.0, false),
+        (-40.0, 0.0, false),
+        (40.0, 0.0, false),
+    ] {
+        let mut core = Core::in_nav();
+        core.run(8, &at_height(above_m, down_mps));
+        assert!(!core.raised("off-altitude"));
+        core.run(5, &at_height(above_m, down_mps));
+        assert_eq!(core.raised("off-altitude"), told, "{above_m} m, {down_mps} m/s");
+    }
+}
+
+#[test]
+fn far_faster_than_it_was_told_is_told_unless_it_slows_down() {
+    let mut core = Core::in_nav();
+    core.run(15, &flying(40.0, 40.0));
+    assert!(core.raised("fast"));
+    let mut core = Core::in_nav();
+    core.run(15, &flying(30.0, 30.0));
+    assert!(!core.raised("fast"));
+}

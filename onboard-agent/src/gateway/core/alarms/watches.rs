@@ -26,6 +26,10 @@ pub enum Watch {
     Sinks,
     /// It is far slower than what was commanded.
     Slow,
+    /// It is far faster than what was commanded.
+    Fast,
+    /// It is far above or below what was commanded.
+    OffAltitude,
     /// It ought to fly and does not move.
     StandsStill,
     /// Somebody else steers.
@@ -59,7 +63,7 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 19] = [
+pub const WATCHES: [Watch; 21] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
@@ -70,6 +74,8 @@ pub const WATCHES: [Watch; 19] = [
     Watch::Disobeys,
     Watch::Sinks,
     Watch::Slow,
+    Watch::Fast,
+    Watch::OffAltitude,
     Watch::StandsStill,
     Watch::NotInCommand,
     Watch::NoSafeRunway,
@@ -172,6 +178,24 @@ const WORDS: [Words; WATCHES.len()] = [
         advice: "The aircraft flies far slower than it was told to. Look at engine, airspeed sensor and ice; be ready to take over by hand.",
         cause: None,
         patience: Duration::from_secs(5),
+    },
+    Words {
+        watch: Watch::Fast,
+        id: "fast",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "The aircraft flies far faster than it was told to. Look at airspeed sensor, engine and descent; be ready to take over by hand.",
+        cause: None,
+        patience: Duration::from_secs(10),
+    },
+    Words {
+        watch: Watch::OffAltitude,
+        id: "off-altitude",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "The aircraft is more than 50 m above or below the altitude that it was told to fly at, and comes no nearer. Look at engine, ice and altimeter; be ready to take over by hand.",
+        cause: None,
+        patience: Duration::from_secs(10),
     },
     Words {
         watch: Watch::StandsStill,
