@@ -4,8 +4,9 @@ use super::Gateway;
 use super::io::Intent;
 use super::telemetry::FRESH;
 use crate::gateway::order::{Fix, Time};
-use geometry::near::distance_m;
-use usal::contract::{Action, GatewayState, Waypoint};
+use geometry::near::{distance_and_course, distance_m};
+use geometry::{LatLon, Vec2};
+use usal::contract::{Action, GatewayState, SafeRunway, Waypoint};
 
 /// Below the waypoint's altitude by this, and sinking faster than this, something is missing.
 const MISSING_M: f64 = 3.0;
@@ -30,6 +31,14 @@ const FAST: f64 = 1.4;
 const GAINING_MPS2: f64 = 0.2;
 /// Slower than this nothing with wings flies, neither over the ground nor through the air, m/s.
 const STANDING_MPS: f64 = 1.5;
+
+/// A landing rolls no farther than this behind the place that it was told to touch down at, metres.
+const MOST_ROLL_M: f64 = 3000.0;
+/// So far before and behind a runway, and beside it, an aircraft counts as landed on it, metres: it flares early, and is off by a little.
+const OVERSHOOT_M: f64 = 150.0;
+const BESIDE_M: f64 = 100.0;
+/// So near to where it took off it has come home, metres.
+const AT_HOME_M: f64 = 500.0;
 
 impl Gateway {
     /// It is below the waypoint that it steers to, and sinks: the engine ought to work.
@@ -103,7 +112,11 @@ impl Gateway {
     /// It is armed in a state that flies, and does not move. On a runway it may: that is a take-off or a landing.
     pub(super) fn stands_still(&self) -> bool {
         use GatewayState::{Land, Off, SafeLand, Stop, TakeOff, Terminate};
-        let on_runway = matches!(self.state, Off | Stop | TakeOff | Land | SafeLand | Terminate);
+        let on_runway = match self.state {
+            Off | Stop | TakeOff | Terminate => true,
+            Land | SafeLand => self.is_where_it_lands(),
+            _ => false,
+        };
         let slow = |mps: f64| mps < STANDING_MPS;
         let air = self.telemetry.air.map_or(0.0, |(_, air)| air.airspeed_mps);
         let moves = |fix: Fix| !slow(fix.north_mps.hypot(fix.east_mps)) || !slow(fix.down_mps.abs());
@@ -136,7 +149,26 @@ impl Gateway {
         Some(distance_m(fix.position, to) / fix.north_mps.hypot(fix.east_mps).max(1.0))
     }
 
+    /// It is where a landing may end: on the runway that it was told to land on, on one that is stored, or where it took off.
+    pub(super) fn is_where_it_lands(&self) -> bool {
+        let Some(place) = self.place() else { return true };
+        let told = self.buffer.current().is_some_and(|w| match w.action {
+            Action::Land { heading_deg } => is_along(place, w.position, heading_deg, MOST_ROLL_M),
+            _ => false,
+        });
+        let on = |r: &SafeRunway| is_along(place, r.threshold, r.heading_deg, r.length_m);
+        let at_home = self.telemetry.home.is_some_and(|(home, _)| distance_m(home, place) < AT_HOME_M);
+        told || self.runways.iter().any(on) || at_home
+    }
+
     fn fix(&self) -> Option<Fix> {
         self.telemetry.fix.map(|(_, fix)| fix)
     }
+}
+
+/// A place on a strip that begins at another one.
+fn is_along(place: LatLon, begins: LatLon, heading_deg: f64, length_m: f64) -> bool {
+    let (metres, course_deg) = distance_and_course(begins, place);
+    let off = Vec2::from_bearing_rad((course_deg - heading_deg).to_radians()) * metres;
+    (-OVERSHOOT_M..=length_m + OVERSHOOT_M).contains(&off.n) && off.e.abs() <= BESIDE_M
 }

@@ -288,7 +288,9 @@ impl Gateway {
             // adopted, and nothing is known of what it flies: Safe mode will see to it
             let is_met = !is_flying(self.state) || self.state == GatewayState::Manual;
             let unknown = is_met && self.buffer.at_end();
-            return unknown.then_some((Trigger::Cruising, "met in flight"));
+            let given_back = self.state == GatewayState::Manual;
+            let cause = if given_back { "given back at the end of what is aboard" } else { "met in flight" };
+            return unknown.then_some((Trigger::Cruising, cause));
         };
         let seen = match waypoint.action {
             Action::TakeOff { .. } => (Trigger::Departing, "taking off"),
@@ -306,12 +308,20 @@ impl Gateway {
     fn land(&mut self, out: &mut Vec<Output>) {
         // the way home of Safe mode has tokens 0: with it nothing of the plan was flown
         let theirs = |w: &Waypoint| matches!(w.action, Action::Land { .. }) && w.token > Token(0);
-        self.finished = self.buffer.current().is_some_and(theirs) && self.reported.is_some();
+        // a pilot lands where he likes
+        let landed = self.state == GatewayState::Manual || self.is_where_it_lands();
+        self.finished = landed && self.buffer.current().is_some_and(theirs) && self.reported.is_some();
         if self.finished {
             self.reported = Some(None);
             out.push(Output::Event(GatewayEvent::Progress { current: None, taken: self.highest }));
         }
-        self.change(Trigger::Landed, "landed and disarmed", out);
+        let cause = match self.place().filter(|_| !landed) {
+            Some(at) => {
+                format!("down away from a runway, at {:.5}, {:.5}, and disarmed", at.lat_deg, at.lon_deg)
+            }
+            None => "landed and disarmed".to_owned(),
+        };
+        self.change(Trigger::Landed, &cause, out);
         self.forget_waypoints(out);
         self.control.reset();
         self.reported = None;
