@@ -159,6 +159,8 @@ pub enum Report {
     OnGround(bool),
     /// What it used to say and no longer says; empty: nothing is missing. No sign of life.
     Stopped(Vec<&'static str>),
+    /// What it warned of lately, in its own words.
+    Says(String),
     /// How the links to it do; no sign of life.
     Links(AutopilotLinks),
     /// The autopilot started anew: nothing that was verified still holds.

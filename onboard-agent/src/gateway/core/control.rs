@@ -268,7 +268,8 @@ impl Gateway {
             } else {
                 "and not by the gateway"
             };
-            let cause = format!("the autopilot was switched to {}, {by}", self.telemetry.mode_name);
+            let why = self.telemetry.explained(now);
+            let cause = format!("the autopilot was switched to {}, {by}{why}", self.telemetry.mode_name);
             self.control.set_intent(Intent::Nothing, Some(mode));
             self.change(Trigger::PilotTook, &cause, out);
             out.push(Output::Save);

@@ -19,6 +19,9 @@ pub const FRESH: Duration = Duration::from_secs(2);
 /// Nothing is known of what a value is that has not come for so long, though it changes slowly.
 const OUT_OF_DATE: Duration = Duration::from_secs(10);
 
+/// What it warned of so lately may be why it does what it does: its heartbeat, which shows that, comes once a second.
+const EXPLAINS: Duration = Duration::from_secs(5);
+
 /// An armed autopilot that has not said for so long whether it stands on the ground will not say it.
 const SAYS_WHERE: Duration = Duration::from_secs(5);
 
@@ -59,6 +62,8 @@ pub struct Telemetry {
     pub home: Option<(LatLon, f64)>,
     /// Stands on the ground, if it says.
     pub on_ground: Option<bool>,
+    /// What it warned of, in its own words.
+    pub said: Timed<String>,
     /// What it no longer says.
     pub stopped: Vec<&'static str>,
     /// How the links to it do.
@@ -103,6 +108,7 @@ impl Default for Telemetry {
             power: None,
             home: None,
             on_ground: None,
+            said: None,
             stopped: vec![],
             links: None,
         }
@@ -142,6 +148,7 @@ impl Telemetry {
                 self.home = Some((*position, *altitude_amsl_m));
             }
             Report::OnGround(v) => self.on_ground = Some(*v),
+            Report::Says(words) => self.said = Some((now, words.clone())),
             Report::Stopped(what) => self.stopped.clone_from(what),
             Report::Links(v) => self.links = Some((now, v.clone())),
             _ => {}
@@ -151,6 +158,12 @@ impl Telemetry {
     /// What it says of its engine, if it still does.
     pub fn engine(&self, now: Time) -> Option<Engine> {
         self.engine.filter(|(at, _)| now.saturating_sub(*at) < OUT_OF_DATE).map(|(_, engine)| engine)
+    }
+
+    /// What it warned of just now, to stand behind what happened: ` (it says: …)`.
+    pub fn explained(&self, now: Time) -> String {
+        let lately = self.said.as_ref().filter(|(at, _)| now.saturating_sub(*at) < EXPLAINS);
+        lately.map_or_else(String::new, |(_, words)| format!(" (it says: {words})"))
     }
 
     /// In the air, as far as is known.

@@ -275,7 +275,8 @@ impl Session {
             }
             MavMessage::STATUSTEXT(text) => {
                 self.streams.said(text);
-                self.words.hear(now, text);
+                let said = self.words.hear(now, text).then(|| self.words.lately(now)).flatten();
+                events.extend(said.map(Report::Says).map(SessionEvent::Telemetry));
             }
             MavMessage::PARAM_VALUE(value) => events.push(SessionEvent::Parameter(value.clone())),
             _ => self.on_other(now, message, peer, events),

@@ -30,12 +30,13 @@ struct Text {
 
 impl Words {
     /// It says something.
-    pub fn hear(&mut self, now: Time, message: &STATUSTEXT_DATA) {
+    /// True: it is a warning.
+    pub fn hear(&mut self, now: Time, message: &STATUSTEXT_DATA) -> bool {
         // not every autopilot keeps to the alphabet
-        let Ok(piece) = message.text.to_str() else { return };
+        let Ok(piece) = message.text.to_str() else { return false };
         tracing::info!(piece, "the autopilot says");
         if message.severity as u32 > MavSeverity::MAV_SEVERITY_WARNING as u32 {
-            return;
+            return false;
         }
         let id = message.id;
         let begun = self.texts.iter_mut().find(|text| id > 0 && text.id == id);
@@ -45,12 +46,13 @@ impl Words {
                 text.text.push_str(piece);
                 text.piece = message.chunk_seq;
             }
-            return;
+            return true;
         }
         self.texts.push_back(Text { at: now, id, piece: message.chunk_seq, text: piece.into() });
         if self.texts.len() > MOST {
             self.texts.pop_front();
         }
+        true
     }
 
     /// What it said lately, each once.

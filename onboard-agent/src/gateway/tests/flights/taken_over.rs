@@ -67,3 +67,16 @@ fn a_pilot_who_has_it_when_the_gateway_starts_anew_gives_back_what_was_flown() {
         flight.run_until(3.0, "Manual", |f| f.state() == GatewayState::Manual);
     }
 }
+
+#[test]
+fn why_the_autopilot_took_it_is_told_in_its_own_words() {
+    let mut flight = Flight::on_zigzag(13, &[], 30, 300.0);
+    flight.sim.autopilot.say(sim::core::autopilot::Severity::Warning, "Old news");
+    flight.run(30.0);
+    flight.sim.autopilot.say(sim::core::autopilot::Severity::Critical, "GCS Failsafe");
+    assert!(flight.sim.autopilot.set_mode(sim::Mode::ReturnToLaunch));
+    flight.run_until(3.0, "Manual", |f| f.state() == GatewayState::Manual);
+    let cause = flight.station.gateway().status(flight.now).cause;
+    let told = "the autopilot was switched to RTL, and not by the gateway (it says: GCS Failsafe)";
+    assert_eq!(cause, told);
+}
