@@ -66,11 +66,23 @@ const NO_LANDING_NEEDED: Need = Need {
     otherwise: "PX4 then refuses a list without a landing, and so every list of a longer flight",
 };
 
-const ADVICE: [Advice; 1] = [Advice {
-    name: "COM_DISARM_LAND",
-    is_good: |seconds| seconds > 0.0,
-    otherwise: "it never disarms after a landing, so no flight ever ends: set it to 2",
-}];
+const ADVICE: [Advice; 3] = [
+    Advice {
+        name: "COM_DISARM_LAND",
+        is_good: |seconds| seconds > 0.0,
+        otherwise: "it never disarms after a landing, so no flight ever ends: set it to 2",
+    },
+    Advice {
+        name: "FW_LND_ABORT",
+        is_good: |reasons| reasons == 0.0,
+        otherwise: "it breaks off a landing of which no rangefinder has seen the ground, and circles: without one set it to 0",
+    },
+    Advice {
+        name: "NAV_DLL_ACT",
+        is_good: |action| action == 0.0,
+        otherwise: "it takes the aircraft away when its link is silent, where the plan and Safe mode decide: set it to 0",
+    },
+];
 
 fn is_px4(beat: &HEARTBEAT_DATA) -> bool {
     beat.autopilot == MavAutopilot::MAV_AUTOPILOT_PX4
