@@ -237,6 +237,8 @@ async fn who_resumes_is_answered_as_the_gateway_answers() {
     flight.step_until(|g| g.flown.len() >= 2).await;
     flight.command(Command::Hold).await.unwrap();
     flight.step_until(|g| g.state == GatewayState::Hold).await;
+    // until the FP Manager knows
+    flight.step(3).await;
     flight.gateway.refuse_resume = Some("not while the test says so".into());
     match flight.command(Command::Resume).await {
         Err(CallError::Refused(refusal)) => {
@@ -371,6 +373,8 @@ async fn plan_of_an_interrupted_flight_is_rewound_on_the_ground_and_stays_so() {
     flight.step(3).await;
     until(async || status.latest().is_some_and(|s| s.stamped.value.phase == Phase::Idle)).await;
     let flown = flight.gateway.flown.len();
+    flight.gateway.is_carried_back();
+    flight.step(3).await;
     flight.start().await;
     flight.step_until(|g| g.finished()).await;
     let again: Vec<String> = flight.gateway.flown[flown..].iter().map(|w| w.leg.to_string()).collect();
@@ -403,7 +407,7 @@ async fn launch_refused_is_told_once_with_its_reason_and_asked_again() {
     flight.load(SQUARE).await;
     flight.gateway.refuse_launch = Some("There is no GPS fix.".into());
     flight.command(Command::Start).await.unwrap();
-    flight.step(20).await;
+    flight.step(10).await;
     flight.gateway.refuse_launch = None;
     flight.step_until(|g| g.launches() > 0).await;
     flight.step_until(|g| g.finished()).await;

@@ -58,6 +58,8 @@ pub struct Control {
     /// Since when the wanted mode is confirmed.
     confirmed_at: Option<Time>,
     arm: Option<OrderId>,
+    /// It was armed since the launch.
+    was_armed: bool,
     /// Since when it is to be armed, and puts it off.
     put_off_since: Option<Time>,
     speed: Option<(OrderId, f64)>,
@@ -92,6 +94,7 @@ impl Default for Control {
             ordered: None,
             confirmed_at: None,
             arm: None,
+            was_armed: false,
             put_off_since: None,
             speed: None,
             adopt: None,
@@ -152,6 +155,12 @@ impl Control {
             self.speed_mps = Some(mps);
         }
         self.forget(id);
+    }
+
+    /// A take-off is wanted.
+    pub fn launch(&mut self, mode: Option<Mode>) {
+        self.was_armed = false;
+        self.set_intent(Intent::Fly, mode);
     }
 
     /// An order failed. True: it was the arming of a launch.
@@ -252,8 +261,9 @@ impl Gateway {
 
     /// The human pilot has priority: a mode that we did not ask for is respected.
     fn yield_to_pilot(&mut self, now: Time, out: &mut Vec<Output>) {
-        let (Some(mode), armed) = (self.telemetry.mode, self.telemetry.armed) else { return };
-        let Some(wanted) = self.control.wanted_mode().filter(|_| armed) else {
+        let Some(mode) = self.telemetry.mode else { return };
+        let is_up = self.telemetry.armed || self.telemetry.flies_disarmed(now);
+        let Some(wanted) = self.control.wanted_mode().filter(|_| is_up) else {
             self.control.disobeys_since = None;
             return;
         };
@@ -289,13 +299,25 @@ impl Gateway {
         }
     }
 
+    /// It was armed for the take-off, and somebody else disarmed it.
+    fn give_up_launch(&mut self, out: &mut Vec<Output>) {
+        self.control.set_intent(Intent::Nothing, self.telemetry.mode);
+        self.cause = "disarmed before the take-off, and not by the gateway".to_owned();
+        out.push(Output::Save);
+    }
+
     fn steer_mode(&mut self, now: Time, out: &mut Vec<Output>) {
         let Some(wanted) = self.control.wanted_mode() else { return };
         let flies = wanted == Mode::Waypoints;
         if flies && !self.buffer.course().ready && !self.flies_waypoints() {
             return;
         }
-        if !self.telemetry.armed {
+        if self.telemetry.armed {
+            (self.control.was_armed, self.control.arm) = (true, None);
+        } else {
+            if flies && self.state == GatewayState::Stop && std::mem::take(&mut self.control.was_armed) {
+                return self.give_up_launch(out);
+            }
             if flies && self.state == GatewayState::Stop && self.control.arm.is_none() {
                 self.control.arm = Some(self.order(Order::Arm, out));
                 self.control.retry_at = Some(now + RETRY);

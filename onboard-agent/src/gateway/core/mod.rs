@@ -231,7 +231,8 @@ impl Gateway {
     /// It is in the air, or about to be, as far as is known; not once it is silent for so long that it is off, or has come down: a
     /// link that is away for a while comes back to an aircraft that must have an owner.
     pub fn is_in_flight(&self) -> bool {
-        let flies = self.telemetry.is_airborne() || (is_flying(self.state) && self.telemetry.armed);
+        let is_up = self.telemetry.armed || self.telemetry.flies_disarmed(self.now);
+        let flies = self.telemetry.is_airborne() || (is_flying(self.state) && is_up);
         let silent_at_most = if self.telemetry.on_ground == Some(true) { OFF_AFTER } else { COME_DOWN_AFTER };
         flies && self.telemetry.last_received.is_some_and(|at| self.now.saturating_sub(at) <= silent_at_most)
     }
@@ -255,7 +256,7 @@ impl Gateway {
             let what = if flies { "flies already" } else { "has not said yet whether it stands" };
             self.cause = format!("the autopilot is heard, and {what}");
         }
-        if is_flying(self.state) && self.telemetry.is_landed() {
+        if is_flying(self.state) && self.telemetry.is_landed(now) {
             return self.land(out);
         }
         // before the state says that he has: what is wanted then is what a next takeover is seen by

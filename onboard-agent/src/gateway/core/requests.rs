@@ -63,7 +63,7 @@ impl Gateway {
         if !self.telemetry.gps.is_some_and(|(_, g)| g.fix_3d) {
             return Err("There is no GPS fix; wait for it.".into());
         }
-        self.control.set_intent(Intent::Fly, self.telemetry.mode);
+        self.control.launch(self.telemetry.mode);
         out.push(Output::Save);
         Ok(())
     }
@@ -247,7 +247,7 @@ impl Gateway {
         if !self.terminated || self.state == GatewayState::Terminate || !connected {
             return;
         }
-        if self.telemetry.is_landed() {
+        if self.telemetry.is_landed(self.now) {
             self.terminated = false;
             self.adopting = None;
             out.push(Output::Save);

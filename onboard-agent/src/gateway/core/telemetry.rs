@@ -190,9 +190,15 @@ impl Telemetry {
         Some(fix.north_mps.hypot(fix.east_mps) < STANDING_MPS && fix.down_mps.abs() < STANDING_MPS)
     }
 
+    /// Unarmed and in the air all the same: it says so, or is silent about it and moves. An autopilot that starts anew up there looks like
+    /// this, and one that somebody disarmed.
+    pub fn flies_disarmed(&self, now: Time) -> bool {
+        !self.armed && !self.on_ground.unwrap_or(self.seems_to_rest(now) != Some(false))
+    }
+
     /// Surely on the ground with the engine off.
-    pub fn is_landed(&self) -> bool {
-        self.last_received.is_some() && !self.armed && self.on_ground != Some(false)
+    pub fn is_landed(&self, now: Time) -> bool {
+        self.last_received.is_some() && !self.armed && !self.flies_disarmed(now)
     }
 
     /// Wind speed, m/s; 0 while unknown.

@@ -78,8 +78,8 @@ impl Core {
         self.gateway.alarms.raised().iter().any(|alarm| alarm.id == id)
     }
 
-    /// It flies the first of some waypoints.
-    fn in_nav() -> Self {
+    /// On the ground, with waypoints to be flown.
+    fn in_stop_with_a_plan() -> Self {
         let mut core = Self::new();
         let gps = Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: None };
         let ground = [beat(Mode::Hold, false), Report::OnGround(true), fix(0.0), Report::Gps(gps)];
@@ -92,6 +92,12 @@ impl Core {
             crate::gateway::tests::flights::zigzag(0, 10, 300.0).into_iter().enumerate().map(number);
         let feed = Feed { cancel_after: None, waypoints: waypoints.collect() };
         core.step(Input::Feed(2, feed, fp_manager()));
+        core
+    }
+
+    /// It flies the first of some waypoints.
+    fn in_nav() -> Self {
+        let mut core = Self::in_stop_with_a_plan();
         core.step(Input::Request(3, GatewayRequest::Launch));
         core.step(Input::Report(Report::Course(course(true))));
         core.run(1, &flying(25.0, 25.0));
@@ -390,4 +396,43 @@ fn far_faster_than_it_was_told_is_told_unless_it_slows_down() {
     let mut core = Core::in_nav();
     core.run(15, &flying(30.0, 30.0));
     assert!(!core.raised("fast"));
+}
+
+/// A safety officer disarms it a moment after the start: it was armed anew, and took off.
+#[test]
+fn who_disarms_before_the_take_off_is_not_overruled() {
+    let mut core = Core::in_stop_with_a_plan();
+    core.step(Input::Request(3, GatewayRequest::Launch));
+    core.step(Input::Report(Report::Course(course(true))));
+    let ground = |armed| [beat(Mode::Hold, armed), Report::OnGround(true), fix(0.0)];
+    core.run(1, &ground(false));
+    assert!(core.was_ordered(&Order::Arm));
+    core.done();
+    core.run(1, &ground(true));
+    core.out.clear();
+    core.run(30, &ground(false));
+    assert!(!core.was_ordered(&Order::Arm) && core.gateway.state() == GatewayState::Stop);
+    let cause = core.gateway.status(core.now).cause;
+    assert!(cause.contains("disarmed"), "{cause}");
+    core.step(Input::Request(4, GatewayRequest::Launch));
+    core.run(1, &ground(false));
+    assert!(core.was_ordered(&Order::Arm), "started again it is");
+}
+
+/// Heartbeats without the armed bit ended the agent in the air, and a mode changed meanwhile was told by nobody.
+#[test]
+fn disarmed_in_the_air_it_still_flies() {
+    for says in [true, false] {
+        let mut core = Core::in_nav();
+        let mut up = vec![beat(Mode::Waypoints, false), fix(25.0), air(25.0)];
+        up.extend(says.then_some(Report::OnGround(false)));
+        core.run(5, &up);
+        assert!(core.gateway.is_in_flight() && core.gateway.state() == GatewayState::Nav);
+        let mut manual = vec![beat(Mode::Other(0), false), fix(25.0), air(25.0)];
+        manual.extend(says.then_some(Report::OnGround(false)));
+        core.run(5, &manual);
+        assert!(core.gateway.state() == GatewayState::Manual && core.raised("not-in-command"));
+        core.run(5, &[beat(Mode::Other(0), false), Report::OnGround(true), fix(0.0)]);
+        assert!(!core.gateway.is_in_flight(), "on the ground it is over");
+    }
 }

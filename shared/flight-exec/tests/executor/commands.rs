@@ -415,6 +415,9 @@ fn on_the_ground_the_plan_is_rewound_and_starts_anew() {
     assert_eq!((status.phase, status.place, status.outstanding), (Phase::Idle, None, 0));
     assert!(rig.buffer.is_empty(), "what was fed is taken back");
     let last = rig.executor.last_token();
+    rig.position = HOME;
+    rig.flown.clear();
+    rig.report();
     rig.command(Command::Start).unwrap();
     assert!(rig.buffer.iter().all(|w| w.token > last), "no token is used twice");
     rig.flown.clear();

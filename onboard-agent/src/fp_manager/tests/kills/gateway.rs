@@ -25,6 +25,7 @@ pub struct Gateway {
     buffer: VecDeque<Waypoint>,
     highest: Token,
     here: LatLon,
+    runway: LatLon,
     alarms: Vec<Alarm>,
     /// It gave the aircraft back with an empty buffer: the next waypoints are flown at once.
     awaits_waypoints: bool,
@@ -51,6 +52,7 @@ impl Gateway {
             buffer: VecDeque::new(),
             highest: Token(0),
             here,
+            runway: here,
             alarms: Vec::new(),
             awaits_waypoints: false,
             commanded: false,
@@ -194,6 +196,11 @@ impl Gateway {
 
     pub fn finished(&self) -> bool {
         self.buffer.is_empty() && self.flown.last().is_some_and(|w| w.end_of_plan)
+    }
+
+    /// Somebody brings it back to where it took off.
+    pub fn is_carried_back(&mut self) {
+        self.here = self.runway;
     }
 
     pub fn position(&self) -> Position {

@@ -89,7 +89,7 @@ fn alarm_raised_on_the_ground_is_answered_in_the_air() {
 #[test]
 fn alarm_less_severe_than_the_emergency_is_answered_when_that_is_left() {
     let mut flight = flown(10, STARTED);
-    flight.gateway.alarm("engine-out", Cause::Engine);
+    flight.gateway.alarm("engine-hot", Cause::Engine);
     flight.gateway.alarm("energy-low", Cause::Energy);
     run(&mut flight, 4);
     assert_eq!(emergencies(&flight), 1);
@@ -129,7 +129,7 @@ fn needs_safe(refusals: usize) -> Flight {
     flight.asks[0].what = What::Propose(plan);
     flight.gateway.refuse_safe = refusals;
     run_until(&mut flight, "in the air", |f| f.gateway.state == GatewayState::Nav);
-    flight.gateway.alarm("engine-out", Cause::Engine);
+    flight.gateway.alarm("engine-hot", Cause::Engine);
     flight
 }
 
@@ -247,8 +247,9 @@ fn brought_down_by_the_pilot_or_safe_mode_nothing_ahead_counts_as_flown() {
         let joins = flight.gateway.joins.len();
         run(&mut flight, 20);
         assert_eq!(flight.gateway.joins.len(), joins, "it has joined, and once is enough");
-        let command = Command::Start;
-        flight.ask_once(&What::Command(command), "again").unwrap();
+        flight.gateway.is_carried_back();
+        run(&mut flight, 2);
+        flight.ask_once(&What::Command(Command::Start), "again").unwrap();
         run_until(&mut flight, "in the air", |f| f.gateway.state == GatewayState::Nav);
     }
 }
@@ -272,7 +273,7 @@ fn start_of_which_nothing_came_is_given_again() {
 #[test]
 fn alarm_less_severe_is_answered_when_another_plan_is_entered_as_well() {
     let mut flight = flown(10, STARTED);
-    flight.gateway.alarm("engine-out", Cause::Engine);
+    flight.gateway.alarm("engine-hot", Cause::Engine);
     flight.gateway.alarm("energy-low", Cause::Energy);
     run(&mut flight, 4);
     let changed = asks::MISSION.replace("name=\"Kills\"", "name=\"Changed\"");

@@ -100,7 +100,7 @@ impl Streams {
             .to_str()
             .ok()
             .and_then(|text| text.strip_prefix(LACKING)?.strip_suffix(')')?.parse::<u32>().ok());
-        let lacking = WANTED.iter().zip(&mut self.streams).find(|((wanted, _), _)| Some(*wanted) == id);
+        let lacking = WANTED.iter().zip(&mut self.streams).find(|((wanted, ..), _)| Some(*wanted) == id);
         lacking.into_iter().for_each(|(_, stream)| stream.is_lacking = true);
     }
 
