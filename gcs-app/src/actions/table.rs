@@ -201,7 +201,7 @@ fn view(command: ViewCommand) -> Asked {
 fn recover(scene: &Scene<'_>) -> Asked {
     match scene.left_behind {
         Some(_) => view(ViewCommand::AskRecovery(true)),
-        None => Err("The last window left nothing behind".into()),
+        None => Err("The last window left nothing behind"),
     }
 }
 

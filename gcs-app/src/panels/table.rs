@@ -275,6 +275,7 @@ impl Table {
         row.set_selected(scene.is_selected(&part));
         let mut done = None;
         let mut columns = Column::ALL.into_iter();
+        let mut typed_into = Vec::new();
         for (number, text) in cells(scene, entry, &said).into_iter().enumerate() {
             let column = columns.next();
             if let (None, Err(why)) = (column, entry.flown) {
@@ -297,12 +298,12 @@ impl Table {
                     let is_current = (self.cursor.row, self.cursor.column) == (index, column);
                     let name = format!("{} of {}", column.name(), entry.leg);
                     let response = cell(ui, (index, column), is_current, text, &name);
-                    response.context_menu(|ui| menu::show(ui, scene, &part, queue));
                     if response.double_clicked() {
                         done = Some((column, Done::Edited));
                     } else if response.clicked() {
                         done = Some((column, Done::Chosen));
                     }
+                    typed_into.push(response);
                 }
                 (None, _) => {
                     ui.add(egui::Label::new(text).truncate().selectable(false));
@@ -310,7 +311,9 @@ impl Table {
             });
         }
         let response = row.response();
-        response.context_menu(|ui| menu::show(ui, scene, &part, queue));
+        // one menu, wherever in the row the click was
+        let anywhere = typed_into.into_iter().fold(response.clone(), |all, cell| all.union(cell));
+        anywhere.context_menu(|ui| menu::show(ui, scene, &part, queue));
         if done.is_none() && response.clicked() {
             done = Some((self.cursor.column, Done::Chosen));
         }

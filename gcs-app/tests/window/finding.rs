@@ -65,7 +65,7 @@ fn making_a_procedure_keeps_the_tree_where_it_was_and_calls_say_whose_they_are()
     window.click("TF side1");
     window.press(Key::P);
     assert!(window.shows("behind side1, in Main plan > circuit"));
-    window.ask_for("go to leg r1");
+    window.ask_for("show leg r1");
     window.press(Key::Enter);
     window.press(Key::P);
     assert!(window.shows("behind r1, in emergency plan return > r-arrival"));
@@ -75,14 +75,14 @@ fn making_a_procedure_keeps_the_tree_where_it_was_and_calls_say_whose_they_are()
 fn the_tree_follows_what_is_selected_but_not_away_from_the_flight() {
     let mut window = Window::open_with(SQUARE, vec2(1280.0, 560.0), None);
     window.until_analysed();
-    window.ask_for("go to runway");
+    window.ask_for("show runway");
     window.press(Key::Enter);
     assert!(window.shows("RWY R05"));
     let (mut flying, _) = flying();
     flying.harness.set_size(vec2(1280.0, 560.0));
     flying.steps(3);
     assert!(flying.shows("TF side2"));
-    flying.ask_for("go to runway");
+    flying.ask_for("show runway");
     flying.press(Key::Enter);
     assert!(flying.selected() == "R05" && flying.shows("TF side2"));
 }

@@ -87,15 +87,6 @@ impl Window {
         plates.min_by(|a, b| a.area().total_cmp(&b.area()))
     }
 
-    /// So many pictures are painted within what is called so.
-    pub fn pictures_within(&self, name: &str) -> usize {
-        let rect = self.harness.query_all_by_label_contains(name).next().unwrap().rect();
-        let shapes = self.harness.output().shapes.iter();
-        let inside = shapes.filter(|clipped| rect.expand(1.0).contains_rect(clipped.clip_rect));
-        let is_picture = |shape: &Shape| matches!(shape, Shape::Mesh(mesh) if mesh.texture_id != egui::TextureId::default());
-        inside.filter(|clipped| is_picture(&clipped.shape)).count()
-    }
-
     /// So many lines of this colour are painted within what is called so.
     pub fn lines_within(&self, name: &str, colour: Color32) -> usize {
         let rect = self.harness.query_all_by_label_contains(name).next().unwrap().rect();

@@ -29,7 +29,7 @@ impl Resuming {
         for (asked, _) in self.0.drain(..) {
             let refused =
                 |reason: &String| not_granted(&format!("the gateway does not fly the plan on: {reason}"));
-            asked.answer(answer.as_ref().map(|()| ()).map_err(refused), out);
+            asked.answer(answer.as_ref().copied().map_err(refused), out);
         }
     }
 

@@ -65,7 +65,7 @@ pub fn ask(
 }
 
 /// In the field, as long as nothing else is.
-const HINT: &str = "town, airport, or 46.5, 9.9";
+const HINT: &str = "town or 46.5, 9.9";
 
 fn offers_id(name: &str) -> Id {
     Id::unique("places offered for").with(name)

@@ -63,7 +63,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 /// Of the coverage's progress, screen points.
 const BAR_HEIGHT: f32 = 6.0;
 /// Room for what there usually is to say of an alarm, so that what stands below stays under the pointer when one is raised.
-const OUTCOME_HEIGHT: f32 = 100.0;
+const OUTCOME_HEIGHT: f32 = 120.0;
 
 fn alarm(ui: &mut Ui, cause: Cause, scene: &Scene<'_>, queue: &mut Queue) {
     let (raised, name) = (scene.view.alarm == Some(cause), cause_name(cause));

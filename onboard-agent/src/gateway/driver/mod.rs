@@ -90,8 +90,11 @@ pub struct Registration {
     /// autopilot at the other end.
     pub make: fn(&Setup) -> Box<dyn Driver>,
     /// Makes an examination, for `doctor`; `None`: it can't look an autopilot over.
-    pub examine: Option<fn(&Setup) -> Box<dyn Examination>>,
+    pub examine: Option<MakeExamination>,
 }
+
+/// Makes an examination for an autopilot.
+pub type MakeExamination = fn(&Setup) -> Box<dyn Examination>;
 
 /// The drivers: a new one is a line here.
 pub const DRIVERS: &[Registration] = &[mavlink::driver::REGISTRATION];

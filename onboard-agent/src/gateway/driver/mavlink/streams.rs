@@ -119,8 +119,7 @@ impl Streams {
     pub fn stopped(&mut self, now: Time) -> Option<Vec<&'static str>> {
         let over = |stream: &Stream| stream.came.is_some_and(|at| now.saturating_sub(at) > STOPPED);
         let known = WANTED.iter().zip(&self.streams).filter(|((_, interval_ms, _), _)| *interval_ms > 0);
-        let stopped: Vec<_> =
-            known.filter(|(_, stream)| over(*stream)).map(|((.., what), _)| *what).collect();
+        let stopped: Vec<_> = known.filter(|(_, stream)| over(stream)).map(|((.., what), _)| *what).collect();
         if self.told == stopped {
             return None;
         }
