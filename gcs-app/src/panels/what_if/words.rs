@@ -171,7 +171,7 @@ mod tests {
             words(&found),
             [
                 "Engine failure: return, runway R05: not reached",
-                "Flown without the engine: it comes down 480 m beside runway R05 after 1:30.",
+                "Flown without the engine: it comes down 0.5 km beside runway R05 after 1:30.",
                 "Glide straight to the runway: ends before it, 40 m too low.",
                 "Not flown: the aircraft has not taken off."
             ]
