@@ -266,7 +266,7 @@ const SPEAK_MAVLINK: &[&str] = &[
     "onboard-agent/src/gateway/driver/",
     "onboard-agent/src/gateway/tests/flights/two_links.rs",
     "onboard-agent/src/gateway/tests/links.rs",
-    "onboard-agent/benches/frame_to_subscriber.rs",
+    "onboard-agent/benches/",
     "shared/autopilot-link/",
     "shared/sim/",
     "tests/src/rig/world/",
