@@ -268,36 +268,6 @@ fn on(code: &'static str, leg: &str) -> Vec<(&'static str, String)> {
     vec![(code, leg.to_owned())]
 }
 
-/// The edit that a problem of a scan over a zone offers, and what is broken with it.
-fn spared(zone: &str, area: &str) -> Option<Vec<(&'static str, String)>> {
-    let scan = format!(r#"<scan id="sweep" spacing="250" overshoot="50"><area>{area}</area></scan>"#);
-    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
-    let (profile, conditions) = (Profile::default(), Conditions::default());
-    let found = |plan: FlightPlan| {
-        let program =
-            Arc::new(compile(plan, &profile, flat.as_ref()).unwrap_or_else(|p| panic!("{:?}", shown(&p))));
-        let found = review(&program, &profile, &flat, conditions);
-        found.into_iter().filter(|p| p.code.starts_with("keep")).collect::<Vec<_>>()
-    };
-    let plan = flight_plan::read(rectangle(zone, &scan)).plan;
-    let problem = found(plan.clone()).into_iter().find(|p| p.subject == Some("sweep".into())).unwrap();
-    assert_eq!(problem.message.contains("leave the zone out"), problem.fix.is_some(), "{problem}");
-    let left = found(problem.fix?.apply(&plan).unwrap());
-    Some(left.iter().map(|p| (p.code, p.subject.as_ref().unwrap().to_string())).collect())
-}
-
-#[test]
-fn a_zone_inside_of_a_scanned_area_can_be_left_out_of_it() {
-    let corner = |(lat, lon): (f64, f64)| format!(r#"<corner lat="{lat}" lon="{lon}"/>"#);
-    let area: String =
-        [(36.34, -84.22), (36.34, -84.17), (36.37, -84.17), (36.37, -84.22)].map(corner).concat();
-    let circle = |lon: f64| format!(r#"<keepOut id="z" lat="36.355" lon="{lon}" radius="150"/>"#);
-    assert_eq!(spared(&circle(-84.195), &area), Some(vec![]));
-    let outline: String = [(36.353, -84.2), (36.354, -84.194), (36.357, -84.197)].map(corner).concat();
-    assert_eq!(spared(&format!(r#"<keepOut id="z">{outline}</keepOut>"#), &area), Some(vec![]));
-    assert_eq!(spared(&circle(-84.171), &area), None, "it reaches out of the area");
-}
-
 #[test]
 fn a_holding_is_held_against_zones_where_no_leg_of_it_is_written() {
     // the racetrack lies north of D, two turn radii aside

@@ -41,7 +41,6 @@ mod powered;
 mod prepared;
 mod refused;
 mod remedy;
-mod spared;
 mod stay_in;
 mod terrain_clearance;
 mod tracks;

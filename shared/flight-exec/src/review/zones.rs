@@ -8,7 +8,6 @@
 use super::View;
 use super::flown::Flown;
 use super::prepared::{At, Prepared, When};
-use super::spared::spared;
 use crate::api::Branching;
 use crate::rehearse::Preview;
 use flight_plan::{Id, Problem, Zone, ZoneKind};
@@ -166,16 +165,14 @@ impl Found<'_> {
         let (lat, lon) = (position.lat_deg, position.lon_deg);
         let zone = &self.zone.id;
         let place = format!("at {lat:.5}, {lon:.5}");
-        let fix = (self.zone.kind == ZoneKind::KeepOut).then(|| spared(view, self.leg, zone)).flatten();
         let (code, what) = match self.zone.kind {
             ZoneKind::KeepOut => {
                 // above or below a zone that has no limits there is no way
                 let remedy = if self.breach.vertical_m.is_finite() { " or change its altitude" } else { "" };
-                let other = if fix.is_some() { ", or leave the zone out of its area (a hole)" } else { "" };
                 (
                     "keep-out",
                     format!(
-                        "move this leg by {horizontal_m} m{remedy}{other}: it goes into the zone `{zone}` {place}, {altitude_m:.0} m high"
+                        "move this leg by {horizontal_m} m{remedy}: it goes into the zone `{zone}` {place}, {altitude_m:.0} m high"
                     ),
                 )
             }
@@ -196,9 +193,8 @@ impl Found<'_> {
         };
         if self.perhaps {
             let message = format!("{what} if the flight comes there when the zone is active");
-            return Problem::warning(code, message).of(self.leg).with_zone(zone).perhaps_fixed_by(fix);
+            return Problem::warning(code, message).of(self.leg).with_zone(zone);
         }
-        let problem = Problem::error(code, format!("{what}{timeless}"));
-        problem.of(self.leg).with_zone(zone).perhaps_fixed_by(fix)
+        Problem::error(code, format!("{what}{timeless}")).of(self.leg).with_zone(zone)
     }
 }
