@@ -22,6 +22,8 @@ pub struct Alarms {
     answered: BTreeSet<String>,
     /// Alarms may have been missed when they were raised, or can be answered now.
     unread: bool,
+    /// The engine gives no power, or seems to, whoever answered that.
+    engine_out: bool,
 }
 
 /// An alarm that asks for an emergency plan.
@@ -36,7 +38,8 @@ pub struct Call {
 impl Alarms {
     /// With what an earlier FP Manager of this flight answered.
     pub fn restored(answered: BTreeSet<String>) -> Self {
-        Self { answered, unread: false }
+        let engine_out = ENGINE_OUT.iter().any(|id| answered.contains(*id));
+        Self { answered, unread: false, engine_out }
     }
 
     /// Identifiers of what was answered, to be kept for a restart.
@@ -44,9 +47,19 @@ impl Alarms {
         &self.answered
     }
 
-    /// An emergency plan was asked for because the engine gives no power, or seems to, and that has not gone away.
+    /// The engine gives no power, or seems to, as the gateway told last.
     pub fn engine_is_out(&self) -> bool {
-        ENGINE_OUT.iter().any(|id| self.answered.contains(*id))
+        self.engine_out
+    }
+
+    /// One was raised.
+    pub fn raised(&mut self, alarm: &Alarm) {
+        self.engine_out |= tells_of_engine(alarm);
+    }
+
+    /// All that are raised now.
+    pub fn all(&mut self, alarms: &[Alarm]) {
+        self.engine_out = alarms.iter().any(tells_of_engine);
     }
 
     /// It was acted on; until it goes away, nothing more comes of it.
@@ -68,7 +81,7 @@ impl Alarms {
 
     /// What was answered in an earlier flight asks anew.
     pub fn new_flight(&mut self) {
-        *self = Self { answered: BTreeSet::new(), unread: true };
+        *self = Self { answered: BTreeSet::new(), unread: true, engine_out: false };
     }
 
     /// The alarms raised now, as the gateway publishes them; those that nobody answered yet, the most severe first.
@@ -83,6 +96,10 @@ impl Alarms {
         calls.sort_by_key(|call| Reverse(call.cause));
         calls
     }
+}
+
+fn tells_of_engine(alarm: &Alarm) -> bool {
+    ENGINE_OUT.contains(&alarm.id.as_str())
 }
 
 /// What an alarm asks for, if anything.
@@ -102,6 +119,19 @@ mod tests {
 
     fn warning(id: &str, cause: Cause) -> Alarm {
         alarm(id, Severity::Warning, Some(cause))
+    }
+
+    /// Refused because its plan is flown already, an alarm is not answered; the engine is out all the same.
+    #[test]
+    fn the_engine_is_out_whoever_answered_that() {
+        let mut alarms = Alarms::default();
+        alarms.raised(&warning("engine-out", Cause::Engine));
+        assert!(alarms.engine_is_out());
+        alarms.all(&[warning("engine-suspected", Cause::Engine)]);
+        assert!(alarms.engine_is_out(), "one followed the other");
+        alarms.all(&[warning("gps-lost", Cause::Gps)]);
+        assert!(!alarms.engine_is_out());
+        assert!(Alarms::restored(["engine-out".to_owned()].into()).engine_is_out());
     }
 
     #[test]

@@ -79,6 +79,7 @@ impl Manager {
             self.feeder.clear();
             self.step(now, Input::GatewayControls(true), out);
         }
+        self.alarms.all(&status.alarms);
         if self.gateway_session.is_joined() && self.gateway_session.is_airborne() {
             for call in self.alarms.listed(&status.alarms) {
                 self.emergency(now, call, out);
@@ -102,6 +103,7 @@ impl Manager {
                 self.step(now, Input::Progress { current: None }, out);
             }
             GatewayEvent::AlarmRaised(alarm) => {
+                self.alarms.raised(&alarm);
                 if let Some(call) = alarms::call(&alarm) {
                     self.emergency(now, call, out);
                 }

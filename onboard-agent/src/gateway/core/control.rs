@@ -12,6 +12,8 @@ use usal::contract::{Action, GatewayState};
 const RETRY: Duration = Duration::from_millis(1000);
 /// An aircraft that does not arm yet, while its autopilot still starts up, is ordered to again for so long.
 const ARMS_WITHIN: Duration = Duration::from_secs(20);
+/// A launch that does not begin is given up after this.
+const LAUNCHES_WITHIN: Duration = Duration::from_secs(60);
 /// An order of ours that was overtaken by another may still come into effect for so long.
 const OVERTAKEN: Duration = Duration::from_secs(3);
 /// A list that is not ours is flown for so long, where ours is wanted, before the aircraft is made to circle: nothing can be written
@@ -60,6 +62,8 @@ pub struct Control {
     arm: Option<OrderId>,
     /// It was armed since the launch.
     was_armed: bool,
+    /// Since when a launch waits.
+    launch_since: Option<Time>,
     /// Since when it is to be armed, and puts it off.
     put_off_since: Option<Time>,
     speed: Option<(OrderId, f64)>,
@@ -95,6 +99,7 @@ impl Default for Control {
             confirmed_at: None,
             arm: None,
             was_armed: false,
+            launch_since: None,
             put_off_since: None,
             speed: None,
             adopt: None,
@@ -242,6 +247,7 @@ impl Gateway {
         self.meet_in_flight(now, out);
         self.yield_to_pilot(now, out);
         self.keep_hands_off(out);
+        self.wait_for_launch(now, out);
         if !self.control.may_retry(now) {
             return;
         }
@@ -299,10 +305,21 @@ impl Gateway {
         }
     }
 
-    /// It was armed for the take-off, and somebody else disarmed it.
-    fn give_up_launch(&mut self, out: &mut Vec<Output>) {
+    /// A launch waits until the list is aboard and the autopilot arms, but not for longer than this: whoever mends what is in the way
+    /// stands before the propeller.
+    fn wait_for_launch(&mut self, now: Time, out: &mut Vec<Output>) {
+        let on_ground = matches!(self.state, GatewayState::Stop | GatewayState::Off);
+        if !on_ground || self.control.intent != Intent::Fly || self.telemetry.armed {
+            self.control.launch_since = None;
+        } else if now.saturating_sub(*self.control.launch_since.get_or_insert(now)) >= LAUNCHES_WITHIN {
+            self.give_up_launch("the take-off did not begin within a minute: start again", out);
+        }
+    }
+
+    fn give_up_launch(&mut self, cause: &str, out: &mut Vec<Output>) {
+        self.control.launch_since = None;
         self.control.set_intent(Intent::Nothing, self.telemetry.mode);
-        self.cause = "disarmed before the take-off, and not by the gateway".to_owned();
+        self.cause = cause.to_owned();
         out.push(Output::Save);
     }
 
@@ -316,7 +333,7 @@ impl Gateway {
             (self.control.was_armed, self.control.arm) = (true, None);
         } else {
             if flies && self.state == GatewayState::Stop && std::mem::take(&mut self.control.was_armed) {
-                return self.give_up_launch(out);
+                return self.give_up_launch("disarmed before the take-off, and not by the gateway", out);
             }
             if flies && self.state == GatewayState::Stop && self.control.arm.is_none() {
                 self.control.arm = Some(self.order(Order::Arm, out));

@@ -75,12 +75,13 @@ impl Gateway {
         }
     }
 
-    /// Somebody else decides what is flown, until he gives it back or the operator takes it.
+    /// Somebody else decides what is flown, until he gives it back or the operator takes it. A hold, and a way home, are flown on: no list
+    /// is needed for them.
     pub(super) fn list_replaced(&mut self, out: &mut Vec<Output>) {
         const CAUSE: &str = "another station put its own list in the place of the plan's";
         if self.state == GatewayState::Manual {
             self.cause = CAUSE.to_owned();
-        } else if is_flying(self.state) {
+        } else if is_flying(self.state) && self.control.intent == Intent::Fly {
             self.control.set_intent(Intent::Nothing, self.telemetry.mode);
             self.change(Trigger::PilotTook, CAUSE, out);
             out.push(Output::Save);

@@ -436,3 +436,18 @@ fn disarmed_in_the_air_it_still_flies() {
         assert!(!core.gateway.is_in_flight(), "on the ground it is over");
     }
 }
+
+/// The list can't be brought aboard, or the autopilot is switched off: it took off when that was mended.
+#[test]
+fn a_launch_that_does_not_begin_is_given_up() {
+    let mut core = Core::in_stop_with_a_plan();
+    core.step(Input::Request(3, GatewayRequest::Launch));
+    core.step(Input::Report(Report::Course(course(false))));
+    let ground = [beat(Mode::Hold, false), Report::OnGround(true), fix(0.0)];
+    core.run(65, &ground);
+    core.step(Input::Report(Report::Course(course(true))));
+    core.run(5, &ground);
+    assert!(!core.was_ordered(&Order::Arm), "nobody expects it any more");
+    let cause = core.gateway.status(core.now).cause;
+    assert!(cause.contains("start again"), "{cause}");
+}
