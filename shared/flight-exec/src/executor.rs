@@ -199,7 +199,10 @@ impl Executor {
     /// The world as the cursor sees it.
     pub fn world(&self) -> World<'_> {
         let decisions = self.flight.questions.decisions();
-        World { decisions, ..self.setup.world(&self.life, &self.flight.overrides) }
+        let world = self.setup.world(&self.life, &self.flight.overrides);
+        // whoever flies the main plan on trusts the engine, whatever an alarm says
+        let glides_in = world.glides_in.filter(|_| self.flight.emergencies.plan().is_some());
+        World { decisions, glides_in, ..world }
     }
 
     /// The path ahead, measured from the aircraft.

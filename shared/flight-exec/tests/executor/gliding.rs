@@ -72,3 +72,18 @@ fn no_height_is_given_away_on_the_way_and_what_is_too_much_is_lost_before_the_fi
     let land = high.executor.ahead().find(|w| matches!(w.action, Action::Land { .. }));
     assert!(land.is_none_or(|w| (w.altitude_amsl_m - GROUND_M).abs() < 1.0));
 }
+
+/// An engine alarm that nobody believes: the main plan is flown on, and lands as it is written.
+#[test]
+fn the_main_plan_is_not_glided() {
+    let land = |engine_out: bool| {
+        let mut rig = Rig::flying(&holding_first());
+        rig.fly_to("b");
+        (rig.altitude_amsl_m, rig.engine_out) = (Some(GROUND_M + 100.0), engine_out);
+        rig.report();
+        rig.fly_to_the_end();
+        rig.flown.iter().filter(|w| w.leg.as_str() == "land").count()
+    };
+    assert_eq!(land(true), land(false));
+    assert!(land(true) > 1, "it lines up first");
+}
