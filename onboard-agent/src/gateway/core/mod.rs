@@ -13,6 +13,7 @@ mod deviation;
 mod feeding;
 mod io;
 mod met;
+mod observe;
 mod requests;
 mod safe;
 mod states;
@@ -35,7 +36,7 @@ use geometry::LatLon;
 use states::{Trigger, is_flying, is_safe};
 use std::time::Duration;
 use supervise::FpManager;
-use usal::contract::{Action, GatewayEvent, GatewayState, SafeParameters, SafeRunway, Token, Waypoint};
+use usal::contract::{GatewayEvent, GatewayState, SafeParameters, SafeRunway, Token, Waypoint};
 
 /// Silent for so long on the ground: the autopilot is off.
 const OFF_AFTER: Duration = Duration::from_secs(10);
@@ -239,95 +240,6 @@ impl Gateway {
 
     fn flies_waypoints(&self) -> bool {
         self.telemetry.armed && self.telemetry.mode == Some(Mode::Waypoints)
-    }
-
-    /// What the autopilot is seen to do.
-    fn observe(&mut self, now: Time, out: &mut Vec<Output>) {
-        let t = &self.telemetry;
-        let Some(last_received) = t.last_received else { return };
-        if now.saturating_sub(last_received) > OFF_AFTER {
-            return self.change(Trigger::Lost, "the autopilot is silent", out);
-        }
-        if self.telemetry.stands(now) {
-            self.change(Trigger::Heartbeat, "the autopilot is heard", out);
-        } else if self.state == GatewayState::Off {
-            // what it has aboard says in whose hands it is
-            let flies = self.telemetry.flies(now);
-            let what = if flies { "flies already" } else { "has not said yet whether it stands" };
-            self.cause = format!("the autopilot is heard, and {what}");
-        }
-        if is_flying(self.state) && self.telemetry.is_landed(now) {
-            return self.land(out);
-        }
-        // before the state says that he has: what is wanted then is what a next takeover is seen by
-        self.take_back(out);
-        if let Some((trigger, cause)) = self.seen() {
-            self.change(trigger, cause, out);
-        }
-    }
-
-    fn seen(&self) -> Option<(Trigger, &'static str)> {
-        let (mode, intent) = (self.telemetry.mode?, self.control.intent);
-        let aloft = is_flying(self.state) || self.telemetry.is_airborne();
-        match mode {
-            Mode::Waypoints if self.flies_waypoints() && self.buffer.course().aboard => self.seen_on_course(),
-            Mode::Hold if intent == Intent::Hold && aloft => {
-                Some((Trigger::HoldConfirmed, "holding as asked"))
-            }
-            Mode::Direct if intent == Intent::Direct && aloft => {
-                Some((Trigger::DirectConfirmed, "following a direct command"))
-            }
-            _ => None,
-        }
-    }
-
-    fn seen_on_course(&self) -> Option<(Trigger, &'static str)> {
-        if matches!(self.control.intent, Intent::Hold | Intent::Direct) && self.control.mode_pending() {
-            return None;
-        }
-        let Some(waypoint) = self.buffer.current() else {
-            // adopted, and nothing is known of what it flies: Safe mode will see to it
-            let is_met = !is_flying(self.state) || self.state == GatewayState::Manual;
-            let unknown = is_met && self.buffer.at_end();
-            let given_back = self.state == GatewayState::Manual;
-            let cause = if given_back { "given back at the end of what is aboard" } else { "met in flight" };
-            return unknown.then_some((Trigger::Cruising, cause));
-        };
-        let seen = match waypoint.action {
-            Action::TakeOff { .. } => (Trigger::Departing, "taking off"),
-            Action::Land { .. } => (Trigger::Landing, "steering to the touch-down"),
-            _ if self.is_landing_next() => (Trigger::Approaching, "the landing comes next"),
-            _ => (Trigger::Cruising, "flying waypoints"),
-        };
-        Some(seen)
-    }
-
-    fn is_landing_next(&self) -> bool {
-        self.buffer.next().is_some_and(|w| matches!(w.action, Action::Land { .. }))
-    }
-
-    fn land(&mut self, out: &mut Vec<Output>) {
-        // the way home of Safe mode has tokens 0: with it nothing of the plan was flown
-        let theirs = |w: &Waypoint| matches!(w.action, Action::Land { .. }) && w.token > Token(0);
-        // a pilot lands where he likes
-        let landed = self.state == GatewayState::Manual || self.is_where_it_lands();
-        self.finished = landed && self.buffer.current().is_some_and(theirs) && self.reported.is_some();
-        if self.finished {
-            self.reported = Some(None);
-            out.push(Output::Event(GatewayEvent::Progress { current: None, taken: self.highest }));
-        }
-        let cause = match self.place().filter(|_| !landed) {
-            Some(at) => {
-                format!("down away from a runway, at {:.5}, {:.5}, and disarmed", at.lat_deg, at.lon_deg)
-            }
-            None => "landed and disarmed".to_owned(),
-        };
-        self.change(Trigger::Landed, &cause, out);
-        self.forget_waypoints(out);
-        self.control.reset();
-        self.reported = None;
-        self.ended = false;
-        out.push(Output::Save);
     }
 
     /// Makes a transition, if the table has one; reports it; does what entering the state asks for.
