@@ -167,6 +167,8 @@ pub enum Report {
     Rebooted,
     /// Another station put its own list in the place of ours.
     ListReplaced,
+    /// The aircraft whose list was just read circles behind its end because it always does so there: nobody has chosen that mode.
+    HoldsByItself,
     /// What kind of autopilot it is, and why it can't be flown if it can't.
     Capability(Result<&'static str, String>),
 }

@@ -71,8 +71,8 @@ pub struct Control {
     pub adopt: Option<OrderId>,
     /// Since when it flies a list that is not ours, though ours is wanted.
     strays_since: Option<Time>,
-    /// The mode in which a flight was met whose list is read.
-    pub met_in: Option<Mode>,
+    /// It circles behind the end of its list by itself: nobody has chosen that.
+    pub holds_by_itself: bool,
     /// When a flight was met of which nothing is known.
     pub met_at: Option<Time>,
 }
@@ -104,7 +104,7 @@ impl Default for Control {
             speed: None,
             adopt: None,
             strays_since: None,
-            met_in: None,
+            holds_by_itself: false,
             met_at: None,
         }
     }
@@ -200,11 +200,6 @@ impl Control {
         mode_of(self.intent)
     }
 
-    /// What is wanted of a flight whose list was read: nothing, if somebody has chosen another mode meanwhile.
-    pub fn still_wanted(&self, intent: Intent, mode: Option<Mode>) -> Intent {
-        if mode == self.met_in || mode == mode_of(intent) { intent } else { Intent::Nothing }
-    }
-
     /// The autopilot is in the wanted mode.
     fn confirm(&mut self, now: Time) {
         self.confirmed = true;
@@ -231,7 +226,8 @@ impl Control {
     }
 }
 
-fn mode_of(intent: Intent) -> Option<Mode> {
+/// The mode in which that is done; `None`: in any.
+pub(super) fn mode_of(intent: Intent) -> Option<Mode> {
     match intent {
         Intent::Nothing => None,
         Intent::Fly => Some(Mode::Waypoints),

@@ -112,6 +112,9 @@ pub struct Snapshot {
     pub waypoints: Vec<Waypoint>,
     /// Hash of the plan that was flown.
     pub plan: Option<String>,
+    /// What the autopilot called its mode when it was heard last: in another one somebody has switched it since.
+    #[serde(default)]
+    pub mode: Option<String>,
     /// The flight was ended by force; a restart does not bring it back.
     #[serde(default)]
     pub terminated: bool,

@@ -1,7 +1,8 @@
 //! A flight that was met in the air, and one whose list somebody else replaced: is it ours?
 
 use super::Gateway;
-use super::io::{Intent, Output};
+use super::control::mode_of;
+use super::io::{Intent, Output, Snapshot};
 use super::states::{Trigger, is_flying};
 use crate::gateway::order::{Mode, Order, OrderId, Time};
 use std::time::Duration;
@@ -11,9 +12,9 @@ use usal::contract::{GatewayState, Token};
 const READ_WITHIN: Duration = Duration::from_secs(60);
 /// Why an aircraft that was met in flight is somebody else's.
 const NOT_OURS: &str = "met in flight: nothing that it has aboard is ours";
-/// Why an aircraft that flies what is ours is not flown by us.
+/// Why an aircraft that has what is ours aboard is not flown by us.
 const TAKEN_MEANWHILE: &str =
-    "the autopilot was switched to another mode while its list was read, and not by the gateway";
+    "the autopilot was switched to another mode before its list was read, and not by the gateway";
 
 impl Gateway {
     /// A gateway that starts while the aircraft flies: it finds out what is flown before it acts.
@@ -46,7 +47,16 @@ impl Gateway {
         self.control.adopting = self.buffer.number(known);
         let order = Order::Adopt(self.control.adopting.clone());
         self.control.adopt = Some(self.order(order, out));
-        self.control.met_in = self.telemetry.mode;
+        self.control.holds_by_itself = false;
+    }
+
+    /// What is wanted of a flight whose list was read: nothing, if somebody has chosen another mode since an earlier gateway heard it
+    /// last, or while it was read. An order of that one may still be under way.
+    fn still_wanted(&self, intent: Intent, known: Option<&Snapshot>) -> Intent {
+        let mode = self.telemetry.mode;
+        let is_as_before = known.is_some_and(|k| k.mode.as_deref() == Some(&*self.telemetry.mode_name));
+        let at_end = self.control.holds_by_itself && mode == Some(Mode::Hold);
+        if mode == mode_of(intent) || is_as_before || at_end { intent } else { Intent::Nothing }
     }
 
     /// Takes over a flight that was met in the air, if it flies waypoints of ours.
@@ -60,8 +70,8 @@ impl Gateway {
         if let Some(count) = aboard {
             waypoints.truncate(count);
             self.buffer.adopt(waypoints);
+            let wanted = self.still_wanted(intent, known.as_ref());
             self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
-            let wanted = self.control.still_wanted(intent, self.telemetry.mode);
             self.control.set_intent(wanted, self.telemetry.mode);
             if wanted == Intent::Nothing {
                 self.change(Trigger::PilotTook, TAKEN_MEANWHILE, out);

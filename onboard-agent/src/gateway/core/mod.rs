@@ -164,18 +164,25 @@ impl Gateway {
             intent: self.control.intent,
             waypoints: self.buffer.waypoints().cloned().collect(),
             plan: self.fp_manager.plan.clone(),
+            mode: self.telemetry.mode.map(|_| self.telemetry.mode_name.clone().into_owned()),
             terminated: self.terminated,
         }
     }
 
     fn report(&mut self, now: Time, report: Report, out: &mut Vec<Output>) {
+        let before = self.telemetry.mode;
         self.telemetry.take(now, &report);
+        if self.telemetry.mode != before && is_flying(self.state) {
+            // a gateway that starts anew has to see who has changed it
+            out.push(Output::Save);
+        }
         match report {
             Report::Course(course) => self.set_course(course),
             Report::Done(id) => self.control.done(id),
             Report::PutOff(id, why) => self.put_off(now, id, why, out),
             Report::Failed(id, why) => self.failed(now, id, why, out),
             Report::Adopted(id, aboard) => self.adopt(id, aboard, out),
+            Report::HoldsByItself => self.control.holds_by_itself = true,
             Report::ListReplaced => self.list_replaced(out),
             Report::Capability(result) => self.control.capability = Some(result.map(|_| ())),
             _ => {}

@@ -83,6 +83,7 @@ fn is_voice(report: &Report) -> bool {
             | Report::Links(_)
             | Report::Rebooted
             | Report::ListReplaced
+            | Report::HoldsByItself
             | Report::Stopped(_)
             | Report::Capability(_)
     )

@@ -1,5 +1,9 @@
 //! The core alone: what it says and orders upon what is reported to it.
 
+mod disarmed;
+mod met;
+mod replaced;
+
 use super::*;
 use crate::gateway::order::{Fix, Target};
 use crate::gateway::tests::fp_manager;
@@ -112,7 +116,7 @@ fn course(ready: bool) -> Course {
 }
 
 fn beat(mode: Mode, armed: bool) -> Report {
-    Report::Heartbeat { mode, name: "a mode".into(), armed, failsafe: false }
+    Report::Heartbeat { mode, name: format!("{mode:?}").into(), armed, failsafe: false }
 }
 
 fn fix(north_mps: f64) -> Report {

@@ -231,12 +231,20 @@ impl MavlinkDriver {
                 self.list.done();
                 None
             }
-            Outcome::List(entries) => self
-                .dialect()
-                .and_then(|dialect| self.list.read(&entries.iter().map(dialect.decode).collect::<Vec<_>>())),
+            Outcome::List(entries) => self.dialect().and_then(|dialect| {
+                let read = self.list.read(&entries.iter().map(dialect.decode).collect::<Vec<_>>());
+                // that is known before it is judged who steers
+                self.reports.extend(self.holds_by_itself(dialect).then_some(Report::HoldsByItself));
+                read
+            }),
             Outcome::Failed(why) => self.list.failed(now, why),
         };
         self.reports.extend(report);
+    }
+
+    fn holds_by_itself(&self, dialect: &Dialect) -> bool {
+        let holds = self.seen.is_some_and(|seen| (dialect.meaning)(seen.mode, self.sent) == Mode::Hold);
+        dialect.holds_at_end && holds && self.list.is_at_end()
     }
 
     fn command_ended(

@@ -235,6 +235,11 @@ impl List {
         Some(Report::Adopted(id, aboard))
     }
 
+    /// Ours is aboard, and every waypoint of it was flown.
+    pub fn is_at_end(&self) -> bool {
+        self.window.as_ref().is_some_and(|w| w.installed() && w.target() == Target::End)
+    }
+
     /// How far the autopilot is with the waypoints, if that has changed.
     pub fn new_course(&mut self) -> Option<Course> {
         let w = self.window.as_ref()?;

@@ -31,6 +31,7 @@ pub const FIXED_WING: Dialect = Dialect {
     mode_name: modes::name,
     steer: |_, aim| modes::steer(aim),
     arm: &modes::ARM,
+    holds_at_end: true,
     forgets_speed: true,
     // one that comes in the moment in which a take-off ends is said to be accepted, and flown from the next entry on
     speed_repeats: 2,

@@ -1,6 +1,7 @@
 //! The driver against a small PX4, with its habits and what happens on bad links.
 
 mod fake;
+mod met;
 
 use crate::gateway::driver::{DEFAULT, Driver, FromLink, Setup};
 use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Report, Serial, Target, Time};

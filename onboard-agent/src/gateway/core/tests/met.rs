@@ -1,0 +1,66 @@
+//! A gateway that starts anew while the aircraft flies, and who has switched it meanwhile.
+
+use super::*;
+
+/// A gateway that starts with this memory, meets it in this mode, and reads that what it knows is aboard.
+fn met(mode: Mode, known: Option<Snapshot>, by_itself: bool) -> Core {
+    let mut core = Core::started_anew(known);
+    let mut reports = flying(25.0, 25.0);
+    reports[0] = beat(mode, true);
+    core.run(2, &reports);
+    let order = core.orders().into_iter().rfind(|(_, order)| matches!(order, Order::Adopt(_)));
+    let Some((adopt, Order::Adopt(known))) = order else { panic!("{mode:?}: nothing is read") };
+    if by_itself {
+        core.step(Input::Report(Report::HoldsByItself));
+    }
+    core.step(Input::Report(Report::Adopted(adopt, Some(known.len()))));
+    let course = if known.is_empty() { Course { target: Target::End, ..course(true) } } else { course(true) };
+    core.step(Input::Report(Report::Course(course)));
+    core.run(5, &reports);
+    core
+}
+
+fn was_sent(core: &Core, aim: crate::gateway::order::Aim) -> bool {
+    core.was_ordered(&Order::Steer(aim))
+}
+
+/// He takes over when the companion is gone, as one does then; or a failsafe of the autopilot does.
+#[test]
+fn a_hold_that_was_chosen_while_the_gateway_was_dead_is_left_to_whoever_chose_it() {
+    let in_nav = Core::in_nav().gateway.snapshot();
+    for known in [Some(in_nav), None] {
+        let remembers = known.is_some();
+        let mut core = met(Mode::Hold, known, false);
+        assert_eq!(core.gateway.state(), GatewayState::Manual, "with memory: {remembers}");
+        assert!(!was_steered(&core) && core.raised("not-in-command"), "with memory: {remembers}");
+        if remembers {
+            core.step(Input::Request(4, GatewayRequest::Resume));
+            core.run(1, &[beat(Mode::Hold, true)]);
+            assert!(was_sent(&core, crate::gateway::order::Aim::Waypoints), "it is had back by request");
+        }
+    }
+}
+
+#[test]
+fn an_order_of_the_dead_gateway_that_was_under_way_is_given_again() {
+    let mut core = Core::in_nav();
+    core.step(Input::Request(4, GatewayRequest::Hold));
+    let holds_soon = core.gateway.snapshot();
+    assert!(was_sent(&met(Mode::Waypoints, Some(holds_soon), false), crate::gateway::order::Aim::Hold));
+    let mut holding = flying(25.0, 25.0);
+    holding[0] = beat(Mode::Hold, true);
+    core.out.clear();
+    core.run(1, &holding);
+    assert!(core.out.contains(&Output::Save), "the mode that it shows is remembered");
+    core.step(Input::Request(5, GatewayRequest::Resume));
+    let flies_soon = core.gateway.snapshot();
+    assert!(was_sent(&met(Mode::Hold, Some(flies_soon), false), crate::gateway::order::Aim::Waypoints));
+}
+
+/// PX4 does so, whoever flies it.
+#[test]
+fn one_that_holds_by_itself_behind_the_end_of_its_list_was_not_taken_by_anybody() {
+    let core = met(Mode::Hold, Some(Core::in_nav().gateway.snapshot()), true);
+    assert!(was_sent(&core, crate::gateway::order::Aim::Waypoints));
+    assert!(!core.raised("not-in-command"));
+}
