@@ -12,8 +12,8 @@ use wire::Convert;
 /// More identifiers are not remembered: a gateway has a few dozen alarms.
 const MOST: usize = 256;
 
-/// The gateway's alarms of an engine that has stopped, or seems to have.
-const ENGINE_OUT: [&str; 2] = ["engine-out", "engine-suspected"];
+/// The gateway's alarms of an engine that has stopped, seems to have, or may not run.
+const ENGINE_OUT: [&str; 3] = ["engine-out", "engine-suspected", "disarmed-in-flight"];
 
 /// What was answered.
 #[derive(Debug, Default)]
@@ -129,6 +129,8 @@ mod tests {
         assert!(alarms.engine_is_out());
         alarms.all(&[warning("engine-suspected", Cause::Engine)]);
         assert!(alarms.engine_is_out(), "one followed the other");
+        alarms.all(&[warning("disarmed-in-flight", Cause::Engine)]);
+        assert!(alarms.engine_is_out(), "it may not run");
         alarms.all(&[warning("gps-lost", Cause::Gps)]);
         assert!(!alarms.engine_is_out());
         assert!(Alarms::restored(["engine-out".to_owned()].into()).engine_is_out());

@@ -45,6 +45,8 @@ pub struct AlarmInputs {
     pub off_altitude: bool,
     /// It ought to fly, and does not move.
     pub stands_still: bool,
+    /// It flies, and is not armed.
+    pub disarmed: bool,
     /// Somebody else steers the flying aircraft.
     pub not_in_command: bool,
     /// Safe mode needed a runway and found none.
@@ -84,7 +86,7 @@ impl Alarms {
 
     /// The engine has failed, or seems to have.
     pub fn engine_has_failed(&self) -> bool {
-        self.raised.iter().any(|watch| matches!(watch, Watch::EngineOut | Watch::EngineSuspected))
+        self.raised.iter().any(|watch| matches!(watch, Watch::EngineOut | Watch::EngineSuspected | Watch::Disarmed))
     }
 
     /// What is down has to be found: that alarm says where. What is ignored is counted.
@@ -150,10 +152,10 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
             let needed = raised || inputs.sinks_below_target;
             let stands = |e| has_stopped(e, needed);
             // one that stood when it was last told of stands
-            t.is_airborne() && t.engine(now).map_or(raised, stands)
+            t.is_up(now) && t.engine(now).map_or(raised, stands)
         }
         Watch::EngineSuspected => {
-            t.is_airborne() && t.engine(now).is_none() && strains(now, t, inputs, raised)
+            t.is_up(now) && t.engine(now).is_none() && strains(now, t, inputs, raised)
         }
         // if nothing comes at all, that is another alarm
         Watch::StreamStopped => !t.stopped.is_empty() && age(t.last_received).is_some_and(|a| a < SILENT),
@@ -162,13 +164,14 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::Fast => inputs.fast,
         Watch::OffAltitude => inputs.off_altitude,
         Watch::StandsStill => inputs.stands_still,
+        Watch::Disarmed => inputs.disarmed,
         Watch::NotInCommand => inputs.not_in_command,
         Watch::EnergyLow => {
             let limit = if raised { ENERGY_LOW.1 } else { ENERGY_LOW.0 };
             t.power.is_some_and(|(_, p)| p.battery < limit)
         }
         Watch::AutopilotSilent => age(t.last_received).is_some_and(|a| a > SILENT),
-        Watch::PositionStale => t.is_airborne() && is_stale(now, t),
+        Watch::PositionStale => t.is_up(now) && is_stale(now, t),
         Watch::Disobeys => age(inputs.disobeys_since).is_some_and(|a| a > DISOBEYS),
         Watch::NoSafeRunway => inputs.no_safe_runway,
         Watch::NoRunwayStored => inputs.no_runway_stored,

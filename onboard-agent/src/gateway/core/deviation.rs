@@ -59,11 +59,11 @@ impl Gateway {
     }
 
     /// It is far above or below what it was told to fly at, and does not come nearer. Without an engine it can't help it.
-    pub(super) fn is_off_altitude(&self) -> bool {
+    pub(super) fn is_off_altitude(&self, now: Time) -> bool {
         use GatewayState::{SafeApproach, TakeOff};
         let Some((fix, wanted_m)) = self.fix().zip(self.commanded_m()) else { return false };
         let is_steered = self.is_on_its_way() || matches!(self.state, TakeOff | SafeApproach);
-        let flies = is_steered && self.telemetry.is_airborne() && fix.altitude_home_m > ROLLING_M;
+        let flies = is_steered && self.telemetry.is_up(now) && fix.altitude_home_m > ROLLING_M;
         let missing_m = wanted_m - fix.altitude_amsl_m;
         let closing_mps = -fix.down_mps * missing_m.signum();
         let left_s = self.seconds_to_target().unwrap_or(0.0).max(1.0);
@@ -81,7 +81,7 @@ impl Gateway {
         };
         let t = &self.telemetry;
         let is_fast = airspeed_mps > (FAST * wanted_mps).max(least_mps);
-        self.is_on_its_way() && t.is_airborne() && is_fast && t.airspeed.gains_mps2() > -GAINING_MPS2
+        self.is_on_its_way() && t.is_up(now) && is_fast && t.airspeed.gains_mps2() > -GAINING_MPS2
     }
 
     /// The airspeed as it is and as it was told, m/s.
@@ -100,7 +100,7 @@ impl Gateway {
             _ => f64::INFINITY,
         };
         let is_slow = airspeed_mps < (SLOW * wanted_mps).min(most_mps);
-        self.is_on_its_way() && t.is_airborne() && is_slow && t.airspeed.gains_mps2() < GAINING_MPS2
+        self.is_on_its_way() && t.is_up(now) && is_slow && t.airspeed.gains_mps2() < GAINING_MPS2
     }
 
     /// It flies by what was commanded, and neither takes off nor lands.
@@ -109,8 +109,9 @@ impl Gateway {
         matches!(self.state, Nav | Hold | Directed | Approach | SafeHold | SafeReturn)
     }
 
-    /// It is armed in a state that flies, and does not move. On a runway it may: that is a take-off or a landing.
-    pub(super) fn stands_still(&self) -> bool {
+    /// It is armed or says that it is in the air, in a state that flies, and does not move. On a runway it may: that is a take-off or a
+    /// landing.
+    pub(super) fn stands_still(&self, now: Time) -> bool {
         use GatewayState::{Land, Off, SafeLand, Stop, TakeOff, Terminate};
         let on_runway = match self.state {
             Off | Stop | TakeOff | Terminate => true,
@@ -120,7 +121,8 @@ impl Gateway {
         let slow = |mps: f64| mps < STANDING_MPS;
         let air = self.telemetry.air.map_or(0.0, |(_, air)| air.airspeed_mps);
         let moves = |fix: Fix| !slow(fix.north_mps.hypot(fix.east_mps)) || !slow(fix.down_mps.abs());
-        !on_runway && self.telemetry.armed && slow(air) && self.fix().is_some_and(|fix| !moves(fix))
+        let may_fly = self.telemetry.armed || self.telemetry.is_up(now);
+        !on_runway && may_fly && slow(air) && self.fix().is_some_and(|fix| !moves(fix))
     }
 
     /// So far below what it was told to fly at, and sinking so fast.

@@ -69,7 +69,7 @@ impl Gateway {
         match self.state {
             _ if self.control.is_reading() => Err(BEING_READ.into()),
             GatewayState::Off if self.telemetry.last_received.is_none() => Err(NOT_HEARD.into()),
-            GatewayState::Off if self.telemetry.armed => Err(BEING_READ.into()),
+            GatewayState::Off if self.telemetry.armed || self.telemetry.flies(self.now) => Err(BEING_READ.into()),
             GatewayState::Off => Err(NOT_HEARD.into()),
             _ => Ok(()),
         }
@@ -177,7 +177,7 @@ impl Gateway {
 
     /// Where the aircraft is, as a waypoint that the batch follows on; in flight only.
     fn here(&self, feed: &Feed) -> Option<Waypoint> {
-        let position = self.place().filter(|_| self.telemetry.is_airborne())?;
+        let position = self.place().filter(|_| self.telemetry.is_up(self.now))?;
         let first = feed.waypoints.first()?.clone().convert();
         Some(plausibility::from_here(position, &first).convert())
     }

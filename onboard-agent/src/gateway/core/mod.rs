@@ -220,8 +220,9 @@ impl Gateway {
             sinks: self.sinks(),
             slow: self.is_slow(now),
             fast: self.is_fast(now),
-            off_altitude: self.is_off_altitude(),
-            stands_still: self.stands_still(),
+            off_altitude: self.is_off_altitude(now),
+            stands_still: self.stands_still(now),
+            disarmed: is_flying(self.state) && self.telemetry.flies_disarmed(now),
             not_in_command: self.state == GatewayState::Manual,
             no_safe_runway: self.control.intent == Intent::Return,
             exposed: self.settings.exposed,
@@ -239,8 +240,9 @@ impl Gateway {
     /// It is in the air, or about to be, as far as is known; not once it is silent for so long that it is off, or has come down: a
     /// link that is away for a while comes back to an aircraft that must have an owner.
     pub fn is_in_flight(&self) -> bool {
-        let is_up = self.telemetry.armed || self.telemetry.flies_disarmed(self.now);
-        let flies = self.telemetry.is_airborne() || (is_flying(self.state) && is_up);
+        let t = &self.telemetry;
+        let may_fly = is_flying(self.state) && (t.armed || t.flies_disarmed(self.now));
+        let flies = t.is_airborne() || may_fly;
         let silent_at_most = if self.telemetry.on_ground == Some(true) { OFF_AFTER } else { COME_DOWN_AFTER };
         flies && self.telemetry.last_received.is_some_and(|at| self.now.saturating_sub(at) <= silent_at_most)
     }

@@ -172,15 +172,21 @@ impl Telemetry {
         self.armed && self.on_ground != Some(true)
     }
 
-    /// On the ground, as it says; unarmed, or silent about it and at rest, it is believed to be there.
-    pub fn stands(&self, now: Time) -> bool {
-        self.first_beat.is_some()
-            && (!self.armed || self.on_ground.unwrap_or(self.seems_to_rest(now) == Some(true)))
+    /// In the air, as far as is known, or unarmed up there.
+    pub fn is_up(&self, now: Time) -> bool {
+        self.is_airborne() || self.flies_disarmed(now)
     }
 
-    /// In the air for certain: it says so, or is silent about it and moves.
+    /// On the ground, as it says; silent about it, and unarmed or at rest, it is believed to be there.
+    pub fn stands(&self, now: Time) -> bool {
+        let armed_rests = || self.on_ground.unwrap_or(self.seems_to_rest(now) == Some(true));
+        self.first_beat.is_some() && if self.armed { armed_rests() } else { !self.flies_disarmed(now) }
+    }
+
+    /// In the air for certain: it says so, or is armed, silent about it, and moves (unarmed it may be carried).
     pub fn flies(&self, now: Time) -> bool {
-        self.armed && !self.on_ground.unwrap_or(self.seems_to_rest(now) != Some(false))
+        let armed_moves = || self.armed && self.seems_to_rest(now) == Some(false);
+        self.on_ground.map_or_else(armed_moves, |on_ground| !on_ground)
     }
 
     /// Of one that does not say whether it stands: whether its position does. `None`: that is not known either, or it may still
@@ -228,7 +234,7 @@ impl Telemetry {
             velocity_down_mps: fix.down_mps,
             track_deg: if moving { geometry::geodesy::normalise_360(track) } else { heading_deg },
             ground_speed_mps,
-            on_ground: self.on_ground.unwrap_or(!self.armed),
+            on_ground: !self.is_up(time),
         };
         Some((time, position))
     }

@@ -32,6 +32,8 @@ pub enum Watch {
     OffAltitude,
     /// It ought to fly and does not move.
     StandsStill,
+    /// It flies, and its engine may not run.
+    Disarmed,
     /// Somebody else steers.
     NotInCommand,
     /// Safe mode found no runway.
@@ -63,7 +65,7 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 21] = [
+pub const WATCHES: [Watch; 22] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
@@ -77,6 +79,7 @@ pub const WATCHES: [Watch; 21] = [
     Watch::Fast,
     Watch::OffAltitude,
     Watch::StandsStill,
+    Watch::Disarmed,
     Watch::NotInCommand,
     Watch::NoSafeRunway,
     Watch::NoRunwayStored,
@@ -205,6 +208,16 @@ const WORDS: [Words; WATCHES.len()] = [
         advice: "It is armed and ought to fly, but does not move: it may be down. Disarm it before anybody goes near.",
         cause: None,
         patience: Duration::from_secs(10),
+    },
+    Words {
+        watch: Watch::Disarmed,
+        id: "disarmed-in-flight",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "The aircraft flies and is not armed: its engine does not run. Arm it again, or take over by hand and land at the nearest runway within gliding reach.",
+        cause: Some(Cause::Engine),
+        // a heartbeat or two may be wrong, and one that does not say whether it stands may still roll
+        patience: Duration::from_secs(3),
     },
     Words {
         watch: Watch::NotInCommand,
