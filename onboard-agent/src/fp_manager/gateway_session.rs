@@ -11,7 +11,7 @@ const RETRY: Duration = Duration::from_secs(1);
 const SETTLING: Duration = Duration::from_secs(1);
 /// A gateway that was joined and is not heard for so long is joined anew.
 const SILENT: Duration = Duration::from_secs(3);
-/// A request (but for the launch and Safe mode) is given up after so many refusals.
+/// A request (but for the launch and Safe mode) is given up after so many refusals; one whose outcome somebody is told, after the first.
 const ATTEMPTS: u32 = 5;
 /// A launch that is not granted is asked for again for so long. Whoever mends what was in the way stands before the propeller: later
 /// nobody may be surprised by a take-off.
@@ -49,11 +49,13 @@ struct Pending {
     last_reason: String,
     /// Since when it waits, as far as it was looked at.
     since: Option<Time>,
+    /// Whoever wants it is told how it went, and is not surprised by another outcome later.
+    once: bool,
 }
 
 impl Pending {
     fn new(request: GatewayRequest) -> Self {
-        Self { request, refusals: 0, not_before: None, last_reason: String::new(), since: None }
+        Self { request, refusals: 0, not_before: None, last_reason: String::new(), since: None, once: false }
     }
 
     fn is_due(&self, now: Time) -> bool {
@@ -80,7 +82,7 @@ impl Pending {
 
     fn is_hopeless(&self) -> bool {
         let lasting = matches!(self.request, GatewayRequest::Launch | GatewayRequest::Safe);
-        self.refusals >= ATTEMPTS && !lasting
+        (self.once || self.refusals >= ATTEMPTS) && !lasting
     }
 }
 
@@ -270,7 +272,8 @@ impl GatewaySession {
         } else {
             self.flies_on();
         }
-        self.wanted() == Some(&GatewayRequest::Resume)
+        let resume = self.wanted.as_mut().filter(|pending| pending.request == GatewayRequest::Resume);
+        resume.map(|pending| pending.once = true).is_some()
     }
 
     /// What is to be asked of a gateway whose aircraft the pilot has: to take it back, if the operator wants that. It can't be
@@ -382,6 +385,21 @@ mod tests {
         assert!(session.take_back(), "but who asks for it now gets it");
         session.state(Duration::ZERO, GatewayState::Manual);
         assert_eq!(session.request_back(Duration::ZERO), Some(GatewayRequest::Resume));
+    }
+
+    /// He turns to the pilot; a second later the aircraft left the pilot's mode all the same.
+    #[test]
+    fn a_resume_whose_asker_was_told_no_is_not_asked_for_again() {
+        let mut session = GatewaySession::default();
+        use GatewayState::{Hold, Manual};
+        for (state, by_operator) in [(Manual, true), (Hold, true), (Hold, false)] {
+            session.state(Duration::ZERO, state);
+            session.flies_on();
+            assert!(!by_operator || session.take_back());
+            assert_eq!(session.wanted(), Some(&GatewayRequest::Resume));
+            session.requested(Duration::ZERO, &GatewayRequest::Resume, Err("no".into()));
+            assert_eq!(session.wanted().is_some(), !by_operator, "{state:?}");
+        }
     }
 
     #[test]

@@ -28,7 +28,7 @@ impl Resuming {
     pub fn answered(&mut self, answer: &Result<(), String>, out: &mut Out) {
         for (asked, _) in self.0.drain(..) {
             let refused =
-                |reason: &String| not_granted(&format!("the gateway does not fly the plan on: {reason}"));
+                |reason: &String| not_granted(&format!("the gateway does not fly the plan on: {reason} {ONCE}"));
             asked.answer(answer.as_ref().copied().map_err(refused), out);
         }
     }
@@ -47,6 +47,8 @@ impl Resuming {
     }
 }
 
+/// What comes of a refusal.
+const ONCE: &str = "It is not asked again: resume once that has changed.";
 /// Why it is not known yet.
 const OPEN: &str =
     "the gateway has not agreed yet to fly the plan on, and goes on being asked: look at its state";
