@@ -47,6 +47,8 @@ pub struct AlarmInputs {
     pub stands_still: bool,
     /// It flies, and is not armed.
     pub disarmed: bool,
+    /// Another station put its list aboard, which is not flown.
+    pub list_replaced: bool,
     /// Somebody else steers the flying aircraft.
     pub not_in_command: bool,
     /// Safe mode needed a runway and found none.
@@ -165,6 +167,7 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
         Watch::OffAltitude => inputs.off_altitude,
         Watch::StandsStill => inputs.stands_still,
         Watch::Disarmed => inputs.disarmed,
+        Watch::ListReplaced => inputs.list_replaced,
         Watch::NotInCommand => inputs.not_in_command,
         Watch::EnergyLow => {
             let limit = if raised { ENERGY_LOW.1 } else { ENERGY_LOW.0 };

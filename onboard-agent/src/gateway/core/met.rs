@@ -85,16 +85,18 @@ impl Gateway {
         }
     }
 
-    /// Somebody else decides what is flown, until he gives it back or the operator takes it. A hold, and a way home, are flown on: no list
-    /// is needed for them.
+    /// If it flies its list, somebody else decides what is flown, until he gives it back or the operator takes it. If not, nothing is
+    /// flown of that list: the driver writes ours again.
     pub(super) fn list_replaced(&mut self, out: &mut Vec<Output>) {
         const CAUSE: &str = "another station put its own list in the place of the plan's";
         if self.state == GatewayState::Manual {
             self.cause = CAUSE.to_owned();
-        } else if is_flying(self.state) && self.control.intent == Intent::Fly {
+        } else if is_flying(self.state) && self.control.intent == Intent::Fly && self.flies_waypoints() {
             self.control.set_intent(Intent::Nothing, self.telemetry.mode);
             self.change(Trigger::PilotTook, CAUSE, out);
             out.push(Output::Save);
+        } else {
+            self.list_lost = !self.buffer.is_empty();
         }
     }
 }

@@ -73,6 +73,8 @@ pub struct Gateway {
     terminated: bool,
     /// A flight was met in the air: what was known of it.
     adopting: Option<Snapshot>,
+    /// Another station's list is aboard, and is not flown; until ours is.
+    list_lost: bool,
     /// The driver was told to change nothing aboard.
     hands_off: bool,
     /// Of the last step.
@@ -103,6 +105,7 @@ impl Gateway {
             flooded: false,
             terminated: restored.as_ref().is_some_and(|k| k.terminated),
             adopting: restored,
+            list_lost: false,
             hands_off: false,
             now: Time::ZERO,
         }
@@ -193,6 +196,7 @@ impl Gateway {
         let ends = self.buffer.last().is_some_and(|w| w.end_of_plan);
         self.buffer.set_course(course, self.place());
         self.ended |= ends && self.buffer.at_end();
+        self.list_lost &= !course.ready;
     }
 
     /// It is ordered again for a while, as long as nobody wants something else.
@@ -223,6 +227,7 @@ impl Gateway {
             off_altitude: self.is_off_altitude(now),
             stands_still: self.stands_still(now),
             disarmed: is_flying(self.state) && self.telemetry.flies_disarmed(now),
+            list_replaced: self.list_lost && self.state != GatewayState::Manual,
             not_in_command: self.state == GatewayState::Manual,
             no_safe_runway: self.control.intent == Intent::Return,
             exposed: self.settings.exposed,
@@ -303,6 +308,7 @@ impl Gateway {
 
     fn forget_waypoints(&mut self, out: &mut Vec<Output>) {
         self.buffer.clear();
+        self.list_lost = false;
         self.order(Order::Forget, out);
     }
 

@@ -34,6 +34,8 @@ pub enum Watch {
     StandsStill,
     /// It flies, and its engine may not run.
     Disarmed,
+    /// Somebody else wrote a list.
+    ListReplaced,
     /// Somebody else steers.
     NotInCommand,
     /// Safe mode found no runway.
@@ -65,7 +67,7 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 22] = [
+pub const WATCHES: [Watch; 23] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
@@ -80,6 +82,7 @@ pub const WATCHES: [Watch; 22] = [
     Watch::OffAltitude,
     Watch::StandsStill,
     Watch::Disarmed,
+    Watch::ListReplaced,
     Watch::NotInCommand,
     Watch::NoSafeRunway,
     Watch::NoRunwayStored,
@@ -218,6 +221,15 @@ const WORDS: [Words; WATCHES.len()] = [
         cause: Some(Cause::Engine),
         // a heartbeat or two may be wrong, and one that does not say whether it stands may still roll
         patience: Duration::from_secs(3),
+    },
+    Words {
+        watch: Watch::ListReplaced,
+        id: "list-replaced",
+        severity: Severity::Caution,
+        source: "autopilot",
+        advice: "Another station put its own list in the place of the plan's. It is not flown, and the plan's is written again. Find out who did that.",
+        cause: None,
+        patience: Duration::from_secs(0),
     },
     Words {
         watch: Watch::NotInCommand,

@@ -361,3 +361,4 @@ mod strangers;
 mod taken_over;
 mod tests;
 mod two_links;
+mod uploaded;
