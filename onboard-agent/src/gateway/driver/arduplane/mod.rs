@@ -10,7 +10,7 @@ mod tests;
 mod window;
 
 use super::mavlink::commands::Command;
-use super::mavlink::dialect::{Dialect, Manner};
+use super::mavlink::dialect::{Dialect, Manner, Summary};
 use super::mavlink::examine::Advice;
 use super::mavlink::mission::Rules;
 use mavlink::MessageData;
@@ -36,7 +36,11 @@ pub const DIALECT: Dialect = Dialect {
     speed_repeats: 0,
     need: None,
     advice: &ADVICE,
-    manner: Manner { we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER, wind: WIND_DATA::ID },
+    manner: Manner {
+        we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER,
+        wind: WIND_DATA::ID,
+        summary: Summary { mode: u32::from, wind_blows_to: false },
+    },
 };
 
 const ADVICE: [Advice; 3] = [

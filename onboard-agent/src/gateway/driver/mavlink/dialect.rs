@@ -57,11 +57,23 @@ pub struct Manner {
     pub we_are: MavType,
     /// The message that says the wind.
     pub wind: u32,
+    /// What it puts into a summary.
+    pub summary: Summary,
+}
+
+/// How an autopilot says things in `HIGH_LATENCY2`, which leaves it little room.
+#[derive(Debug, Clone, Copy)]
+pub struct Summary {
+    /// The number of a mode, of which 16 bits are said.
+    pub mode: fn(u16) -> u32,
+    /// The wind's direction is the one that it blows to; else the one that it comes from.
+    pub wind_blows_to: bool,
 }
 
 impl Default for Manner {
     /// As long as it is not known what it is.
     fn default() -> Self {
-        Self { we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER, wind: WIND_DATA::ID }
+        let summary = Summary { mode: u32::from, wind_blows_to: false };
+        Self { we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER, wind: WIND_DATA::ID, summary }
     }
 }

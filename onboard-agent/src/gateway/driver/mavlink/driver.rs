@@ -4,6 +4,7 @@
 //! autopilot it is. One without a dialect is refused in plain words, and so is one that turns into another.
 
 mod capability;
+mod mode;
 mod speed;
 
 pub use capability::unsupported;
@@ -19,7 +20,7 @@ use super::parameters::Needed;
 use super::session::{self, Session, SessionEvent};
 use crate::gateway::order::{Aim, Mode, Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
-use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
+use mavlink::dialects::ardupilotmega::{MavAutopilot, MavType};
 use std::collections::VecDeque;
 
 /// This driver in the list of drivers.
@@ -156,6 +157,7 @@ impl MavlinkDriver {
                 self.on_heartbeat(now, &beat, more);
                 self.check_parameter(now);
             }
+            SessionEvent::Mode(mode) => self.on_summary(now, mode, more),
             SessionEvent::Parameter(value) => {
                 if let Some(need) = self.dialect().and_then(|dialect| dialect.need) {
                     self.needed.said(need, &value);
@@ -180,33 +182,6 @@ impl MavlinkDriver {
             SessionEvent::Command(Client::Order(id), result) => self.command_ended(now, id, result, more),
             SessionEvent::Command(Client::Nobody, _) | SessionEvent::Telemetry(_) => {}
         }
-    }
-
-    fn on_heartbeat(&mut self, now: Time, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
-        self.recognise(beat);
-        let Some(dialect) = self.dialect() else {
-            // without a dialect nothing is known of its modes
-            let (mode, name) = (Mode::Other(beat.custom_mode), "unknown".into());
-            let armed = session::is_armed(beat);
-            return self.reports.push_back(Report::Heartbeat { mode, name, armed, failsafe: false });
-        };
-        let (armed, failsafe) = (session::is_armed(beat), session::is_failsafe(beat));
-        let before = self.seen.replace(Seen { mode: beat.custom_mode, armed, failsafe });
-        let going = matches!(self.steering, Some((_, Aim::Direct { .. })));
-        if !going && (dialect.meaning)(beat.custom_mode, true) != Mode::Direct {
-            self.sent = false;
-        }
-        self.report_mode(dialect);
-        let changed = before.is_some_and(|before| before.mode != beat.custom_mode);
-        self.say_speed_again(now, dialect, changed && dialect.forgets_speed, events);
-    }
-
-    fn report_mode(&mut self, dialect: &Dialect) {
-        let Some(Seen { mode: number, armed, failsafe }) = self.seen else { return };
-        let mode = (dialect.meaning)(number, self.sent);
-        self.list.flown = armed && mode == Mode::Waypoints;
-        let name = (dialect.mode_name)(number);
-        self.reports.push_back(Report::Heartbeat { mode, name, armed, failsafe });
     }
 
     /// What telemetry means for the list.

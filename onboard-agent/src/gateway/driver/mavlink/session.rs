@@ -26,6 +26,8 @@ const HEARTBEAT: Duration = Duration::from_secs(1);
 const OWN_COMPONENT: u8 = 191;
 /// Until a vehicle is received we speak as system 1, the usual number of a single vehicle.
 const FIRST_SYSTEM: u8 = 1;
+/// A mode of its heartbeats is newer than that of a summary for so long.
+const BEATS_FOR: Duration = Duration::from_secs(5);
 /// Bytes that are no frames are logged at most this often.
 const LOG_EVERY: Duration = Duration::from_secs(10);
 
@@ -34,6 +36,8 @@ const LOG_EVERY: Duration = Duration::from_secs(10);
 pub enum SessionEvent {
     /// Its heartbeat; the first one that comes binds the session to it.
     Heartbeat(HEARTBEAT_DATA),
+    /// The mode's number, as a summary says it while no heartbeats come.
+    Mode(u32),
     /// It steers to this entry of its list.
     Current(u16),
     /// A command ended.
@@ -66,6 +70,8 @@ pub struct Session {
     commands: Commands,
     streams: Streams,
     readings: Readings,
+    /// When its last heartbeat came, and whether it was armed.
+    beat: Option<(Time, bool)>,
     /// How it is spoken to.
     pub manner: Manner,
     /// What it said.
@@ -278,6 +284,10 @@ impl Session {
                 let said = self.words.hear(now, text).then(|| self.words.lately(now)).flatten();
                 events.extend(said.map(Report::Says).map(SessionEvent::Telemetry));
             }
+            MavMessage::HIGH_LATENCY2(summary) => {
+                self.on_summary(now, summary.custom_mode, events);
+                self.on_other(now, message, peer, events);
+            }
             MavMessage::PARAM_VALUE(value) => events.push(SessionEvent::Parameter(value.clone())),
             _ => self.on_other(now, message, peer, events),
         }
@@ -288,7 +298,10 @@ impl Session {
     fn on_other(&mut self, now: Time, message: &MavMessage, peer: Peer, events: &mut Vec<SessionEvent>) {
         match self.mission.on_message(now, message, peer, &mut self.out) {
             Some(outcome) => events.extend(outcome.map(SessionEvent::Mission)),
-            None => self.readings.take(now, message, events, &mut self.ignored),
+            None => {
+                self.readings.wind_blows_to = self.manner.summary.wind_blows_to;
+                self.readings.take(now, message, events, &mut self.ignored);
+            }
         }
     }
 
@@ -301,7 +314,17 @@ impl Session {
 
     fn on_heartbeat(&mut self, now: Time, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
         events.push(SessionEvent::Heartbeat(beat.clone()));
+        self.beat = Some((now, is_armed(beat)));
         self.shown(now, Shown::Mode(beat.custom_mode, is_armed(beat)), events);
+    }
+
+    /// Over such a link no heartbeats may come; whether it is armed only they say.
+    fn on_summary(&mut self, now: Time, mode: u16, events: &mut Vec<SessionEvent>) {
+        let late = |(at, _): &(Time, bool)| now.saturating_sub(*at) >= BEATS_FOR;
+        let Some((_, armed)) = self.beat.filter(late) else { return };
+        let mode = (self.manner.summary.mode)(mode);
+        events.push(SessionEvent::Mode(mode));
+        self.shown(now, Shown::Mode(mode, armed), events);
     }
 
     fn current(&mut self, now: Time, seq: u16, events: &mut Vec<SessionEvent>) {

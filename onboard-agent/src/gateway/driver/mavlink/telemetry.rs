@@ -48,6 +48,8 @@ pub struct Readings {
     home_amsl_m: Option<f64>,
     /// The energy, as it was said last.
     power: Option<Power>,
+    /// A summary says where the wind blows to, not where it comes from.
+    pub wind_blows_to: bool,
     /// The time of day when it was received last, seconds since 1970.
     day: Option<(Time, i64)>,
 }

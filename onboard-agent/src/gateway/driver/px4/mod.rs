@@ -10,7 +10,7 @@ mod tests;
 mod window;
 
 use super::mavlink::Peer;
-use super::mavlink::dialect::{Dialect, Manner};
+use super::mavlink::dialect::{Dialect, Manner, Summary};
 use super::mavlink::examine::Advice;
 use super::mavlink::item::{self, Item};
 use super::mavlink::mission::{Entry, Rules};
@@ -38,7 +38,11 @@ pub const FIXED_WING: Dialect = Dialect {
     need: Some(&NO_LANDING_NEEDED),
     advice: &ADVICE,
     // it tells its reasons only where it hears a ground station
-    manner: Manner { we_are: MavType::MAV_TYPE_GCS, wind: WIND_COV_DATA::ID },
+    manner: Manner {
+        we_are: MavType::MAV_TYPE_GCS,
+        wind: WIND_COV_DATA::ID,
+        summary: Summary { mode: modes::summed_up, wind_blows_to: true },
+    },
 };
 
 /// PX4 on a VTOL: it rises, and then flies as a wing.

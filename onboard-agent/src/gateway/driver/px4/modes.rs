@@ -56,6 +56,11 @@ pub fn meaning(shown: u32, sent: bool) -> Mode {
     }
 }
 
+/// The mode of which `HIGH_LATENCY2` says the upper half.
+pub fn summed_up(upper: u16) -> u32 {
+    u32::from(upper) << 16
+}
+
 /// The commands that make it do something.
 pub fn steer(aim: &Aim) -> Vec<Command> {
     let go = |place| Command::GoTo { place, shows: Some(HOLD.shown) };
@@ -85,6 +90,7 @@ mod tests {
         let meant = [HOLD, RETURN, number(1, 0)].map(|mode| meaning(mode.shown, false));
         assert_eq!(meant, [Mode::Hold, Mode::Return, Mode::Other(0x1_0000)]);
         assert_eq!(meaning(HOLD.shown, true), Mode::Direct);
+        assert_eq!(summed_up(0x0504), RETURN.shown);
         let names = [MISSION.shown, number(1, 0).shown, number(4, 99).shown].map(name);
         assert_eq!(names, ["Mission", "Manual", "mode 4.99"]);
     }

@@ -1,10 +1,11 @@
 //! `HIGH_LATENCY2`: everything in one short message, over a link that carries little more (a satellite's). It is coarse, and counts
 //! only while the usual messages do not come.
 
-use super::{Readings, place};
+use super::{ALTITUDES_M, Readings, place};
 use crate::gateway::driver::mavlink::session::SessionEvent;
 use crate::gateway::order::{Fix, Report, Time};
 use mavlink::dialects::ardupilotmega::HIGH_LATENCY2_DATA;
+use std::f64::consts::PI;
 use std::time::Duration;
 use usal::contract::{Air, Power};
 
@@ -12,8 +13,8 @@ use usal::contract::{Air, Power};
 const FINER_FOR: Duration = Duration::from_secs(5);
 
 impl Readings {
-    /// Takes it in. What it does not say (voltage, wind, the take-off place) stays as it was said before; a share of the battery or a
-    /// height over home is only told with that.
+    /// Takes it in, but for the mode. What it does not say (voltage, the take-off place) stays as it was said before; a share of the
+    /// battery or a height over home is only told with that.
     pub(super) fn summary(
         &mut self,
         now: Time,
@@ -26,15 +27,16 @@ impl Readings {
             return Some(());
         }
         let position = place(m.latitude, m.longitude)?;
-        self.is_plausible(now, position).then_some(())?;
+        let altitude_amsl_m = f64::from(m.altitude);
+        (ALTITUDES_M.contains(&altitude_amsl_m) && self.is_plausible(now, position)).then_some(())?;
         self.last_fix = Some((now, position));
         self.airspeed_mps = f64::from(m.airspeed) / 5.0;
         self.throttle = f64::from(m.throttle.min(100)) / 100.0;
+        self.summed_up_wind(m);
         if let Some(home_amsl_m) = self.home_amsl_m {
             // it says where the nose points, not where it goes
             let (heading, ground_mps) =
                 ((f64::from(m.heading) * 2.0).to_radians(), f64::from(m.groundspeed) / 5.0);
-            let altitude_amsl_m = f64::from(m.altitude);
             say(Report::Fix(Fix {
                 position,
                 altitude_amsl_m,
@@ -58,6 +60,15 @@ impl Readings {
             say(Report::Power(Power { battery, ..*before }));
         }
         Some(())
+    }
+
+    /// Autopilots differ in which direction that of a wind is. Where nothing is measured, none blows.
+    fn summed_up_wind(&mut self, m: &HIGH_LATENCY2_DATA) {
+        let (mps, said) = (f64::from(m.windspeed) / 5.0, (f64::from(m.wind_heading) * 2.0).to_radians());
+        let to = if self.wind_blows_to { said } else { said + PI };
+        if m.windspeed > 0 {
+            self.wind = (mps * to.sin(), mps * to.cos());
+        }
     }
 }
 
@@ -125,6 +136,21 @@ mod tests {
     }
 
     #[test]
+    fn the_wind_is_told_from_where_the_autopilot_means_it() {
+        let windy = MavMessage::HIGH_LATENCY2(HIGH_LATENCY2_DATA { windspeed: 25, wind_heading: 45, ..summary() });
+        for wind_blows_to in [true, false] {
+            let mut readings = Readings { wind_blows_to, ..Readings::default() };
+            let (said, _) = take(&mut readings, 0, &windy);
+            let Report::Air(air) = &said[1] else { panic!("{said:?}") };
+            let east_mps = if wind_blows_to { 5.0 } else { -5.0 };
+            assert!((air.wind_east_mps - east_mps).abs() < 1e-9 && air.wind_north_mps.abs() < 1e-9, "{air:?}");
+            let (said, _) = take(&mut readings, 1, &MavMessage::HIGH_LATENCY2(summary()));
+            let Report::Air(air) = &said[1] else { panic!("{said:?}") };
+            assert!((air.wind_east_mps - east_mps).abs() < 1e-9, "it says none, and may not know any");
+        }
+    }
+
+    #[test]
     fn what_it_can_not_say_alone_and_what_makes_no_sense_is_not_said() {
         let mut readings = Readings::default();
         let (said, _) = take(&mut readings, 0, &MavMessage::HIGH_LATENCY2(summary()));
@@ -134,5 +160,7 @@ mod tests {
             let (said, ignored) = take(&mut readings, 1, &MavMessage::HIGH_LATENCY2(nowhere));
             assert_eq!((said, ignored), (vec![Report::Alive], 1));
         }
+        let deep = HIGH_LATENCY2_DATA { altitude: i16::MIN, ..summary() };
+        assert_eq!(take(&mut readings, 2, &MavMessage::HIGH_LATENCY2(deep)), (vec![Report::Alive], 1));
     }
 }

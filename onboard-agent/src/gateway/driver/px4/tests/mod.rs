@@ -2,6 +2,7 @@
 
 mod fake;
 mod met;
+mod summary;
 
 use crate::gateway::driver::{DEFAULT, Driver, FromLink, Setup};
 use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Report, Serial, Target, Time};
