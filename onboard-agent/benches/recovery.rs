@@ -106,6 +106,7 @@ impl Hub {
             armed: false,
             autopilot_mode: "AUTO".into(),
             autopilot_age_s: 0.0,
+            fp_manager: None,
             fp_manager_age_s: None,
             safe_return_in_s: None,
             alarms: Vec::new(),

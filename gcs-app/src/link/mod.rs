@@ -5,7 +5,6 @@ mod outlet;
 mod session;
 mod subscriptions;
 
-pub(crate) use outlet::may_be_two;
 
 use crate::state::{ActivePlan, Level, Ticket, VehicleName};
 use flight_exec::{Command as PlanCommand, Event, Foresight, ProposalReport, Status};
@@ -86,7 +85,7 @@ pub enum LinkEvent {
     Telemetry(Telemetry),
     /// Something was lost, and will not come again.
     Lost(Loss),
-    /// So many messages of others than the service in whose name they came. They are ignored, but for those of a second FP Manager.
+    /// So many messages of others than the service in whose name they came. They are ignored.
     Strangers {
         /// In whose name.
         service: &'static str,

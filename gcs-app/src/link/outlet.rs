@@ -5,6 +5,7 @@ use crate::state::VehicleName;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use tokio::sync::mpsc;
+use usal::contract::GatewayStatus;
 use usal::topics::FP_MANAGER;
 use usal::{Gate, Senders};
 
@@ -36,17 +37,9 @@ impl Outlet {
         Self { link, vehicle, messages, left_out, is_foreign, senders, wake }
     }
 
-    /// Lets in what comes from the session that is this service; of a service that may be there twice what comes from both.
+    /// Lets in what comes from the session that is this service.
     pub(super) fn gate(&self, service: &'static str) -> Gate {
-        let gate = self.senders.gate(service);
-        if !may_be_two(service) {
-            return gate;
-        }
-        Arc::new(move |from| {
-            // it is counted and told all the same
-            let _ = gate(from);
-            true
-        })
+        self.senders.gate(service)
     }
 
     /// Tells what others sent in the name of the vehicle's services.
@@ -78,10 +71,19 @@ impl Outlet {
         if self.is_foreign() {
             return;
         }
+        if let Telemetry::Gateway(status) = &telemetry {
+            self.learn_fp_manager(&status.value);
+        }
         if self.report_left_out().is_err() || self.try_send(LinkEvent::Telemetry(telemetry)).is_err() {
             self.left_out.fetch_add(1, Ordering::Relaxed);
         }
         (self.wake)();
+    }
+
+    /// Which of two FP Managers flies the plan only the gateway knows; as long as it does not say so, what both say counts.
+    fn learn_fp_manager(&self, status: &GatewayStatus) {
+        let joined = status.fp_manager.as_deref().and_then(|session| session.parse().ok());
+        self.senders.is_said(FP_MANAGER, joined);
     }
 
     fn report_left_out(&self) -> Result<(), ()> {
@@ -103,30 +105,40 @@ impl Outlet {
     }
 }
 
-/// Which of two FP Managers flies the plan only the gateway knows. The first to answer may be the other one, so what both say counts,
-/// and the operator is told that there are two.
-pub(crate) fn may_be_two(service: &str) -> bool {
-    service == FP_MANAGER
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Instant;
     use usal::Instance;
-    use usal::topics::GATEWAY;
+    use usal::contract::{GatewayState, Stamped};
 
-    /// The one that flies may answer later than one that was started by mistake.
+    fn gateway(fp_manager: Option<&str>) -> Telemetry {
+        let value = GatewayStatus {
+            state: GatewayState::Nav,
+            cause: "waypoints".into(),
+            armed: true,
+            autopilot_mode: "AUTO".into(),
+            autopilot_age_s: 0.1,
+            fp_manager: fp_manager.map(Into::into),
+            fp_manager_age_s: Some(0.1),
+            safe_return_in_s: None,
+            alarms: Vec::new(),
+        };
+        Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value })
+    }
+
+    /// A plain put in its name hid the emergency that the true one flies; and the one that flies may answer later than one that was
+    /// started by mistake.
     #[test]
-    fn of_two_fp_managers_neither_is_dropped_and_both_are_told() {
-        let outlet = Outlet::new(LinkId(1), "uav1".into(), mpsc::channel(1).0, Arc::new(|| {}));
+    fn of_two_fp_managers_the_one_that_the_gateway_names_counts_and_nobody_without_a_name() {
+        let outlet = Outlet::new(LinkId(1), "uav1".into(), mpsc::channel(9).0, Arc::new(|| {}));
         let instance = |text: &str| -> Option<Instance> { Some(text.parse().unwrap()) };
-        for (service, other_counts) in [(FP_MANAGER, true), (GATEWAY, false)] {
-            outlet.senders.described(service, instance("b2"), Instant::now());
-            let gate = outlet.gate(service);
-            assert!(gate(instance("b2")));
-            assert_eq!(gate(instance("a1")), other_counts, "{service}");
-            assert_eq!(outlet.senders.take_strange(), [(service, 1)]);
-        }
+        let gate = outlet.gate(FP_MANAGER);
+        let let_in = || [instance("a1"), instance("b2"), None].map(|from| gate(from));
+        assert_eq!(let_in(), [true, true, false]);
+        outlet.value(gateway(Some("a1")));
+        assert_eq!(let_in(), [true, false, false]);
+        assert_eq!(outlet.senders.take_strange(), [(FP_MANAGER, 3)]);
+        outlet.value(gateway(None));
+        assert_eq!(let_in(), [true, true, false], "it is silent: another one may follow it");
     }
 }

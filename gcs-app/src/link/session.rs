@@ -220,10 +220,13 @@ async fn next(presence: &mut Presence, outlet: &Outlet) -> Option<Arc<BTreeSet<S
     }
 }
 
-/// Asks a service what it is; who answers speaks as it from now on.
+/// Asks a service what it is; who answers speaks as it from now on. Of two FP Managers the other one may be the first to answer: which
+/// of them it is the gateway says.
 async fn describe(session: &Session, service: &'static str, senders: &Senders) -> Result<(), CallError> {
     let (_, by) = session.describe(service, DESCRIBE_TIMEOUT).await?;
-    senders.described(service, by, Instant::now());
+    if service != FP_MANAGER {
+        senders.described(service, by, Instant::now());
+    }
     Ok(())
 }
 

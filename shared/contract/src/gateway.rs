@@ -52,6 +52,9 @@ pub struct GatewayStatus {
     pub autopilot_mode: String,
     /// Seconds since the autopilot was last heard.
     pub autopilot_age_s: f64,
+    /// The session of the FP Manager that joined, as text; `None`: none has, or it is silent.
+    #[serde(default)]
+    pub fp_manager: Option<String>,
     /// Seconds since the FP Manager was last heard; `None`: never.
     pub fp_manager_age_s: Option<f64>,
     /// Seconds until Safe.Hold becomes Safe.Return, while that is so.

@@ -1,8 +1,8 @@
 //! Which session speaks as which service of the vehicle. What others say in its name doesn't count, and is counted. It keeps
 //! mistakes apart and proves nothing: whoever means harm can take another's name.
 //!
-//! For a window it is the session that answers when the service is asked to describe itself; a service knows better whom it has
-//! joined, or who has joined it. A service that is gone may come back as another session, so nobody waits for its description:
+//! For a window it is the session that answers when the service is asked to describe itself, or of which another service says so; a
+//! service knows better whom it has joined, or who has joined it. A service that is gone may come back as another session, so nobody waits for its description:
 //! until then whoever names himself counts. A plain put names nobody.
 
 use crate::{Gate, Instance};
@@ -27,6 +27,8 @@ struct Sender {
     strange: u64,
     /// There were some since it was described or in doubt.
     is_contested: bool,
+    /// Who was it when the service went away; nobody else's word brings him back.
+    left: Option<Instance>,
 }
 
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
@@ -48,6 +50,7 @@ impl Sender {
         };
         if counts {
             self.heard = Some(now);
+            self.left = self.left.filter(|left| from != Some(*left));
         } else {
             self.strange = self.strange.saturating_add(1);
             self.is_contested = true;
@@ -68,7 +71,16 @@ impl Sender {
         self.is_contested = false;
     }
 
+    fn know(&mut self, known: Known) {
+        if self.known != known {
+            (self.known, self.heard, self.is_contested) = (known, None, false);
+        }
+    }
+
     fn gone(&mut self) {
+        if let Known::Session(session) = self.known {
+            self.left = Some(session);
+        }
         (self.known, self.heard) = (Known::Nobody, None);
     }
 }
@@ -82,8 +94,17 @@ impl Senders {
 
     /// It is known without a description who speaks as a service: this session and no other; `None`: whoever does.
     pub fn is_known(&self, service: &'static str, session: Option<Instance>) {
-        let sender = Sender { known: session.map_or(Known::Anybody, Known::Session), ..Sender::default() };
-        self.lock().insert(service, sender);
+        let known = session.map_or(Known::Anybody, Known::Session);
+        self.lock().entry(service).or_default().know(known);
+    }
+
+    /// Another service says which session is this one; `None`: it does not know, and whoever names himself counts. One that has gone is
+    /// not it any more.
+    pub fn is_said(&self, service: &'static str, session: Option<Instance>) {
+        let mut senders = self.lock();
+        let sender = senders.entry(service).or_default();
+        let session = session.filter(|session| sender.left != Some(*session));
+        sender.know(session.map_or(Known::Nobody, Known::Session));
     }
 
     /// Whether a message in the name of a service counts.
@@ -193,6 +214,36 @@ mod tests {
         senders.is_known(SERVICE, instance("b2"));
         assert!(!gate(instance("a1")) && gate(instance("b2")));
         assert_eq!(senders.counts(SERVICE, None, now), gate(None));
+    }
+
+    /// Those that were counted since the last beat were lost with each join that was answered.
+    #[test]
+    fn strangers_are_not_forgotten_when_it_is_said_anew_who_counts() {
+        let (senders, now) = (Senders::default(), Instant::now());
+        senders.is_known(SERVICE, instance("a1"));
+        assert!(!senders.counts(SERVICE, instance("b2"), now));
+        for session in ["a1", "b2"] {
+            senders.is_known(SERVICE, instance(session));
+        }
+        assert_eq!(senders.take_strange(), [(SERVICE, 1)]);
+    }
+
+    #[test]
+    fn of_two_the_one_that_another_service_names_counts_and_both_until_then() {
+        let (senders, now) = (Senders::default(), Instant::now());
+        let count = |from: &[Option<Instance>]| -> Vec<bool> {
+            from.iter().map(|from| senders.counts(SERVICE, *from, now)).collect()
+        };
+        let all = [instance("a1"), instance("b2"), None];
+        senders.is_said(SERVICE, None);
+        assert_eq!(count(&all), [true, true, false], "nobody without a name");
+        senders.is_said(SERVICE, instance("a1"));
+        assert_eq!(count(&all), [true, false, false]);
+        senders.alive(&there(&[]));
+        senders.is_said(SERVICE, instance("a1"));
+        assert!(count(&all[1..2])[0], "its successor, before the other service knows");
+        senders.is_said(SERVICE, instance("b2"));
+        assert_eq!(count(&all), [false, true, false]);
     }
 
     #[test]

@@ -86,6 +86,11 @@ impl FpManager {
         }
     }
 
+    /// The one that joined, unless it is silent: another one may follow it.
+    pub fn heard(&self, now: Time, safe: &SafeParameters) -> Option<Instance> {
+        self.instance.filter(|_| !self.is_silent(now, safe))
+    }
+
     /// One presented itself and was refused: it lives, and waits.
     pub fn asked_to_join(&mut self, now: Time) {
         self.refused = Some(now);

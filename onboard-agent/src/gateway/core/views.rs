@@ -31,10 +31,10 @@ impl Gateway {
         &self.telemetry
     }
 
-    /// What is published at once when it changes: waypoint steered to, state, armed, alarms.
-    pub fn urgent(&self) -> (Option<Token>, GatewayState, bool, usize) {
+    /// What is published at once when it changes: waypoint steered to, state, armed, alarms, who joined.
+    pub fn urgent(&self) -> (Option<Token>, GatewayState, bool, usize, Option<Instance>) {
         let current = self.buffer.current().map(|w| w.token);
-        (current, self.state, self.telemetry.armed, self.alarms.raised().len())
+        (current, self.state, self.telemetry.armed, self.alarms.raised().len(), self.fp_manager.instance)
     }
 
     /// The variable `state`.
@@ -47,6 +47,7 @@ impl Gateway {
             armed: self.telemetry.armed,
             autopilot_mode: self.telemetry.mode_name.clone().into_owned(),
             autopilot_age_s: age(self.telemetry.last_received).unwrap_or(f64::MAX),
+            fp_manager: self.fp_manager.heard(now, &self.safe).map(|session| session.to_string()),
             fp_manager_age_s: self.fp_manager.age_s(now),
             safe_return_in_s: left.map(|l| l.as_secs_f64()),
             alarms: self.alarms.raised(),

@@ -240,6 +240,7 @@ impl Gateway {
             armed: self.state != GatewayState::Stop,
             autopilot_mode: "AUTO".into(),
             autopilot_age_s: 0.0,
+            fp_manager: None,
             fp_manager_age_s: None,
             safe_return_in_s: None,
             alarms: self.alarms.clone(),
