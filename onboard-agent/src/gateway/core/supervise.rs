@@ -150,8 +150,8 @@ impl Gateway {
                     self.return_home(out);
                 }
             }
-            GatewayState::SafeReturn if self.alarms.engine_has_failed() && !self.control.glides_home => {
-                self.glide_home(out);
+            GatewayState::SafeReturn if self.alarms.engine_has_failed() != self.control.glides_home => {
+                self.choose_again(out);
             }
             GatewayState::Off | GatewayState::Stop => self.fp_manager.expected_since = None,
             _ => {}
@@ -168,10 +168,11 @@ impl Gateway {
         }
     }
 
-    /// When an FP Manager that was given the aircraft back has to have sent waypoints.
+    /// When an FP Manager that was given the aircraft back has to have sent waypoints: without an engine it circles away its height.
     pub(super) fn waypoints_due(&self) -> Option<Time> {
         let since = self.fp_manager.awaited_since.filter(|_| self.state == GatewayState::Hold);
-        since.map(|since| since + seconds(self.safe.t2_s))
+        let patience_s = if self.alarms.engine_has_failed() { self.safe.t1_s } else { self.safe.t2_s };
+        since.map(|since| since + seconds(patience_s))
     }
 
     /// The end of the plan is in the buffer, or was flown.
@@ -214,10 +215,10 @@ impl Gateway {
         self.change(Trigger::ReturnDue, &cause, out);
     }
 
-    /// The engine failed on the way home, which was chosen for a flight with it. Without a runway that a glide reaches, that
-    /// way stays.
-    fn glide_home(&mut self, out: &mut Vec<Output>) {
-        self.control.glides_home = true;
+    /// The engine failed on the way home, which was chosen for a flight with it; or it runs after all. Without a runway that is in reach
+    /// now, that way stays.
+    fn choose_again(&mut self, out: &mut Vec<Output>) {
+        self.control.glides_home = self.alarms.engine_has_failed();
         if let Some((cause, way)) = self.way_home() {
             self.fly_home(way, out);
             self.cause = cause;

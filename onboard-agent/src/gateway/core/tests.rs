@@ -3,6 +3,7 @@
 mod disarmed;
 mod met;
 mod replaced;
+mod returning;
 
 use super::*;
 use crate::gateway::order::{Fix, Target};

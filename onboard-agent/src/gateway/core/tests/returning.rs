@@ -1,0 +1,53 @@
+//! On the way home, with and without an engine.
+
+use super::*;
+use usal::contract::Engine;
+
+/// In this mode, with the engine turning so fast at full throttle.
+fn with_engine(mode: Mode, rpm: f64) -> Vec<Report> {
+    let mut reports = flying(25.0, 25.0).to_vec();
+    reports[0] = beat(mode, true);
+    reports.push(Report::Engine(Engine { rpm, temperature_c: 80.0, throttle: 1.0 }));
+    reports
+}
+
+/// Its engine stands, and the only runway is beyond the reach of a glide: it returns by its own means.
+fn beyond_a_glide() -> Core {
+    let mut core = Core::in_nav();
+    let home = LatLon::new(36.32, -84.17).destination(0.0, 6000.0);
+    let far = crate::gateway::tests::flights::runway_at(home);
+    assert_eq!(
+        core.answer(Input::Request(4, GatewayRequest::SetRunways { runways: vec![far] })),
+        Answer::Request(Ok(()))
+    );
+    core.step(Input::Request(5, GatewayRequest::Safe));
+    core.run(1, &with_engine(Mode::Hold, 5000.0));
+    core.run(3, &with_engine(Mode::Hold, 0.0));
+    assert!(core.gateway.state() == GatewayState::SafeReturn && core.raised("no-safe-runway"));
+    core.run(1, &with_engine(Mode::Return, 0.0));
+    core
+}
+
+#[test]
+fn an_engine_that_runs_after_all_takes_it_to_the_runway_that_it_reaches_with_it() {
+    let mut core = beyond_a_glide();
+    core.out.clear();
+    core.run(2, &with_engine(Mode::Return, 5000.0));
+    let cause = core.gateway.status(core.now).cause;
+    assert!(cause.starts_with("returning to runway"), "{cause}");
+    assert!(!core.raised("no-safe-runway"));
+    let way = |(_, order): &(OrderId, Order)| matches!(order, Order::Feed { waypoints, .. } if waypoints.len() > 1);
+    assert!(core.orders().iter().any(way), "it is told the way there");
+}
+
+/// It has nothing to fly until the FP Manager sends it, and circles meanwhile.
+#[test]
+fn without_an_engine_a_manager_that_is_back_and_sends_nothing_is_waited_for_no_longer_than_t1() {
+    let mut core = beyond_a_glide();
+    core.step(Input::Request(6, GatewayRequest::Recover));
+    assert_eq!(core.gateway.state(), GatewayState::Hold);
+    core.run(1, &with_engine(Mode::Hold, 0.0));
+    assert_eq!(core.gateway.state(), GatewayState::Hold);
+    core.run(2, &with_engine(Mode::Hold, 0.0));
+    assert_eq!(core.gateway.state(), GatewayState::SafeReturn);
+}
