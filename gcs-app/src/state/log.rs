@@ -185,7 +185,8 @@ pub fn gateway_event(event: &GatewayEvent) -> Option<(Level, String)> {
         GatewayEvent::StateChanged { from, to, cause } => {
             Some((Level::Info, format!("Gateway: {from:?} to {to:?}, {cause}")))
         }
-        GatewayEvent::Progress { .. } => None,
+        // the FP Manager tells it
+        GatewayEvent::Progress { .. } | GatewayEvent::NotLaunched { .. } => None,
         GatewayEvent::BufferLow { waypoints, seconds } => {
             Some((Level::Caution, format!("Buffer low: {waypoints} waypoints, {seconds:.0} s")))
         }

@@ -5,7 +5,7 @@ use super::manager::{Effect, Manager};
 use flight_exec::{Command, Event, Input, Token};
 use service::Time;
 use usal::Instance;
-use usal::contract::{Air, GatewayEvent, GatewayRequest, GatewayStatus, Gps, Navigation, Position, Power};
+use usal::contract::{Air, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Gps, Navigation, Position, Power};
 use wire::Convert;
 
 /// What comes from a gateway.
@@ -28,7 +28,7 @@ pub enum Report {
 }
 
 /// Who asks for what an alarm of the gateway leads to.
-pub(super) const GATEWAY: &str = "gateway";
+const GATEWAY: &str = "gateway";
 
 impl Manager {
     /// Something comes from a gateway; only the one that we joined counts.
@@ -110,6 +110,12 @@ impl Manager {
             }
             GatewayEvent::AlarmCleared { id } => self.alarms.cleared(&id),
             GatewayEvent::BufferLow { .. } => self.feeder.hurry(),
+            GatewayEvent::NotLaunched { reason } => self.not_launched(now, reason, out),
+            // brought down by somebody: a join says what became of what is ahead
+            GatewayEvent::StateChanged { to: GatewayState::Stop, .. } if self.executor.is_under_way() => {
+                self.gateway_session.state(now, GatewayState::Stop);
+                self.gateway_session.lost();
+            }
             _ => {}
         }
         self.send(now, out);

@@ -67,7 +67,13 @@ impl Manager {
             w.token <= answer.highest.convert()
                 && (answer.finished || !matches!(w.action, Action::TakeOff { .. }))
         });
-        if self.gateway_session.is_on_ground() && answer.last.is_none() && taken {
+        let stands = self.gateway_session.is_on_ground() && answer.last.is_none();
+        let is_wanted = self.gateway_session.wanted() == Some(&GatewayRequest::Launch);
+        if stands && !taken && !is_wanted && !self.feeder.is_under_way() && self.takes_off_next() {
+            let reason = "the gateway has nothing of it any more: start again";
+            self.not_launched(now, reason.into(), out);
+            self.step(now, Input::GatewayControls(false), out);
+        } else if stands && taken {
             self.gateway_session.unwant(GatewayRequest::Launch);
             let flown = answer.finished;
             self.step(now, if flown { Input::Progress { current: None } } else { Input::Landed }, out);
@@ -82,6 +88,10 @@ impl Manager {
                 self.gateway_session.want(GatewayRequest::Hold);
             }
         }
+    }
+
+    fn takes_off_next(&self) -> bool {
+        self.executor.ahead().next().is_some_and(|w| matches!(w.action, Action::TakeOff { .. }))
     }
 
     /// What waits to be sent does not continue what the gateway has.

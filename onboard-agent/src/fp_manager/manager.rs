@@ -5,7 +5,6 @@
 use super::aircraft::Aircraft;
 use super::alarms::Alarms;
 use super::feeder::{BatchResult, Feeder};
-use super::gateway_events::GATEWAY;
 use super::gateway_session::GatewaySession;
 use super::journal::{Entry, ManagerState, Record, Reply};
 use super::plan_history::PlanHistory;
@@ -233,15 +232,12 @@ impl Manager {
         self.send(now, out);
     }
 
-    /// The take-off was not granted in time: the plan stands at its start again, unless another flight of it was flown before.
-    fn not_launched(&mut self, now: Time, reason: String, out: &mut Vec<Effect>) {
+    /// The take-off was not granted in time, or did not come about: the plan stands where it stood before its start.
+    pub(super) fn not_launched(&mut self, now: Time, reason: String, out: &mut Vec<Effect>) {
+        self.gateway_session.unwant(GatewayRequest::Launch);
         let request = GatewayRequest::Launch.name().into();
         out.push(Effect::Event(Event::NotGranted { request, reason }));
-        let is_single = self.executor.program().is_some_and(|program| program.flown().flights().count() <= 1);
-        if is_single {
-            let request = self.next_request();
-            self.step(now, Input::Command { request, by: GATEWAY.into(), command: Command::Rewind }, out);
-        }
+        self.step(now, Input::NotLaunched, out);
     }
 
     pub(super) fn is_in_emergency(&self) -> bool {

@@ -108,6 +108,11 @@ pub enum GatewayEvent {
         /// The highest token ever taken: of a feed beyond it, on its way at the same time, nothing has been flown.
         taken: Token,
     },
+    /// A take-off that was granted did not come about, and is not waited for any more.
+    NotLaunched {
+        /// Why, and what to do.
+        reason: String,
+    },
     /// The buffer is below its low-water mark.
     BufferLow {
         /// Waypoints left.

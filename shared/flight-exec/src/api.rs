@@ -67,6 +67,8 @@ pub enum Input {
     /// The aircraft has landed, but not as the plan does: the pilot or the gateway's Safe mode brought it down. What is ahead is not
     /// flown any more.
     Landed,
+    /// The take-off did not come about, and nobody waits for it any more: the plan stands where it stood before its start.
+    NotLaunched,
     /// The gateway refused a batch that began with this token, whole; its buffer is as it was.
     Rejected {
         /// First token of the batch.

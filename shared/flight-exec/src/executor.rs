@@ -71,6 +71,7 @@ impl Executor {
             }
             Input::Progress { current } => self.progress(current, out),
             Input::Landed => self.landed(out),
+            Input::NotLaunched => self.not_launched(out),
             Input::Rejected { first, reason } => self.rejected(first, reason, out),
             Input::GatewayControls(controls) => self.gateway_controls(controls, out),
         }

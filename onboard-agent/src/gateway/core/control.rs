@@ -6,7 +6,7 @@ use super::states::{Trigger, is_flying};
 use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Time};
 use geometry::LatLon;
 use std::time::Duration;
-use usal::contract::{Action, GatewayState};
+use usal::contract::{Action, GatewayEvent, GatewayState};
 
 /// An order that failed is given again after this.
 const RETRY: Duration = Duration::from_millis(1000);
@@ -308,14 +308,15 @@ impl Gateway {
         if !on_ground || self.control.intent != Intent::Fly || self.telemetry.armed {
             self.control.launch_since = None;
         } else if now.saturating_sub(*self.control.launch_since.get_or_insert(now)) >= LAUNCHES_WITHIN {
-            self.give_up_launch("the take-off did not begin within a minute: start again", out);
+            self.give_up_launch("the take-off did not begin within a minute", out);
         }
     }
 
-    fn give_up_launch(&mut self, cause: &str, out: &mut Vec<Output>) {
+    pub(super) fn give_up_launch(&mut self, cause: &str, out: &mut Vec<Output>) {
         self.control.launch_since = None;
         self.control.set_intent(Intent::Nothing, self.telemetry.mode);
-        self.cause = cause.to_owned();
+        self.cause = format!("{cause}: start again");
+        out.push(Output::Event(GatewayEvent::NotLaunched { reason: self.cause.clone() }));
         out.push(Output::Save);
     }
 

@@ -210,10 +210,8 @@ impl Gateway {
 
     fn failed(&mut self, now: Time, id: OrderId, why: String, out: &mut Vec<Output>) {
         let launch = self.control.failed(now, id);
-        if launch && self.state == GatewayState::Stop {
-            self.control.set_intent(Intent::Nothing, self.telemetry.mode);
-            self.cause = format!("launch refused by the autopilot: {why}");
-            out.push(Output::Save);
+        if launch && !is_flying(self.state) {
+            self.give_up_launch(&format!("launch refused by the autopilot: {why}"), out);
         }
     }
 

@@ -89,6 +89,10 @@ impl Gateway {
             }
             None => "landed and disarmed".to_owned(),
         };
+        if self.state == GatewayState::TakeOff {
+            let reason = format!("the take-off was broken off ({cause}): start again");
+            out.push(Output::Event(GatewayEvent::NotLaunched { reason }));
+        }
         self.change(Trigger::Landed, &cause, out);
         self.forget_waypoints(out);
         self.control.reset();

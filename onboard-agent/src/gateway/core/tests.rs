@@ -1,6 +1,7 @@
 //! The core alone: what it says and orders upon what is reported to it.
 
 mod disarmed;
+mod launching;
 mod met;
 mod replaced;
 mod returning;

@@ -116,14 +116,33 @@ impl Executor {
             let reason = "the aircraft is not known to stand on the ground: in flight, go to a leg instead";
             return Err(refusal("in-the-air", reason));
         }
-        // a take-off that was granted already must not fly what was fed for it
-        out.push(Output::Feed { cancel_after: Some(Token(0)), waypoints: Vec::new() });
+        self.begin_anew(out);
+        Ok(())
+    }
+
+    fn begin_anew(&mut self, out: &mut Vec<Output>) {
+        take_back(out);
         self.flight = Flight::default();
         // it was reviewed ahead of the aircraft alone: from the start, all of it has to be
         self.proposed = None;
         self.life.mode.forget_place();
         self.enter_phase(Phase::Idle, out);
-        Ok(())
+    }
+
+    /// What was flown before this flight is kept.
+    pub(super) fn not_launched(&mut self, out: &mut Vec<Output>) {
+        let takes_off = self.flight.horizon.front().is_some_and(takes_off);
+        if !self.is_flying() || !(takes_off || self.life.aircraft().is_some_and(|a| a.on_ground)) {
+            return;
+        }
+        self.life.mode.forget_place();
+        match self.later_flight() {
+            Some(cursor) => {
+                take_back(out);
+                self.stand(cursor, out);
+            }
+            None => self.begin_anew(out),
+        }
     }
 
     fn hold_by_command(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
@@ -252,7 +271,6 @@ impl Executor {
 
     /// On the ground there is nothing to be flown but the take-off.
     pub(super) fn check_taken_off(&self) -> Result<(), Refusal> {
-        let takes_off = |h: &IssuedWaypoint| matches!(h.waypoint.action, Action::TakeOff { .. });
         let on_ground = self.life.aircraft().is_none_or(|a| a.on_ground);
         if on_ground && self.flight.horizon.front().is_some_and(takes_off) {
             let reason = "the aircraft has not taken off yet: wait until it is in the air";
@@ -418,4 +436,13 @@ impl Executor {
         self.life.clock.ask_for_refresh(self.setup.config.debounce_s);
         Ok(())
     }
+}
+
+fn takes_off(issued: &IssuedWaypoint) -> bool {
+    matches!(issued.waypoint.action, Action::TakeOff { .. })
+}
+
+/// A take-off that was granted already must not fly what was fed for it.
+fn take_back(out: &mut Vec<Output>) {
+    out.push(Output::Feed { cancel_after: Some(Token(0)), waypoints: Vec::new() });
 }

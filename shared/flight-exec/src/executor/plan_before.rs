@@ -41,7 +41,7 @@ impl PlanBefore {
                 current.is_some_and(|token| token < self.first)
             }
             Input::Command { command, .. } => matches!(command, Command::SetVariable { .. }),
-            Input::GatewayControls(_) | Input::Landed => false,
+            Input::GatewayControls(_) | Input::Landed | Input::NotLaunched => false,
             Input::Tick | Input::Aircraft(_) | Input::Propose { .. } | Input::Rejected { .. } => true,
         }
     }

@@ -137,7 +137,7 @@ impl Executor {
     }
 
     /// One flight is over, and the plan waits for a start to go on with the next one, where `cursor` is.
-    fn stand(&mut self, cursor: Cursor, out: &mut Vec<Output>) {
+    pub(super) fn stand(&mut self, cursor: Cursor, out: &mut Vec<Output>) {
         self.flight.horizon.cut(0, cursor);
         // as when the last flight is over
         self.proposed = None;

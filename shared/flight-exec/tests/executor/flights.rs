@@ -136,6 +136,31 @@ fn a_later_flight_that_did_not_take_off_is_started_again() {
 }
 
 #[test]
+fn a_flight_that_did_not_take_off_stands_where_it_stood_before() {
+    let mut rig = grounded();
+    rig.command(Command::Start).unwrap();
+    assert!(!rig.buffer.is_empty());
+    rig.step(Input::NotLaunched);
+    assert_eq!((phase(&rig), rig.leg().as_str(), rig.buffer.len(), n(&rig)), (Phase::Grounded, "to2", 0, Some(1.0)));
+    rig.command(Command::Start).unwrap();
+    rig.fly_to("b");
+    rig.step(Input::NotLaunched);
+    assert_eq!(phase(&rig), Phase::Flying, "it comes too late");
+    rig.fly_to_the_end();
+    assert_eq!(rig.legs(), "a to2 b land2");
+}
+
+#[test]
+fn the_first_flight_that_did_not_take_off_is_not_begun() {
+    let mut rig = Rig::new();
+    rig.update(&program(&two_flights(FIRST, SECOND))).unwrap();
+    stands(&mut rig);
+    rig.command(Command::Start).unwrap();
+    rig.step(Input::NotLaunched);
+    assert_eq!((phase(&rig), rig.buffer.len()), (Phase::Idle, 0));
+}
+
+#[test]
 fn rewound_between_flights_it_begins_anew() {
     let mut rig = grounded();
     rig.command(Command::Rewind).unwrap();

@@ -303,3 +303,39 @@ fn everything_flown_told_before_more_was_taken_is_not_the_end() {
     });
     assert_ne!(ahead(&flight), before, "everything that was taken");
 }
+
+fn phase(flight: &Flight) -> Phase {
+    flight.process.manager.executor().status_phase()
+}
+
+/// The phase stayed `flying` on the ground, and neither `resume` nor `start` led on.
+#[test]
+fn a_take_off_that_the_gateway_gives_up_is_told_and_started_again() {
+    let mut flight = Flight::new(1, false, false);
+    flight.asks.truncate(STARTED);
+    flight.gateway.refuse_launch = Some("not yet".into());
+    run_until(&mut flight, "started", |f| f.asks.is_empty() && phase(f) == Phase::Flying);
+    flight.events.clear();
+    flight.gateway.events.push_back(GatewayEvent::NotLaunched { reason: "refused".into() });
+    run(&mut flight, 2);
+    let told = |event: &&Event| matches!(event, Event::NotGranted { request, reason } if request == "launch" && reason == "refused");
+    assert_eq!(flight.events.iter().filter(told).count(), 1, "{:?}", flight.events);
+    assert_eq!(phase(&flight), Phase::Idle);
+    run(&mut flight, 4);
+    assert_eq!(flight.gateway.launches(), 0, "it is not wanted any more");
+    flight.gateway.refuse_launch = None;
+    flight.ask_once(&What::Command(Command::Start), "again").unwrap();
+    run_until(&mut flight, "in the air", |f| f.gateway.state == GatewayState::Nav);
+}
+
+/// As an autopilot that was switched off, or a pilot who landed without a mode of his own.
+#[test]
+fn brought_down_in_the_middle_the_flight_is_over() {
+    let mut flight = flown(10, STARTED);
+    flight.gateway.safe_return();
+    flight.gateway.state = GatewayState::Stop;
+    let (from, to, cause) = (GatewayState::Nav, GatewayState::Stop, "down".into());
+    flight.gateway.events.push_back(GatewayEvent::StateChanged { from, to, cause });
+    run(&mut flight, 4);
+    assert_eq!(phase(&flight), Phase::Finished);
+}
