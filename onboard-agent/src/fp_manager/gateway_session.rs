@@ -11,8 +11,11 @@ const RETRY: Duration = Duration::from_secs(1);
 const SETTLING: Duration = Duration::from_secs(1);
 /// A gateway that was joined and is not heard for so long is joined anew.
 const SILENT: Duration = Duration::from_secs(3);
-/// A request (but for the launch and Safe mode) is given up after so many refusals; one whose outcome somebody is told, after the first.
+/// A request (but for the launch, Safe mode and the runways) is given up after so many refusals; one whose outcome somebody is told,
+/// after the first.
 const ATTEMPTS: u32 = 5;
+/// Pause before what is never given up is asked for again after so many refusals.
+const LONG_RETRY: Duration = Duration::from_secs(10);
 /// A launch that is not granted is asked for again for so long. Whoever mends what was in the way stands before the propeller: later
 /// nobody may be surprised by a take-off.
 const LAUNCH_WITHIN: Duration = Duration::from_secs(10);
@@ -65,23 +68,26 @@ impl Pending {
     /// Not granted; whether the reason is new.
     fn refused(&mut self, now: Time, reason: &str) -> bool {
         self.refusals += 1;
-        self.not_before = Some(now + RETRY);
+        let is_patient = self.refusals >= ATTEMPTS && matches!(self.request, GatewayRequest::SetRunways { .. });
+        self.not_before = Some(now + if is_patient { LONG_RETRY } else { RETRY });
         let new = self.last_reason != reason;
         self.last_reason = reason.to_owned();
         new
     }
 
-    /// It is a launch that has waited for too long: what is told of it.
-    fn overdue(&mut self, now: Time) -> Option<String> {
+    /// It is a launch that has waited for too long: what is told of it. `unjoined`: why nobody may join, if that is why.
+    fn overdue(&mut self, now: Time, unjoined: &str) -> Option<String> {
         let since = *self.since.get_or_insert(now);
         let is_late = self.request == GatewayRequest::Launch && now >= since + LAUNCH_WITHIN;
-        let why = if self.last_reason.is_empty() { "the gateway did not answer." } else { &self.last_reason };
+        let reasons = [self.last_reason.as_str(), unjoined, "the gateway did not answer."];
+        let why = reasons.into_iter().find(|reason| !reason.is_empty()).unwrap_or_default();
         let seconds = LAUNCH_WITHIN.as_secs();
         is_late.then(|| format!("{why} Given up after {seconds} s: nothing takes off by itself later. Mend that, and start again."))
     }
 
     fn is_hopeless(&self) -> bool {
-        let lasting = matches!(self.request, GatewayRequest::Launch | GatewayRequest::Safe);
+        use GatewayRequest::{Launch, Safe, SetRunways};
+        let lasting = matches!(self.request, Launch | Safe | SetRunways { .. });
         (self.once || self.refusals >= ATTEMPTS) && !lasting
     }
 }
@@ -186,7 +192,7 @@ impl GatewaySession {
         if silent && self.joined {
             self.lost();
         }
-        let why = self.wanted.as_mut()?.overdue(now)?;
+        let why = self.wanted.as_mut()?.overdue(now, &self.last_reason)?;
         self.wanted = None;
         Some(why)
     }
@@ -419,6 +425,36 @@ mod tests {
         session.want(GatewayRequest::Safe);
         assert_eq!(session.tick(now(20)), None);
         assert_eq!(session.tick(now(99)), None, "Safe mode is never given up");
+    }
+
+    /// The gateway did answer: it let nobody join.
+    #[test]
+    fn a_launch_that_waited_for_a_join_is_given_up_with_the_reason_against_that() {
+        let mut session = GatewaySession::default();
+        session.want(GatewayRequest::Launch);
+        session.tick(Duration::ZERO);
+        let reason = "The autopilot is not heard; check its link.";
+        let refused = JoinAnswer { accepted: false, reason: reason.into(), ..answer(None).unwrap() };
+        session.joined(Duration::ZERO, Some(refused)).unwrap_err();
+        let why = session.tick(Duration::from_secs(10)).unwrap();
+        assert!(why.starts_with(reason), "{why}");
+    }
+
+    /// "Try again when there is a position": it comes when it comes.
+    #[test]
+    fn runways_that_are_refused_are_asked_for_until_they_are_taken() {
+        let mut session = GatewaySession::default();
+        session.want_runways(vec![]);
+        let mut asked = 0;
+        for second in 0..60 {
+            let now = Duration::from_secs(second);
+            if let Some(request) = session.request(now, true) {
+                asked += 1;
+                let told = session.requested(now, &request, Err("there is no position".into()));
+                assert_eq!(told.is_some(), asked == 1, "it is told once");
+            }
+        }
+        assert!((8..20).contains(&asked), "{asked} times: seldom, later on");
     }
 
     fn answer(instance: Option<&str>) -> Option<JoinAnswer> {
