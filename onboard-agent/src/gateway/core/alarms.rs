@@ -160,7 +160,11 @@ fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised:
             t.is_up(now) && t.engine(now).is_none() && strains(now, t, inputs, raised)
         }
         // if nothing comes at all, that is another alarm
-        Watch::StreamStopped => !t.stopped.is_empty() && age(t.last_received).is_some_and(|a| a < SILENT),
+        Watch::StreamStopped => {
+            // some say of the wind, or of an engine, only what they measure in the air
+            let flies = t.armed || t.is_up(now);
+            flies && !t.stopped.is_empty() && age(t.last_received).is_some_and(|a| a < SILENT)
+        }
         Watch::Sinks => inputs.sinks,
         Watch::Slow => inputs.slow,
         Watch::Fast => inputs.fast,
@@ -348,6 +352,11 @@ mod tests {
         let (mut alarms, mut telemetry) = (Alarms::default(), Telemetry::default());
         telemetry.take(Duration::ZERO, &Report::Stopped(vec!["GPS", "battery"]));
         telemetry.take(Duration::ZERO, &Report::Alive);
+        for second in [0, 2] {
+            alarms.update(Duration::from_secs(second), &telemetry, AlarmInputs::default(), &mut vec![]);
+        }
+        assert_eq!(alarms.raised(), [], "on the ground, and not armed");
+        good(0).iter().for_each(|report| telemetry.take(Duration::ZERO, report));
         for second in [0, 2] {
             alarms.update(Duration::from_secs(second), &telemetry, AlarmInputs::default(), &mut vec![]);
         }

@@ -349,13 +349,19 @@ fn another_system_and_nonsense_in_fields_change_nothing() {
         (own, position(380_000_000)),
         (own, nan),
     ];
+    let unknown = SYS_STATUS_DATA { battery_remaining: -1, ..SYS_STATUS_DATA::DEFAULT };
+    let before = rig.session.ignored;
+    rig.session.on_message(rig.now, 0, own, &MavMessage::SYS_STATUS(unknown), &mut rig.events);
+    assert_eq!(rig.session.ignored, before, "that it does not know is no nonsense");
     rig.session.on_message(rig.now, 0, own, &position(364_905_000), &mut rig.events);
     rig.events.clear();
     for (i, (sender, message)) in cases.into_iter().enumerate() {
-        let ignored = rig.session.ignored;
+        let counted = |rig: &Rig| (rig.session.others, rig.session.ignored);
+        let (others, ignored) = counted(&rig);
         rig.session.on_message(rig.now, 0, sender, &message, &mut rig.events);
         assert_eq!(rig.events, [], "case {i}");
-        assert_eq!(rig.session.ignored, ignored + 1, "case {i}");
+        let is_other = u64::from(sender == stranger);
+        assert_eq!(counted(&rig), (others + is_other, ignored + 1 - is_other), "case {i}");
     }
 }
 

@@ -62,8 +62,10 @@ pub struct Session {
     /// The same of messages that were ignored.
     logged_ignored: (Time, u64),
     peer: Option<Peer>,
-    /// Messages of other systems, and such without sense.
+    /// Messages with values that nothing can have.
     pub ignored: u64,
+    /// Messages of other systems, as of a ground station behind the same router.
+    pub others: u64,
     mission: Mission,
     /// Behind the links to the autopilot comes the one to another program, if there is a mirror.
     mirror: Option<Mirror>,
@@ -194,7 +196,7 @@ impl Session {
             self.look_at_links(now, events);
         }
         let Some(peer) = self.peer else { return };
-        let stopped = self.streams.stopped(now).map(Report::Stopped);
+        let stopped = self.streams.stopped(now, self.manner.wind).map(Report::Stopped);
         events.extend(stopped.map(SessionEvent::Telemetry));
         self.streams.tick(now, peer, self.manner.wind, &mut self.out);
         let ended = self.commands.tick(now, peer, &mut self.out);
@@ -216,10 +218,8 @@ impl Session {
         let (at, before) = self.logged_ignored;
         if self.ignored > before && now >= at + LOG_EVERY {
             let messages = self.ignored - before;
-            tracing::warn!(
-                messages,
-                "messages of other systems, or with values that nothing can have, were ignored"
-            );
+            let others = self.others;
+            tracing::warn!(messages, others, "messages with values that nothing can have were ignored");
             self.logged_ignored = (now, self.ignored);
         }
     }
@@ -253,7 +253,7 @@ impl Session {
             return self.tick(now, events);
         }
         let Some(peer) = self.peer.filter(|p| *p == sender) else {
-            self.ignored += 1;
+            self.others += 1;
             return;
         };
         if !self.links.heard(now, link, peer, message) {

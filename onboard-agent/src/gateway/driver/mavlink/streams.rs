@@ -115,10 +115,11 @@ impl Streams {
         }
     }
 
-    /// What no longer comes, if that has changed.
-    pub fn stopped(&mut self, now: Time) -> Option<Vec<&'static str>> {
+    /// What no longer comes, if that has changed; of the messages that say the wind, this one counts.
+    pub fn stopped(&mut self, now: Time, wind: u32) -> Option<Vec<&'static str>> {
         let over = |stream: &Stream| stream.came.is_some_and(|at| now.saturating_sub(at) > STOPPED);
-        let known = WANTED.iter().zip(&self.streams).filter(|((_, interval_ms, _), _)| *interval_ms > 0);
+        let asked_for = |id: u32, interval_ms: u32| interval_ms > 0 && (id == wind || !WINDS.contains(&id));
+        let known = WANTED.iter().zip(&self.streams).filter(|((id, ms, _), _)| asked_for(*id, *ms));
         let stopped: Vec<_> = known.filter(|(_, stream)| over(stream)).map(|((.., what), _)| *what).collect();
         if self.told == stopped {
             return None;
@@ -178,14 +179,25 @@ mod tests {
     #[test]
     fn what_came_and_no_longer_comes_is_told_until_it_comes_again() {
         let (mut streams, at) = (Streams::default(), Duration::from_secs);
-        assert_eq!(streams.stopped(at(60)), None, "it never came");
+        let stopped = |streams: &mut Streams, second| streams.stopped(at(second), WIND_DATA::ID);
+        assert_eq!(stopped(&mut streams, 60), None, "it never came");
         streams.seen(at(60), SYS_STATUS_DATA::ID);
         streams.seen(at(60), HOME_POSITION_DATA::ID);
-        assert_eq!(streams.stopped(at(70)), None);
-        assert_eq!(streams.stopped(at(71)), Some(vec!["battery"]));
-        assert_eq!(streams.stopped(at(72)), None, "it was told");
+        assert_eq!(stopped(&mut streams, 70), None);
+        assert_eq!(stopped(&mut streams, 71), Some(vec!["battery"]));
+        assert_eq!(stopped(&mut streams, 72), None, "it was told");
         streams.seen(at(73), SYS_STATUS_DATA::ID);
-        assert_eq!(streams.stopped(at(73)), Some(vec![]));
+        assert_eq!(stopped(&mut streams, 73), Some(vec![]));
+    }
+
+    #[test]
+    fn the_wind_is_missed_once_and_only_as_it_was_asked_for() {
+        let (mut streams, at) = (Streams::default(), Duration::from_secs);
+        streams.seen(at(0), WIND_DATA::ID);
+        streams.seen(at(0), WIND_COV_DATA::ID);
+        assert_eq!(streams.stopped(at(11), WIND_DATA::ID), Some(vec!["wind"]));
+        streams.seen(at(11), WIND_DATA::ID);
+        assert_eq!(streams.stopped(at(12), WIND_DATA::ID), Some(vec![]));
     }
 
     /// What is read and never asked for stays away from an autopilot that sends nothing by itself.

@@ -81,6 +81,8 @@ impl Readings {
                 self.day = unix_s.map(|unix_s| (now, unix_s));
                 Some(())
             }
+            // it does not know how much is left
+            MavMessage::SYS_STATUS(m) if m.battery_remaining == -1 => Some(()),
             MavMessage::SYS_STATUS(m) => {
                 self.power(m).map(|p| out.push(SessionEvent::Telemetry(Report::Power(p))))
             }
