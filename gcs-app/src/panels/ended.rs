@@ -5,9 +5,6 @@ use flight_exec::Phase;
 use flight_plan::{FlightPlan, Runway, StageKind};
 use geometry::LatLon;
 
-/// Farther from a runway's ends it does not stand on it, nor beside it, metres.
-const AROUND_M: f64 = 300.0;
-
 /// In words; `None`: as planned, or nothing is known of it.
 pub fn otherwise(scene: &Scene<'_>) -> Option<String> {
     let vehicle = scene.vehicle;
@@ -24,19 +21,15 @@ pub fn otherwise(scene: &Scene<'_>) -> Option<String> {
     }
     let (end, stands) = (destination(plan?)?, stands?);
     let off = scene.units().distance().show(stands.distance_m(end.threshold));
-    (!is_on(end, stands)).then(|| format!("Landed {off} from {}, where the plan ends", end.id))
+    (!end.strip().is_landed_on(stands)).then(|| format!("Landed {off} from {}, where the plan ends", end.id))
 }
 
 fn landed(scene: &Scene<'_>, runway: &Runway, stands: LatLon) -> String {
-    if is_on(runway, stands) {
+    if runway.strip().is_landed_on(stands) {
         return format!(", landed on {}", runway.id);
     }
     let off = scene.units().distance().show(stands.distance_m(runway.threshold));
     format!(", came down {off} from {}", runway.id)
-}
-
-fn is_on(runway: &Runway, stands: LatLon) -> bool {
-    stands.distance_m(runway.threshold) < runway.length_m + AROUND_M
 }
 
 /// The runway on which a plan lands at its end.

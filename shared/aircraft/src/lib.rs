@@ -37,12 +37,14 @@ pub mod dynamics;
 pub mod glide;
 pub mod power;
 pub mod profile;
+pub mod strip;
 pub mod wind;
 
 pub use autopilot::{Action, Autopilot, Guidance, Guided, Habits, Target};
 pub use dynamics::{Aircraft, Demand, State};
 pub use power::{Battery, Engine};
 pub use profile::{DESIGN_WIND_MPS, Profile, ProfileError};
+pub use strip::Strip;
 pub use wind::{Wind, Winds};
 
 /// Standard gravity, m/s² (ISO 80000-3).

@@ -109,6 +109,13 @@ pub struct Runway {
     pub approach_entry: Option<LatLon>,
 }
 
+impl Runway {
+    /// As a strip of ground.
+    pub fn strip(&self) -> aircraft::Strip {
+        aircraft::Strip { threshold: self.threshold, heading_deg: self.heading_deg, length_m: self.length_m }
+    }
+}
+
 /// A variable's type and initial value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", content = "value", rename_all = "kebab-case")]

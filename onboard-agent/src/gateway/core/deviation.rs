@@ -4,8 +4,8 @@ use super::Gateway;
 use super::io::Intent;
 use super::telemetry::FRESH;
 use crate::gateway::order::{Fix, Time};
-use geometry::near::{distance_and_course, distance_m};
-use geometry::{LatLon, Vec2};
+use aircraft::Strip;
+use geometry::near::distance_m;
 use usal::contract::{Action, GatewayState, SafeRunway, Waypoint};
 
 /// Below the waypoint's altitude by this, and sinking faster than this, something is missing.
@@ -34,9 +34,6 @@ const STANDING_MPS: f64 = 1.5;
 
 /// A landing rolls no farther than this behind the place that it was told to touch down at, metres.
 const MOST_ROLL_M: f64 = 3000.0;
-/// So far before and behind a runway, and beside it, an aircraft counts as landed on it, metres: it flares early, and is off by a little.
-const OVERSHOOT_M: f64 = 150.0;
-const BESIDE_M: f64 = 100.0;
 /// So near to where it took off it has come home, metres.
 const AT_HOME_M: f64 = 500.0;
 
@@ -155,10 +152,15 @@ impl Gateway {
     pub(super) fn is_where_it_lands(&self) -> bool {
         let Some(place) = self.place() else { return true };
         let told = self.buffer.current().is_some_and(|w| match w.action {
-            Action::Land { heading_deg } => is_along(place, w.position, heading_deg, MOST_ROLL_M),
+            Action::Land { heading_deg } => {
+                Strip { threshold: w.position, heading_deg, length_m: MOST_ROLL_M }.is_landed_on(place)
+            }
             _ => false,
         });
-        let on = |r: &SafeRunway| is_along(place, r.threshold, r.heading_deg, r.length_m);
+        let on = |r: &SafeRunway| {
+            let (threshold, heading_deg, length_m) = (r.threshold, r.heading_deg, r.length_m);
+            Strip { threshold, heading_deg, length_m }.is_landed_on(place)
+        };
         let at_home = self.telemetry.home.is_some_and(|(home, _)| distance_m(home, place) < AT_HOME_M);
         told || self.runways.iter().any(on) || at_home
     }
@@ -166,11 +168,4 @@ impl Gateway {
     fn fix(&self) -> Option<Fix> {
         self.telemetry.fix.map(|(_, fix)| fix)
     }
-}
-
-/// A place on a strip that begins at another one.
-fn is_along(place: LatLon, begins: LatLon, heading_deg: f64, length_m: f64) -> bool {
-    let (metres, course_deg) = distance_and_course(begins, place);
-    let off = Vec2::from_bearing_rad((course_deg - heading_deg).to_radians()) * metres;
-    (-OVERSHOOT_M..=length_m + OVERSHOOT_M).contains(&off.n) && off.e.abs() <= BESIDE_M
 }

@@ -12,9 +12,6 @@ use crate::layout::world::World;
 use flight_plan::suggest::did_you_mean_leg;
 use flight_plan::{Id, Leg, LegKind, LegPath, Program, StageKind, VariableValue};
 
-/// Farther than this from a runway an aircraft does not stand on it, metres.
-const AT_RUNWAY_M: f64 = 500.0;
-
 impl Executor {
     pub(crate) fn command(
         &mut self,
@@ -81,10 +78,10 @@ impl Executor {
         let stage = self.setup.program.flown().stages.get(stage).filter(|s| s.kind == StageKind::TakeOff);
         let runway = stage.and_then(|s| self.setup.program.plan.runway(s.runway.as_ref()?));
         let Some((runway, aircraft)) = runway.zip(self.life.aircraft()) else { return Ok(()) };
-        let away_m = distance_m(aircraft.position, runway.threshold);
-        if !aircraft.on_ground || away_m <= runway.length_m + AT_RUNWAY_M {
+        if !aircraft.on_ground || runway.strip().is_near(aircraft.position) {
             return Ok(());
         }
+        let away_m = distance_m(aircraft.position, runway.threshold);
         let reason = format!(
             "the aircraft stands {:.1} km from runway `{}`, from which the plan takes off: bring it there, or fly a plan of where it stands",
             away_m / 1000.0,

@@ -387,7 +387,7 @@ fn glided(flight: Flight, since_s: f64, runway: &Runway, terrain: &dyn Terrain) 
         track.truncate(down + 1);
     }
     let last = *track.last()?;
-    let away_m = beside_m(last.position, runway);
+    let away_m = runway.strip().beside_m(last.position);
     let missed_m = if is_down(&last) { (away_m - TOLERANCE_M).max(0.0) } else { away_m.max(1.0) };
     Some(Glided { time_s: last.time_s - since_s, track, missed_m })
 }
@@ -395,18 +395,10 @@ fn glided(flight: Flight, since_s: f64, runway: &Runway, terrain: &dyn Terrain) 
 /// So near to a runway's centre line, or to its ends, one is on it, metres.
 const TOLERANCE_M: f64 = 60.0;
 
-/// From a place to the nearest point of a runway's centre line, metres.
-fn beside_m(place: LatLon, runway: &Runway) -> f64 {
-    let (from_m, bearing_deg) = distance_and_course(runway.threshold, place);
-    let angle_rad = (bearing_deg - runway.heading_deg).to_radians();
-    let along_m = from_m * angle_rad.cos();
-    (along_m - along_m.clamp(0.0, runway.length_m)).hypot(from_m * angle_rad.sin())
-}
-
 /// The ground of a place; near the runway, and where nothing is known, the runway's.
 fn ground_m(place: LatLon, runway: &Runway, terrain: &dyn Terrain) -> f64 {
     let near =
-        distance_and_course(place, runway.threshold).0 < AT_RUNWAY_M || beside_m(place, runway) < TOLERANCE_M;
+        distance_and_course(place, runway.threshold).0 < AT_RUNWAY_M || runway.strip().beside_m(place) < TOLERANCE_M;
     terrain.elevation_m(place).filter(|_| !near).unwrap_or(runway.elevation_amsl_m)
 }
 

@@ -1,0 +1,75 @@
+//! A runway as a strip of ground: what stands on it.
+
+use geometry::near::distance_and_course;
+use geometry::{LatLon, Vec2};
+
+/// So far before and behind a runway, and beside it, an aircraft counts as landed on it, metres: it flares early, and is off by a little.
+const OVERSHOOT_M: f64 = 150.0;
+const BESIDE_M: f64 = 100.0;
+/// Farther from a runway than this an aircraft does not stand at it, ready to be started, metres.
+const AT_IT_M: f64 = 500.0;
+
+/// The strip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strip {
+    /// Where it begins.
+    pub threshold: LatLon,
+    /// Where it leads, degrees true.
+    pub heading_deg: f64,
+    /// Metres.
+    pub length_m: f64,
+}
+
+impl Strip {
+    /// A place as seen from the threshold, metres: along the strip and to the right of it.
+    fn along_and_aside_m(&self, place: LatLon) -> Vec2 {
+        let (metres, course_deg) = distance_and_course(self.threshold, place);
+        Vec2::from_bearing_rad((course_deg - self.heading_deg).to_radians()) * metres
+    }
+
+    /// From a place to the nearest point of the centre line, metres.
+    pub fn beside_m(&self, place: LatLon) -> f64 {
+        let off = self.along_and_aside_m(place);
+        (off.n - off.n.clamp(0.0, self.length_m.max(0.0))).hypot(off.e)
+    }
+
+    /// What has come to rest here has landed on it.
+    pub fn is_landed_on(&self, place: LatLon) -> bool {
+        let off = self.along_and_aside_m(place);
+        (-OVERSHOOT_M..=self.length_m + OVERSHOOT_M).contains(&off.n) && off.e.abs() <= BESIDE_M
+    }
+
+    /// What stands here may take off from it: it may wait on a taxiway.
+    pub fn is_near(&self, place: LatLon) -> bool {
+        self.beside_m(place) <= AT_IT_M
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_is_on_at_or_away_from_a_strip() {
+        let strip = Strip { threshold: LatLon::new(36.49, -84.27), heading_deg: 52.0, length_m: 600.0 };
+        // along and aside; how far beside the line; landed on; at it
+        for (along_m, aside_m, beside_m, landed, near) in [
+            (300.0, 0.0, 0.0, true, true),
+            (300.0, 90.0, 90.0, true, true),
+            (-140.0, -30.0, 143.2, true, true),
+            (740.0, 0.0, 140.0, true, true),
+            (300.0, -120.0, 120.0, false, true),
+            (-200.0, 0.0, 200.0, false, true),
+            (300.0, 600.0, 600.0, false, false),
+            (-600.0, 0.0, 600.0, false, false),
+        ] {
+            let place = strip.threshold.destination(52.0, along_m).destination(142.0, aside_m);
+            assert!((strip.beside_m(place) - beside_m).abs() < 0.5, "{along_m}, {aside_m}");
+            assert_eq!(
+                (strip.is_landed_on(place), strip.is_near(place)),
+                (landed, near),
+                "{along_m}, {aside_m}"
+            );
+        }
+    }
+}
