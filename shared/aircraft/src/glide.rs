@@ -2,11 +2,21 @@
 //! track to track.
 
 use crate::power::glide_sink_mps;
-use crate::{Profile, Winds};
+use crate::{GRAVITY_MPS2, Profile, Wind, Winds};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 use geometry::near::distance_and_course;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Radius of a circle in radii of a planned turn: it is held in wind.
+const CIRCLE_RADII: f64 = 1.3;
+/// A circle may cost this much more height than it should, before the runway is out of reach.
+const CIRCLE_SPARE: f64 = 1.2;
+/// More circles would make more waypoints than are fed; above that it goes down faster in them.
+const MOST_CIRCLES: f64 = 20.0;
+/// An autopilot circles in a wind of up to this share of its airspeed.
+const MOST_WIND: f64 = 0.8;
 
 /// A point of a glide.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -28,6 +38,35 @@ pub struct GlideStart {
     pub altitude_amsl_m: f64,
     /// Where it flies to, degrees true.
     pub course_deg: f64,
+}
+
+/// A circle that is flown to lose height.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Circle {
+    /// Metres.
+    pub radius_m: f64,
+    /// Height that a glide around it takes, metres.
+    pub height_m: f64,
+    /// How long that takes, seconds.
+    pub time_s: f64,
+}
+
+impl Circle {
+    /// At the cruise speed, over the ground.
+    pub fn of(profile: &Profile, wind: Wind) -> Self {
+        let speed_mps = profile.cruise_airspeed_mps;
+        let radius_m = CIRCLE_RADII * profile.turn_radius_m(speed_mps);
+        // it is banked most where the wind is behind it
+        let wind_mps = wind.speed_mps().min(MOST_WIND * speed_mps);
+        let load_factor = ((speed_mps + wind_mps).powi(2) / (GRAVITY_MPS2 * radius_m)).hypot(1.0);
+        let time_s = TAU * radius_m / (speed_mps * speed_mps - wind_mps * wind_mps).sqrt();
+        Self { radius_m, height_m: time_s * glide_sink_mps(profile, speed_mps, load_factor), time_s }
+    }
+
+    /// So many of them can be flown with this much height to lose, and some of it to spare.
+    pub fn most(&self, height_m: f64) -> u32 {
+        (height_m / (CIRCLE_SPARE * self.height_m)).floor().clamp(0.0, MOST_CIRCLES) as u32
+    }
 }
 
 /// The glide through some places, with a point at each, and at the last one in line with a runway; `None`: against the wind it does
@@ -74,4 +113,24 @@ pub fn glide(
 /// Angle between two courses, radians in 0..=π.
 pub fn turn_rad(from_deg: f64, to_deg: f64) -> f64 {
     normalise_180(to_deg - from_deg).abs().to_radians()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_circle_takes_more_height_in_wind_and_none_is_begun_that_the_height_does_not_suffice_for() {
+        for name in Profile::names() {
+            let profile = Profile::by_name(name).unwrap();
+            let calm = Circle::of(&profile, Wind::CALM);
+            let windy = Circle::of(&profile, Wind::from_direction(90.0, 0.3 * profile.cruise_airspeed_mps));
+            assert!(windy.height_m > calm.height_m && windy.time_s > calm.time_s, "{name}");
+            assert_eq!(windy.radius_m, calm.radius_m, "{name}: it is one over the ground");
+            let storm = Circle::of(&profile, Wind::from_direction(90.0, 1e3));
+            assert!(storm.height_m.is_finite() && storm.height_m > 0.0, "{name}");
+            assert_eq!([-1.0, 0.0, 1.0, 2.5].map(|n| calm.most(n * calm.height_m)), [0, 0, 0, 2], "{name}");
+            assert_eq!((calm.most(1e9), calm.most(f64::NAN)), (20, 0), "{name}");
+        }
+    }
 }

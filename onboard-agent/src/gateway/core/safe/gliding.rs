@@ -6,26 +6,17 @@
 
 use super::way::gates;
 use super::{Approach, Situation, along};
-use aircraft::GRAVITY_MPS2;
-use aircraft::glide::{GlidePoint, GlideStart, glide};
-use aircraft::power::glide_sink_mps;
+use aircraft::glide::{Circle, GlidePoint, GlideStart, glide};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
-use std::f64::consts::TAU;
 use usal::contract::{SafeParameters, SafeRunway};
 
 /// Height above the threshold that a glide comes there with, and above the ground on the way, metres.
 const SPARE_M: f64 = 15.0;
 /// Share of the steepest descent that is counted on.
 const STEEP: f64 = 0.7;
-/// Radius of a circle in radii of a planned turn.
-const CIRCLE_RADII: f64 = 1.3;
 /// Waypoints of a circle.
 const CORNERS: u32 = 8;
-/// Most circles: all of their waypoints have to fit into the buffer. Above that it goes down faster in them.
-const MOST_CIRCLES: f64 = 20.0;
-/// A circle may cost this much more height than it should, before the runway is out of reach.
-const CIRCLE_SPARE: f64 = 1.2;
 
 /// A place on the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,26 +84,14 @@ fn told(runway: &SafeRunway, s: &Situation, [initial, last, end]: [&GlidePoint; 
         |from: &GlidePoint, to: &GlidePoint| STEEP * s.profile.max_descent_mps * (to.time_s - from.time_s);
     let most_last_m = (last.altitude_amsl_m - too_much_m).max(runway.elevation_amsl_m + falls_m(last, end));
     let most_initial_m = (height_m - too_much_m).max(most_last_m + falls_m(initial, last));
-    let circle_m = circle_m(s);
-    let circles =
-        if height_m > most_initial_m { (too_much_m / (CIRCLE_SPARE * circle_m)).floor() } else { 0.0 };
-    let circles = circles.clamp(0.0, MOST_CIRCLES);
-    let initial_m = (height_m - circles * circle_m).min(most_initial_m);
-    Some(Told { circles: circles as u32, initial_m, last_m: (initial_m - sinks_m).min(most_last_m) })
+    let circle = circle(s);
+    let circles = if height_m > most_initial_m { circle.most(too_much_m) } else { 0 };
+    let initial_m = (height_m - f64::from(circles) * circle.height_m).min(most_initial_m);
+    Some(Told { circles, initial_m, last_m: (initial_m - sinks_m).min(most_last_m) })
 }
 
-fn radius_m(s: &Situation) -> f64 {
-    CIRCLE_RADII * s.profile.turn_radius_m(s.profile.cruise_airspeed_mps)
-}
-
-/// Height that a circle over the ground takes, metres.
-fn circle_m(s: &Situation) -> f64 {
-    let (radius_m, speed_mps) = (radius_m(s), s.profile.cruise_airspeed_mps);
-    // it is banked most where the wind is behind it
-    let wind_mps = s.wind().speed_mps().min(0.8 * speed_mps);
-    let load_factor = ((speed_mps + wind_mps).powi(2) / (GRAVITY_MPS2 * radius_m)).hypot(1.0);
-    let through_air_mps = (speed_mps * speed_mps - wind_mps * wind_mps).sqrt();
-    TAU * radius_m / through_air_mps * glide_sink_mps(s.profile, speed_mps, load_factor)
+fn circle(s: &Situation) -> Circle {
+    Circle::of(s.profile, s.wind())
 }
 
 /// The initial point, and the circles from there and back to it in line with the runway, evenly down.
@@ -124,13 +103,14 @@ fn circles(
     s: &Situation,
 ) -> Vec<Gate> {
     let side = if right { 1.0 } else { -1.0 };
-    let centre = initial.destination(heading_deg + 90.0 * side, radius_m(s));
+    let radius_m = circle(s).radius_m;
+    let centre = initial.destination(heading_deg + 90.0 * side, radius_m);
     let corners = told.circles * CORNERS;
     let corner = |i: u32| {
         let turned_deg = 360.0 * f64::from(i % CORNERS) / f64::from(CORNERS);
         let position = match i % CORNERS {
             0 => initial,
-            _ => centre.destination(heading_deg + side * (turned_deg - 90.0), radius_m(s)),
+            _ => centre.destination(heading_deg + side * (turned_deg - 90.0), radius_m),
         };
         let share = if corners == 0 { 1.0 } else { f64::from(i) / f64::from(corners) };
         let altitude_amsl_m = from_m + share * (told.initial_m - from_m);

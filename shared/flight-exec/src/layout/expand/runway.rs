@@ -8,12 +8,11 @@ use crate::layout::homeward::Arrival;
 use crate::layout::path::{Level, PathState, distance_m};
 use crate::layout::world::World;
 use aircraft::Wind;
-use aircraft::glide::GlideStart;
+use aircraft::glide::{Circle, GlideStart};
 use aircraft::power::glide_sink_mps;
 use flight_plan::{AltitudeReference, Runway, Stage};
 use geometry::geodesy::{normalise_180, normalise_360};
 use geometry::{LatLon, PathElement};
-use std::f64::consts::TAU;
 
 /// Off the runway's heading by more than this a path is not on the final approach, which then gets a point to line up at first, degrees.
 pub const ALIGNED_DEG: f64 = 30.0;
@@ -55,7 +54,7 @@ pub fn land(stage: &Stage, path: &PathState, world: &World) -> Result<Vec<Point>
     };
     if let Some(wind) = world.glides_in {
         let straight = !is_worth_its_height(gate.position, path, runway, (wind, world));
-        let approach = if straight { Vec::new() } else { losing_height(gate, path, runway, world) };
+        let approach = if straight { Vec::new() } else { losing_height(gate, path, runway, (wind, world)) };
         return Ok(approach.into_iter().chain([touch_down(runway)]).collect());
     }
     let mut from = path.last.position;
@@ -103,28 +102,27 @@ fn is_worth_its_height(
     !(is_nearer && is_in_line) && arrival.is_some_and(|arrival| arrival.height_m >= 0.0)
 }
 
-/// More circles than any height takes.
-const MAX_CIRCLES: f64 = 30.0;
-
 /// With the engine out: to where the final approach begins, and around there as often as it takes to lose what is too much of the height.
 /// As many circles as the steepest descent needs, and no more than a glide has height for.
-fn losing_height(gate: Point, path: &PathState, runway: &Runway, world: &World) -> Vec<Point> {
+fn losing_height(
+    gate: Point,
+    path: &PathState,
+    runway: &Runway,
+    (wind, world): (Wind, &World),
+) -> Vec<Point> {
     let (profile, mps) = (world.profile, path.last.airspeed_mps.max(1.0));
-    let radius_m = world.turn_radius_m(mps);
-    let circle_s = TAU * radius_m / mps;
+    let circle = Circle::of(profile, wind);
     let way_s = distance_m(path.last.position, gate.position) / mps;
     let wanted_m = gate.level.map_or(runway.elevation_amsl_m, |level| level.metres);
-    let turning = 1.0 / profile.planning_bank_deg.to_radians().cos();
-    let (steep_mps, glide_mps, turning_mps) =
-        (profile.max_descent_mps, glide_sink_mps(profile, mps, 1.0), glide_sink_mps(profile, mps, turning));
+    let (steep_mps, glide_mps) = (profile.max_descent_mps, glide_sink_mps(profile, mps, 1.0));
     let too_much_m = path.predicted_amsl_m - steep_mps * way_s - wanted_m;
     let there_is_m = path.predicted_amsl_m - glide_mps * way_s - wanted_m;
-    let needed = (too_much_m / (steep_mps * circle_s)).ceil();
-    let possible = (there_is_m / (turning_mps * circle_s)).floor();
-    let circles = needed.min(possible).clamp(0.0, MAX_CIRCLES);
+    let needed = (too_much_m / (steep_mps * circle.time_s)).ceil().max(0.0);
+    let circles = needed.min(f64::from(circle.most(there_is_m)));
     let mut points = vec![gate];
     if circles > 0.0 {
         let side = if normalise_180(runway.heading_deg - path.course_deg) < 0.0 { -1.0 } else { 1.0 };
+        let radius_m = circle.radius_m;
         let centre = gate.position.destination(runway.heading_deg + side * 90.0, radius_m);
         let start_bearing_deg = normalise_360(runway.heading_deg - side * 90.0);
         let around =
