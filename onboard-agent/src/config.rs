@@ -208,12 +208,15 @@ impl Options {
     pub fn fp_manager(&self) -> anyhow::Result<fp_manager::Config> {
         let plan = self.plan.as_deref().map(read_text).transpose().context("--plan")?;
         let terrain: Arc<dyn Terrain> = Arc::new(self.tiles()?.unwrap_or_default());
+        let replay = self.autopilots()?.iter().any(gateway::Address::is_replay);
         Ok(fp_manager::Config {
             profile: self.profile()?,
             terrain,
             plan,
-            state_dir: self.state_dir.clone(),
+            // what is played is no flight to go on with
+            state_dir: self.state_dir.clone().filter(|_| !replay),
             simulated: self.is_simulated(),
+            replay,
             ..fp_manager::Config::new(self.vehicle(), &self.hub())
         })
     }

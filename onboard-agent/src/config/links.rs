@@ -91,6 +91,13 @@ mod tests {
         assert_eq!(links(&[]).unwrap().len(), 1);
         assert_eq!(links(&["udp:127.0.0.1:1", "serial:/dev/ttyUSB0:57600"]).unwrap().len(), 2);
         assert!(links(&["tlog:flight.tlog"]).unwrap()[0].is_replay());
+        let played = Options {
+            autopilot: vec!["tlog:flight.tlog".into()],
+            state_dir: Some("flight".into()),
+            ..Options::default()
+        };
+        let plays = played.fp_manager().unwrap();
+        assert!(plays.replay && plays.state_dir.is_none(), "nothing of it is a flight to go on with");
         for (bad, told) in [
             (vec!["tlog:flight.tlog", "udp:127.0.0.1:1"], "alone"),
             (vec!["udp:127.0.0.1:1"; 9], "at most"),

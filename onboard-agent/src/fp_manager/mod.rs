@@ -56,6 +56,8 @@ pub struct Config {
     pub state_dir: Option<PathBuf>,
     /// Time is the simulator's (lockstep).
     pub simulated: bool,
+    /// A telemetry log is played: nothing can be commanded.
+    pub replay: bool,
     /// How the plan is flown.
     pub executor: flight_exec::Config,
 }
@@ -71,6 +73,7 @@ impl Config {
             plan: None,
             state_dir: None,
             simulated: false,
+            replay: false,
             executor: flight_exec::Config::default(),
         }
     }

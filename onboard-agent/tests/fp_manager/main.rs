@@ -66,6 +66,20 @@ impl Flight {
             state_dir: state_dir.map(Into::into),
             ..fp_manager::Config::new("uav1", &endpoint)
         };
+        Self::of(gateway, client, config).await
+    }
+
+    /// Without memory, otherwise than usual.
+    async fn with(change: impl FnOnce(&mut fp_manager::Config)) -> Self {
+        let endpoint = free_endpoint();
+        let gateway = FakeGateway::open(&endpoint).await;
+        let client = Session::open(usal::Config::client("uav1", &endpoint).named("operator")).await.unwrap();
+        let mut config = fp_manager::Config { simulated: true, ..fp_manager::Config::new("uav1", &endpoint) };
+        change(&mut config);
+        Self::of(gateway, client, config).await
+    }
+
+    async fn of(gateway: FakeGateway, client: Session, config: fp_manager::Config) -> Self {
         let mut flight = Self { gateway, client, manager: None, config, logs: Logs::new().unwrap() };
         flight.start_manager().await;
         flight
@@ -209,6 +223,20 @@ async fn active_plan_is_a_file_with_the_hash_of_the_status_also_after_a_restart(
         assert_eq!(*flight_plan::hash(&flight_plan::read(std::str::from_utf8(&file).unwrap()).plan), *plan);
         flight.kill_manager().await;
         flight.start_manager().await;
+    }
+}
+
+/// `start` was answered with success, and the plan was said to be flown.
+#[tokio::test(flavor = "multi_thread")]
+async fn where_a_log_is_played_nothing_can_be_commanded() {
+    let mut flight = Flight::with(|config| config.replay = true).await;
+    for command in [Command::Start, Command::Hold, Command::Rewind] {
+        match flight.command(command).await {
+            Err(CallError::Refused(refusal)) => {
+                assert!(refusal.code == "replay" && refusal.reason.contains("nothing can be commanded"), "{refusal}");
+            }
+            other => panic!("{other:?}"),
+        }
     }
 }
 
