@@ -267,6 +267,8 @@ impl Session {
             MavMessage::HEARTBEAT(beat) => self.on_heartbeat(now, beat, events),
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => self.synchronise(now, sync.ts1),
             MavMessage::TIMESYNC(sync) => self.links.time_answered(now, link, sync.ts1),
+            // an answer to another station's
+            MavMessage::COMMAND_ACK(ack) if !is_for(self.own(), ack) => {}
             MavMessage::COMMAND_ACK(ack) => {
                 let ended = self.commands.acked(now, ack);
                 events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));
@@ -359,6 +361,12 @@ impl Session {
             target_component,
         }));
     }
+}
+
+/// Older autopilots do not say whom they answer.
+fn is_for(own: Sender, ack: &COMMAND_ACK_DATA) -> bool {
+    let system = [0, own.system].contains(&ack.target_system);
+    system && [0, own.component].contains(&ack.target_component)
 }
 
 /// A datagram has an autopilot's heartbeat in it, which is believed if there is a key.

@@ -1,5 +1,6 @@
 //! The driver against a small PX4, with its habits and what happens on bad links.
 
+mod acks;
 mod fake;
 mod met;
 mod summary;
