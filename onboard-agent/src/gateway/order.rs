@@ -165,6 +165,8 @@ pub enum Report {
     Links(AutopilotLinks),
     /// The autopilot started anew: nothing that was verified still holds.
     Rebooted,
+    /// Whether it refuses to fly the list that it has.
+    ListUnfit(bool),
     /// Another station put its own list in the place of ours.
     ListReplaced,
     /// The aircraft whose list was just read circles behind its end because it always does so there: nobody has chosen that mode.

@@ -2,7 +2,6 @@
 
 use super::Gateway;
 use super::io::{Intent, Output};
-use super::states::{Trigger, is_flying};
 use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Time};
 use geometry::LatLon;
 use std::time::Duration;
@@ -31,9 +30,9 @@ pub struct Control {
     pub intent: Intent,
     /// The mode when the intent was last changed: another than this and than the wanted one was
     /// chosen by somebody else.
-    mode_before: Option<Mode>,
+    pub mode_before: Option<Mode>,
     /// The autopilot has once confirmed the mode that the intent asks for.
-    confirmed: bool,
+    pub confirmed: bool,
     /// Since when the wanted mode is not confirmed.
     pub disobeys_since: Option<Time>,
     /// When a failed order is given again.
@@ -56,7 +55,7 @@ pub struct Control {
     last_id: u64,
     mode: Option<(OrderId, Mode)>,
     /// The mode last ordered, while it may still come into effect.
-    ordered: Option<Mode>,
+    pub ordered: Option<Mode>,
     /// Since when the wanted mode is confirmed.
     confirmed_at: Option<Time>,
     arm: Option<OrderId>,
@@ -75,6 +74,8 @@ pub struct Control {
     pub holds_by_itself: bool,
     /// When a flight was met of which nothing is known.
     pub met_at: Option<Time>,
+    /// When somebody took the aircraft, and the mode that was wanted.
+    pub taken: Option<(Time, Mode)>,
 }
 
 impl Default for Control {
@@ -106,6 +107,7 @@ impl Default for Control {
             strays_since: None,
             holds_by_itself: false,
             met_at: None,
+            taken: None,
         }
     }
 }
@@ -196,12 +198,13 @@ impl Control {
         }
     }
 
-    fn wanted_mode(&self) -> Option<Mode> {
+    /// The mode in which what is wanted is done; `None`: in any.
+    pub fn wanted_mode(&self) -> Option<Mode> {
         mode_of(self.intent)
     }
 
     /// The autopilot is in the wanted mode.
-    fn confirm(&mut self, now: Time) {
+    pub fn confirm(&mut self, now: Time) {
         self.confirmed = true;
         self.disobeys_since = None;
         let since = *self.confirmed_at.get_or_insert(now);
@@ -211,7 +214,7 @@ impl Control {
     }
 
     /// It is in a mode that we wanted before.
-    fn overtaken(&mut self, mode: Mode) {
+    pub fn overtaken(&mut self, mode: Mode) {
         self.confirmed = false;
         self.confirmed_at = None;
         self.mode_before = Some(mode);
@@ -250,55 +253,6 @@ impl Gateway {
         self.steer_mode(now, out);
         self.steer_speed(out);
         self.leave_loiter(out);
-    }
-
-    /// The pilot gave the aircraft back when he switched to the waypoints: they are what is wanted again.
-    pub(super) fn take_back(&mut self, out: &mut Vec<Output>) {
-        let given_back = self.state == GatewayState::Manual && self.flies_waypoints();
-        if given_back && self.buffer.course().aboard && self.control.intent != Intent::Fly {
-            self.control.set_intent(Intent::Fly, self.telemetry.mode);
-            out.push(Output::Save);
-        }
-    }
-
-    /// The human pilot has priority: a mode that we did not ask for is respected.
-    fn yield_to_pilot(&mut self, now: Time, out: &mut Vec<Output>) {
-        let Some(mode) = self.telemetry.mode else { return };
-        let is_up = self.telemetry.armed || self.telemetry.flies_disarmed(now);
-        let Some(wanted) = self.control.wanted_mode().filter(|_| is_up) else {
-            self.control.disobeys_since = None;
-            return;
-        };
-        if mode == wanted {
-            self.control.confirm(now);
-        } else if self.control.ordered == Some(mode) {
-            // an order of ours that has been overtaken: what is wanted is ordered again
-            self.control.overtaken(mode);
-        } else if self.control.confirmed || Some(mode) != self.control.mode_before {
-            let by = if self.telemetry.failsafe {
-                "while a failsafe of it is active"
-            } else {
-                "and not by the gateway"
-            };
-            let why = self.telemetry.explained(now);
-            let cause = format!("the autopilot was switched to {}, {by}{why}", self.telemetry.mode_name);
-            self.control.set_intent(Intent::Nothing, Some(mode));
-            self.change(Trigger::PilotTook, &cause, out);
-            out.push(Output::Save);
-        } else if is_flying(self.state) {
-            self.control.disobeys_since.get_or_insert(now);
-        }
-    }
-
-    /// What is aboard is not touched while the pilot flies, unless it is to be flown again.
-    fn keep_hands_off(&mut self, out: &mut Vec<Output>) {
-        let off = match self.state {
-            GatewayState::Manual => self.control.intent == Intent::Nothing,
-            state => state == GatewayState::Terminate,
-        };
-        if std::mem::replace(&mut self.hands_off, off) != off {
-            self.order(Order::HandsOff(off), out);
-        }
     }
 
     /// A launch waits until the list is aboard and the autopilot arms, but not for longer than this: whoever mends what is in the way

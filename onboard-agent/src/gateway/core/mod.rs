@@ -14,6 +14,7 @@ mod feeding;
 mod io;
 mod met;
 mod observe;
+mod pilot;
 mod requests;
 mod safe;
 mod states;
@@ -185,6 +186,7 @@ impl Gateway {
             Report::PutOff(id, why) => self.put_off(now, id, why, out),
             Report::Failed(id, why) => self.failed(now, id, why, out),
             Report::Adopted(id, aboard) => self.adopt(id, aboard, out),
+            Report::ListUnfit(true) => self.list_refused(now),
             Report::HoldsByItself => self.control.holds_by_itself = true,
             Report::ListReplaced => self.list_replaced(out),
             Report::Capability(result) => self.control.capability = Some(result.map(|_| ())),

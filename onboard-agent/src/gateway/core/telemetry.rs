@@ -62,6 +62,8 @@ pub struct Telemetry {
     pub home: Option<(LatLon, f64)>,
     /// Stands on the ground, if it says.
     pub on_ground: Option<bool>,
+    /// It refuses to fly the list that it has.
+    pub list_unfit: bool,
     /// What it warned of, in its own words.
     pub said: Timed<String>,
     /// What it no longer says.
@@ -109,6 +111,7 @@ impl Default for Telemetry {
             power: None,
             home: None,
             on_ground: None,
+            list_unfit: false,
             said: None,
             stopped: vec![],
             links: None,
@@ -149,6 +152,7 @@ impl Telemetry {
                 self.home = Some((*position, *altitude_amsl_m));
             }
             Report::OnGround(v) => self.on_ground = Some(*v),
+            Report::ListUnfit(v) => self.list_unfit = *v,
             Report::Says(words) => self.said = Some((now, words.clone())),
             Report::Stopped(what) => self.stopped.clone_from(what),
             Report::Links(v) => self.links = Some((now, v.clone())),

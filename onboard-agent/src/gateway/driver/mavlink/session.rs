@@ -74,6 +74,8 @@ pub struct Session {
     readings: Readings,
     /// When its last heartbeat came, and whether it was armed.
     beat: Option<(Time, bool)>,
+    /// It does not accept its list.
+    is_list_unfit: bool,
     /// How it is spoken to.
     pub manner: Manner,
     /// What it said.
@@ -274,6 +276,7 @@ impl Session {
                 events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));
             }
             MavMessage::MISSION_CURRENT(current) => {
+                self.judged(current, events);
                 events.extend(self.mission.in_use(current.mission_id).map(SessionEvent::Mission));
                 if self.mission.is_foreign(current) {
                     events.push(SessionEvent::Replaced);
@@ -327,6 +330,15 @@ impl Session {
         let mode = (self.manner.summary.mode)(mode);
         events.push(SessionEvent::Mode(mode));
         self.shown(now, Shown::Mode(mode, armed), events);
+    }
+
+    /// It has a list, and says that it has none to fly.
+    fn judged(&mut self, current: &MISSION_CURRENT_DATA, events: &mut Vec<SessionEvent>) {
+        let has_some = (2..u16::MAX).contains(&current.total);
+        let is_unfit = has_some && current.mission_state == MissionState::MISSION_STATE_NO_MISSION;
+        if std::mem::replace(&mut self.is_list_unfit, is_unfit) != is_unfit {
+            events.push(SessionEvent::Telemetry(Report::ListUnfit(is_unfit)));
+        }
     }
 
     fn current(&mut self, now: Time, seq: u16, events: &mut Vec<SessionEvent>) {

@@ -355,6 +355,7 @@ mod faults;
 mod gliding;
 mod met_in_flight;
 mod px4;
+mod refused;
 mod replaced;
 mod runways;
 mod strangers;
