@@ -3,6 +3,8 @@
 //! It binds to the first autopilot it receives and ignores every other system; a message with nonsense in it loses
 //! that message and nothing else. What it means is for the driver of that autopilot to say.
 
+mod logs;
+
 use super::Peer;
 use super::commands::{Client, Command, Commands, Refusal, Shown};
 use super::dialect::Manner;
@@ -28,8 +30,6 @@ const OWN_COMPONENT: u8 = 191;
 const FIRST_SYSTEM: u8 = 1;
 /// A mode of its heartbeats is newer than that of a summary for so long.
 const BEATS_FOR: Duration = Duration::from_secs(5);
-/// Bytes that are no frames are logged at most this often.
-const LOG_EVERY: Duration = Duration::from_secs(10);
 
 /// What a message, or time, brought.
 #[derive(Debug, Clone, PartialEq)]
@@ -214,25 +214,6 @@ impl Session {
         }
         self.log_garbage(now);
         self.log_ignored(now);
-    }
-
-    fn log_ignored(&mut self, now: Time) {
-        let (at, before) = self.logged_ignored;
-        if self.ignored > before && now >= at + LOG_EVERY {
-            let messages = self.ignored - before;
-            let others = self.others;
-            tracing::warn!(messages, others, "messages with values that nothing can have were ignored");
-            self.logged_ignored = (now, self.ignored);
-        }
-    }
-
-    fn log_garbage(&mut self, now: Time) {
-        self.links.log_refused(now);
-        let bytes = self.links.ignored_bytes();
-        if bytes > self.logged.1 && now >= self.logged.0 + LOG_EVERY {
-            tracing::warn!(bytes, "bytes that are no MAVLink were ignored on the autopilot's link");
-            self.logged = (now, bytes);
-        }
     }
 
     /// A message came in.

@@ -1,0 +1,185 @@
+//! When an alarm is raised, and when it is cleared.
+
+use super::*;
+use crate::gateway::order::{Fix, Mode, Report};
+use usal::contract::{Engine, Gps, Power};
+
+/// Ten seconds of a good flight at 10 Hz, then ten with a fault, then ten good ones again.
+/// Returns the events with the tenths of a second since the fault began.
+fn check(fault: impl Fn(&mut Vec<Report>)) -> Vec<(i64, String)> {
+    let (mut alarms, mut telemetry, mut events) = (Alarms::default(), Telemetry::default(), vec![]);
+    for tenth in 0..300_i64 {
+        let now = Duration::from_millis(100 * tenth as u64);
+        let mut reports = good(tenth);
+        if (100..200).contains(&tenth) {
+            fault(&mut reports);
+        }
+        reports.iter().for_each(|r| telemetry.take(now, r));
+        let mut out = vec![];
+        alarms.update(now, &telemetry, AlarmInputs::default(), &mut out);
+        events.extend(out.into_iter().map(|e| (tenth - 100, name(e))));
+    }
+    assert_eq!(alarms.raised(), vec![]);
+    events
+}
+
+fn name(event: GatewayEvent) -> String {
+    match event {
+        GatewayEvent::AlarmRaised(a) => format!("+{}", a.id),
+        GatewayEvent::AlarmCleared { id } => format!("-{id}"),
+        other => panic!("{other:?}"),
+    }
+}
+
+fn good(tenth: i64) -> Vec<Report> {
+    let lat = 36.0 + tenth as f64 * 2e-5;
+    vec![
+        Report::Heartbeat { mode: Mode::Waypoints, name: "AUTO".into(), armed: true, failsafe: false },
+        Report::OnGround(false),
+        Report::Fix(Fix {
+            position: LatLon::new(lat, -84.0),
+            altitude_amsl_m: 500.0,
+            altitude_home_m: 200.0,
+            north_mps: 25.0,
+            east_mps: 0.0,
+            down_mps: 0.0,
+        }),
+        Report::Gps(Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: None }),
+        Report::Engine(Engine { rpm: 5000.0, temperature_c: 80.0, throttle: 0.5 }),
+        Report::Power(Power { voltage_v: 24.0, current_a: 12.0, battery: 0.8, fuel: None }),
+    ]
+}
+
+#[test]
+fn each_fault_raises_its_alarm_in_time_and_clears_it() {
+    type Spoil = fn(&mut Vec<Report>);
+    let cases: [(&str, i64, Spoil); 5] = [
+        ("gps-lost", 10, |r| {
+            r[3] = Report::Gps(Gps { fix_3d: false, satellites: 0, hdop: 99.0, unix_s: None })
+        }),
+        ("engine-out", 10, |r| {
+            r[4] = Report::Engine(Engine { rpm: 0.0, temperature_c: 80.0, throttle: 0.9 })
+        }),
+        ("energy-low", 20, |r| {
+            r[5] = Report::Power(Power { voltage_v: 20.0, current_a: 12.0, battery: 0.1, fuel: None })
+        }),
+        ("autopilot-silent", 30, Vec::clear),
+        ("position-stale", 10, |r| r.retain(|r| !matches!(r, Report::Fix(_)))),
+    ];
+    for (id, at_tenth, spoil) in cases {
+        let about = |e: &(i64, String)| e.1.get(1..) == Some(id);
+        let events: Vec<_> = check(spoil).into_iter().filter(about).collect();
+        assert_eq!(events[0].1, format!("+{id}"));
+        assert!((at_tenth - 1..=at_tenth + 1).contains(&events[0].0), "{id}: {events:?}");
+        assert_eq!(events[1..], [(100, format!("-{id}"))], "{id}");
+    }
+}
+
+/// Events while these inputs and reports go on for so many tenths of a second each.
+fn story(parts: &[(i64, AlarmInputs, Report)]) -> Vec<(i64, String)> {
+    let (mut alarms, mut telemetry, mut events, mut tenth) =
+        (Alarms::default(), Telemetry::default(), vec![], 0);
+    for (tenths, inputs, report) in parts {
+        for _ in 0..*tenths {
+            let now = Duration::from_millis(100 * tenth as u64);
+            let alive = good(tenth).into_iter().filter(|r| !matches!(r, Report::Engine(_)));
+            alive.chain([report.clone()]).for_each(|r| telemetry.take(now, &r));
+            let mut out = vec![];
+            alarms.update(now, &telemetry, *inputs, &mut out);
+            events.extend(out.into_iter().map(|e| (tenth, name(e))));
+            tenth += 1;
+        }
+    }
+    events
+}
+
+fn moving(down_mps: f64) -> Report {
+    let position = LatLon::new(37.0, -84.0);
+    let (altitude_amsl_m, altitude_home_m) = (500.0, 200.0);
+    Report::Fix(Fix { position, altitude_amsl_m, altitude_home_m, north_mps: 25.0, east_mps: 0.0, down_mps })
+}
+
+#[test]
+fn an_engine_that_says_nothing_is_suspected_at_full_throttle_until_it_climbs() {
+    let sinks = AlarmInputs { sinks: true, ..AlarmInputs::default() };
+    let well = AlarmInputs::default();
+    let throttle = Report::Throttle;
+    let events = story(&[(20, sinks, throttle(0.5)), (100, sinks, throttle(1.0)), (50, well, moving(3.0))]);
+    assert_eq!(events, [(50, "+sinks".into()), (70, "+engine-suspected".into()), (120, "-sinks".into())]);
+    let slow = AlarmInputs { slow: true, ..AlarmInputs::default() };
+    let events = story(&[(20, slow, throttle(0.5)), (40, slow, throttle(1.0)), (20, slow, moving(-1.0))]);
+    assert_eq!(events, [(50, "+slow".into()), (70, "+engine-suspected".into())]);
+    let climbing = story(&[(100, sinks, throttle(1.0)), (5, well, moving(-1.0))]);
+    assert!(climbing.contains(&(100, "-engine-suspected".into())), "{climbing:?}");
+}
+
+#[test]
+fn an_engine_that_is_no_longer_told_of_is_suspected_like_one_that_never_was() {
+    let sinks = AlarmInputs { sinks: true, ..AlarmInputs::default() };
+    let runs = Report::Engine(Engine { rpm: 5000.0, temperature_c: 80.0, throttle: 1.0 });
+    let events = story(&[(20, AlarmInputs::default(), runs), (200, sinks, Report::Throttle(1.0))]);
+    assert!(events.iter().any(|(_, name)| name == "+engine-suspected"), "{events:?}");
+}
+
+#[test]
+fn what_is_no_longer_said_is_named() {
+    let (mut alarms, mut telemetry) = (Alarms::default(), Telemetry::default());
+    telemetry.take(Duration::ZERO, &Report::Stopped(vec!["GPS", "battery"]));
+    telemetry.take(Duration::ZERO, &Report::Alive);
+    for second in [0, 2] {
+        alarms.update(Duration::from_secs(second), &telemetry, AlarmInputs::default(), &mut vec![]);
+    }
+    assert_eq!(alarms.raised(), [], "on the ground, and not armed");
+    good(0).iter().for_each(|report| telemetry.take(Duration::ZERO, report));
+    for second in [0, 2] {
+        alarms.update(Duration::from_secs(second), &telemetry, AlarmInputs::default(), &mut vec![]);
+    }
+    let raised = alarms.raised();
+    let told = raised.iter().find(|a| a.id == "stream-stopped").unwrap();
+    assert!(told.advice.ends_with("Missing: GPS, battery."), "{}", told.advice);
+    alarms.update(Duration::from_secs(5), &telemetry, AlarmInputs::default(), &mut vec![]);
+    assert_eq!(alarms.raised().iter().filter(|a| a.id == "stream-stopped").count(), 0, "all is silent");
+}
+
+#[test]
+fn what_stands_still_or_is_steered_by_another_is_told() {
+    let still = AlarmInputs { stands_still: true, ..AlarmInputs::default() };
+    let other = AlarmInputs { not_in_command: true, ..AlarmInputs::default() };
+    let events = story(&[(150, still, moving(0.0)), (2, other, moving(0.0))]);
+    let told = [(100, "+stands-still"), (150, "-stands-still"), (150, "+not-in-command")];
+    assert_eq!(events, told.map(|(tenth, name)| (tenth, name.to_owned())));
+}
+
+#[test]
+fn a_flooded_port_is_told_and_its_end_too() {
+    let flooded = AlarmInputs { flooded: true, ..AlarmInputs::default() };
+    let events = story(&[(5, flooded, moving(0.0)), (2, AlarmInputs::default(), moving(0.0))]);
+    assert_eq!(events, [(0, "+port-flooded".into()), (5, "-port-flooded".into())]);
+}
+
+#[test]
+fn what_stands_still_says_where_it_is() {
+    let (mut alarms, mut telemetry) = (Alarms::default(), Telemetry::default());
+    telemetry.take(Duration::ZERO, &moving(0.0));
+    let still = AlarmInputs { stands_still: true, ..AlarmInputs::default() };
+    for second in [0, 10] {
+        alarms.update(Duration::from_secs(second), &telemetry, still, &mut vec![]);
+    }
+    let raised = alarms.raised();
+    let told = raised.iter().find(|a| a.id == "stands-still").unwrap();
+    assert!(told.advice.ends_with("It is at 37.00000, -84.00000."), "{}", told.advice);
+}
+
+#[test]
+fn a_frozen_position_is_stale_within_about_a_second() {
+    let frozen = good(100)[2].clone();
+    let events = check(move |r| r[2] = frozen.clone());
+    assert_eq!(events[0].1, "+position-stale");
+    assert!((9..=12).contains(&events[0].0), "{events:?}");
+}
+
+#[test]
+fn an_idling_engine_without_throttle_is_not_out() {
+    let events = check(|r| r[4] = Report::Engine(Engine { rpm: 0.0, temperature_c: 80.0, throttle: 0.0 }));
+    assert_eq!(events, vec![]);
+}
