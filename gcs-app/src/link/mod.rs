@@ -5,7 +5,6 @@ mod outlet;
 mod session;
 mod subscriptions;
 
-
 use crate::state::{ActivePlan, Level, Ticket, VehicleName};
 use flight_exec::{Command as PlanCommand, Event, Foresight, ProposalReport, Status};
 use std::collections::BTreeSet;

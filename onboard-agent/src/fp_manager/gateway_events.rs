@@ -5,7 +5,9 @@ use super::manager::{Effect, Manager};
 use flight_exec::{Command, Event, Input, Token};
 use service::Time;
 use usal::Instance;
-use usal::contract::{Air, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Gps, Navigation, Position, Power};
+use usal::contract::{
+    Air, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Gps, Navigation, Position, Power,
+};
 use wire::Convert;
 
 /// What comes from a gateway.

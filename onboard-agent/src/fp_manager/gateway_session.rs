@@ -68,7 +68,8 @@ impl Pending {
     /// Not granted; whether the reason is new.
     fn refused(&mut self, now: Time, reason: &str) -> bool {
         self.refusals += 1;
-        let is_patient = self.refusals >= ATTEMPTS && matches!(self.request, GatewayRequest::SetRunways { .. });
+        let is_patient =
+            self.refusals >= ATTEMPTS && matches!(self.request, GatewayRequest::SetRunways { .. });
         self.not_before = Some(now + if is_patient { LONG_RETRY } else { RETRY });
         let new = self.last_reason != reason;
         self.last_reason = reason.to_owned();

@@ -27,8 +27,9 @@ impl Resuming {
     /// The gateway has agreed, or has not.
     pub fn answered(&mut self, answer: &Result<(), String>, out: &mut Out) {
         for (asked, _) in self.0.drain(..) {
-            let refused =
-                |reason: &String| not_granted(&format!("the gateway does not fly the plan on: {reason} {ONCE}"));
+            let refused = |reason: &String| {
+                not_granted(&format!("the gateway does not fly the plan on: {reason} {ONCE}"))
+            };
             asked.answer(answer.as_ref().copied().map_err(refused), out);
         }
     }

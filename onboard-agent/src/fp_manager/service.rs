@@ -278,8 +278,7 @@ impl FpManager {
     /// What leads to where nothing was reviewed is reviewed first.
     fn asked(&mut self, now: Time, asked: Asked, out: &mut Out) {
         if self.config.replay {
-            let reason =
-                "this is a replay of a telemetry log, and no aircraft is at the other end: nothing can be commanded";
+            let reason = "this is a replay of a telemetry log, and no aircraft is at the other end: nothing can be commanded";
             return asked.answer(Err(Refusal { code: "replay".into(), reason: reason.into() }), out);
         }
         if self.command_review.concern(&asked, &self.manager) {

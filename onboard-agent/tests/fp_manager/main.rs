@@ -233,7 +233,10 @@ async fn where_a_log_is_played_nothing_can_be_commanded() {
     for command in [Command::Start, Command::Hold, Command::Rewind] {
         match flight.command(command).await {
             Err(CallError::Refused(refusal)) => {
-                assert!(refusal.code == "replay" && refusal.reason.contains("nothing can be commanded"), "{refusal}");
+                assert!(
+                    refusal.code == "replay" && refusal.reason.contains("nothing can be commanded"),
+                    "{refusal}"
+                );
             }
             other => panic!("{other:?}"),
         }

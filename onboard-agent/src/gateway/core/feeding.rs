@@ -69,7 +69,9 @@ impl Gateway {
         match self.state {
             _ if self.control.is_reading() => Err(BEING_READ.into()),
             GatewayState::Off if self.telemetry.last_received.is_none() => Err(NOT_HEARD.into()),
-            GatewayState::Off if self.telemetry.armed || self.telemetry.flies(self.now) => Err(BEING_READ.into()),
+            GatewayState::Off if self.telemetry.armed || self.telemetry.flies(self.now) => {
+                Err(BEING_READ.into())
+            }
             GatewayState::Off => Err(NOT_HEARD.into()),
             _ => Ok(()),
         }

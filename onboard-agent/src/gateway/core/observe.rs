@@ -1,9 +1,9 @@
 //! What the autopilot is seen to do: the state says what was confirmed.
 
 use super::Gateway;
+use super::OFF_AFTER;
 use super::io::{Intent, Output};
 use super::states::{Trigger, is_flying};
-use super::OFF_AFTER;
 use crate::gateway::order::{Mode, Time};
 use usal::contract::{Action, GatewayEvent, GatewayState, Token, Waypoint};
 

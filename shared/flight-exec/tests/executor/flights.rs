@@ -141,7 +141,10 @@ fn a_flight_that_did_not_take_off_stands_where_it_stood_before() {
     rig.command(Command::Start).unwrap();
     assert!(!rig.buffer.is_empty());
     rig.step(Input::NotLaunched);
-    assert_eq!((phase(&rig), rig.leg().as_str(), rig.buffer.len(), n(&rig)), (Phase::Grounded, "to2", 0, Some(1.0)));
+    assert_eq!(
+        (phase(&rig), rig.leg().as_str(), rig.buffer.len(), n(&rig)),
+        (Phase::Grounded, "to2", 0, Some(1.0))
+    );
     rig.command(Command::Start).unwrap();
     rig.fly_to("b");
     rig.step(Input::NotLaunched);

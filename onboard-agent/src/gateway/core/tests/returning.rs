@@ -36,7 +36,8 @@ fn an_engine_that_runs_after_all_takes_it_to_the_runway_that_it_reaches_with_it(
     let cause = core.gateway.status(core.now).cause;
     assert!(cause.starts_with("returning to runway"), "{cause}");
     assert!(!core.raised("no-safe-runway"));
-    let way = |(_, order): &(OrderId, Order)| matches!(order, Order::Feed { waypoints, .. } if waypoints.len() > 1);
+    let way =
+        |(_, order): &(OrderId, Order)| matches!(order, Order::Feed { waypoints, .. } if waypoints.len() > 1);
     assert!(core.orders().iter().any(way), "it is told the way there");
 }
 

@@ -13,7 +13,8 @@ fn a_list_that_is_uploaded_in_a_hold_is_told_and_ours_is_written_again() {
         flight.sim.autopilot.replace_mission(theirs, None);
         flight.run_until(20.0, "ours again", |f| f.sim.autopilot.mission.items().len() > 8);
         flight.run(2.0);
-        let told = |e: &(f64, GatewayEvent)| matches!(&e.1, GatewayEvent::AlarmRaised(a) if a.id == "list-replaced");
+        let told =
+            |e: &(f64, GatewayEvent)| matches!(&e.1, GatewayEvent::AlarmRaised(a) if a.id == "list-replaced");
         assert_eq!(flight.events.iter().filter(|e| told(e)).count(), 1, "{personality}: {:?}", flight.events);
         assert_eq!(flight.state(), GatewayState::Hold, "{personality}");
         let next = flight.progress().into_iter().flatten().max().unwrap_or(0);

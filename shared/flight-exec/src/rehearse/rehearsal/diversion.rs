@@ -397,8 +397,8 @@ const TOLERANCE_M: f64 = 60.0;
 
 /// The ground of a place; near the runway, and where nothing is known, the runway's.
 fn ground_m(place: LatLon, runway: &Runway, terrain: &dyn Terrain) -> f64 {
-    let near =
-        distance_and_course(place, runway.threshold).0 < AT_RUNWAY_M || runway.strip().beside_m(place) < TOLERANCE_M;
+    let near = distance_and_course(place, runway.threshold).0 < AT_RUNWAY_M
+        || runway.strip().beside_m(place) < TOLERANCE_M;
     terrain.elevation_m(place).filter(|_| !near).unwrap_or(runway.elevation_amsl_m)
 }
 

@@ -6,12 +6,7 @@ use crate::gateway::order::{Aim, Mode, Report, Time};
 use mavlink::dialects::ardupilotmega::HEARTBEAT_DATA;
 
 impl MavlinkDriver {
-    pub(super) fn on_heartbeat(
-        &mut self,
-        now: Time,
-        beat: &HEARTBEAT_DATA,
-        events: &mut Vec<SessionEvent>,
-    ) {
+    pub(super) fn on_heartbeat(&mut self, now: Time, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
         self.recognise(beat);
         let (armed, failsafe) = (session::is_armed(beat), session::is_failsafe(beat));
         let Some(dialect) = self.dialect() else {
@@ -29,13 +24,7 @@ impl MavlinkDriver {
         }
     }
 
-    fn shows(
-        &mut self,
-        now: Time,
-        dialect: &'static Dialect,
-        seen: Seen,
-        events: &mut Vec<SessionEvent>,
-    ) {
+    fn shows(&mut self, now: Time, dialect: &'static Dialect, seen: Seen, events: &mut Vec<SessionEvent>) {
         let before = self.seen.replace(seen);
         let going = matches!(self.steering, Some((_, Aim::Direct { .. })));
         if !going && (dialect.meaning)(seen.mode, true) != Mode::Direct {

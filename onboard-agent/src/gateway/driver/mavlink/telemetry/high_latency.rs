@@ -137,13 +137,17 @@ mod tests {
 
     #[test]
     fn the_wind_is_told_from_where_the_autopilot_means_it() {
-        let windy = MavMessage::HIGH_LATENCY2(HIGH_LATENCY2_DATA { windspeed: 25, wind_heading: 45, ..summary() });
+        let windy =
+            MavMessage::HIGH_LATENCY2(HIGH_LATENCY2_DATA { windspeed: 25, wind_heading: 45, ..summary() });
         for wind_blows_to in [true, false] {
             let mut readings = Readings { wind_blows_to, ..Readings::default() };
             let (said, _) = take(&mut readings, 0, &windy);
             let Report::Air(air) = &said[1] else { panic!("{said:?}") };
             let east_mps = if wind_blows_to { 5.0 } else { -5.0 };
-            assert!((air.wind_east_mps - east_mps).abs() < 1e-9 && air.wind_north_mps.abs() < 1e-9, "{air:?}");
+            assert!(
+                (air.wind_east_mps - east_mps).abs() < 1e-9 && air.wind_north_mps.abs() < 1e-9,
+                "{air:?}"
+            );
             let (said, _) = take(&mut readings, 1, &MavMessage::HIGH_LATENCY2(summary()));
             let Report::Air(air) = &said[1] else { panic!("{said:?}") };
             assert!((air.wind_east_mps - east_mps).abs() < 1e-9, "it says none, and may not know any");
