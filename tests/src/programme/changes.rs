@@ -2,7 +2,7 @@
 
 use super::{FLIGHT_S, Scenario, expect_whole_mission, land_by_plan, on_leg};
 use crate::rig::{Rig, id, number};
-use anyhow::ensure;
+use anyhow::{Context, ensure};
 use usal::contract::{Command, PlanEvent, VariableValue};
 
 pub const SCENARIOS: &[Scenario] = &[
@@ -42,6 +42,9 @@ pub const SCENARIOS: &[Scenario] = &[
         fly: |rig| Box::pin(hold_and_resume(rig)),
     },
 ];
+
+/// Share of an airspeed within which gusts and turns leave it the same.
+const SAME_SPEED: f64 = 0.12;
 
 async fn variable_moves_the_sweep(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "sweep").await?;
@@ -88,6 +91,7 @@ async fn decision_by_operator(rig: &mut Rig) -> anyhow::Result<()> {
 
 async fn hold_and_resume(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "far").await?;
+    let before_mps = rig.airspeed_mps().context("no airspeed")?;
     rig.command(Command::Hold).await?;
     let held_at = rig.position().map(|p| p.position);
     let from_s = rig.seen.time_s;
@@ -95,6 +99,10 @@ async fn hold_and_resume(rig: &mut Rig) -> anyhow::Result<()> {
     let away_m = rig.position().zip(held_at).map(|(now, then)| now.position.distance_m(then));
     ensure!(away_m.is_some_and(|m| m < 600.0), "it did not hold: {away_m:?} m away");
     rig.command(Command::Resume).await?;
+    // an autopilot that forgets the airspeed with each change of its mode is told it again
+    let as_before =
+        |rig: &Rig| rig.airspeed_mps().is_some_and(|now| (now - before_mps).abs() < SAME_SPEED * before_mps);
+    rig.until("as fast as before the hold", 60.0, |rig, _| as_before(rig)).await?;
     land_by_plan(rig).await?;
     expect_whole_mission(rig)
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use usal::{
     Config, EventSubscriber, Participant, Presence, Session, Start, VariableSubscriber,
     contract::{
-        Attitude, ClockTick, FpManagerEvent, GatewayStatus, Navigation, PlanStatus, Position, Recording,
+        Air, Attitude, ClockTick, FpManagerEvent, GatewayStatus, Navigation, PlanStatus, Position, Recording,
         TimedGatewayEvent,
     },
     topics::{fp_manager, gateway, storage},
@@ -26,6 +26,7 @@ pub struct Ground {
     pub position: VariableSubscriber<Position>,
     pub navigation: VariableSubscriber<Navigation>,
     pub attitude: VariableSubscriber<Attitude>,
+    pub air: VariableSubscriber<Air>,
     pub recording: VariableSubscriber<Recording>,
     pub presence: Presence,
 }
@@ -48,6 +49,7 @@ impl Ground {
             position: session.follow(gateway::POSITION)?,
             navigation: session.follow(gateway::NAVIGATION)?,
             attitude: session.follow(gateway::ATTITUDE)?,
+            air: session.follow(gateway::AIR)?,
             recording: session.follow(storage::RECORDING)?,
             presence: session.presence()?,
             clock: match pace {

@@ -294,6 +294,11 @@ impl Rig {
         Some(self.ground.as_ref()?.attitude.latest()?.stamped.value)
     }
 
+    /// How fast it flies through the air, m/s.
+    pub fn airspeed_mps(&self) -> Option<f64> {
+        Some(self.ground.as_ref()?.air.latest()?.stamped.value.airspeed_mps)
+    }
+
     /// The buffer.
     pub fn navigation(&self) -> Option<Navigation> {
         Some(self.ground.as_ref()?.navigation.latest()?.stamped.value.clone())
