@@ -3,7 +3,7 @@
 use super::batch;
 use super::io::{Intent, Output};
 use super::states::{Trigger, is_safe};
-use super::{Gateway, NOT_HEARD};
+use super::{Gateway, NOT_HEARD, OFF_AFTER};
 use crate::gateway::order::Time;
 use flight_exec::review::plausibility::{self, Context};
 use usal::Instance;
@@ -65,14 +65,12 @@ impl Gateway {
 
     /// What is taken before the list of an aircraft that flies was read would be lost when that is taken over; and whether it
     /// flies is only known once it is heard.
-    fn knows_what_is_aboard(&self) -> Result<(), String> {
+    pub(super) fn knows_what_is_aboard(&self) -> Result<(), String> {
+        let is_heard = |at: Time| self.now.saturating_sub(at) <= OFF_AFTER;
         match self.state {
             _ if self.control.is_reading() => Err(BEING_READ.into()),
-            GatewayState::Off if self.telemetry.last_received.is_none() => Err(NOT_HEARD.into()),
-            GatewayState::Off if self.telemetry.armed || self.telemetry.flies(self.now) => {
-                Err(BEING_READ.into())
-            }
-            GatewayState::Off => Err(NOT_HEARD.into()),
+            GatewayState::Off if !self.telemetry.last_received.is_some_and(is_heard) => Err(NOT_HEARD.into()),
+            GatewayState::Off => Err(BEING_READ.into()),
             _ => Ok(()),
         }
     }

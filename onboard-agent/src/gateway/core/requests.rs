@@ -1,9 +1,9 @@
 //! What people and services may ask of the gateway.
 
+use super::Gateway;
 use super::io::{Intent, Output};
 use super::safe::{choose, is_usable};
 use super::states::{Trigger, is_flying};
-use super::{Gateway, NOT_HEARD};
 use crate::gateway::order::{Order, Time};
 use usal::contract::{GatewayRequest, GatewayState, SafeParameters, SafeRunway};
 
@@ -47,9 +47,9 @@ impl Gateway {
     }
 
     fn launch(&mut self, out: &mut Vec<Output>) -> Result<(), String> {
+        self.knows_what_is_aboard()?;
         match self.state {
             GatewayState::Stop => {}
-            GatewayState::Off => return Err(NOT_HEARD.into()),
             s => return Err(format!("Launch is for the ground; the state is {s:?}.")),
         }
         match &self.control.capability {

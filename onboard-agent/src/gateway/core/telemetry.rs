@@ -22,7 +22,7 @@ const OUT_OF_DATE: Duration = Duration::from_secs(10);
 /// What it warned of so lately may be why it does what it does: its heartbeat, which shows that, comes once a second.
 const EXPLAINS: Duration = Duration::from_secs(5);
 
-/// An armed autopilot that has not said for so long whether it stands on the ground will not say it.
+/// An autopilot that has not said for so long whether it stands on the ground will not say it.
 const SAYS_WHERE: Duration = Duration::from_secs(5);
 
 /// See the module's text.
@@ -181,10 +181,12 @@ impl Telemetry {
         self.is_airborne() || self.flies_disarmed(now)
     }
 
-    /// On the ground, as it says; silent about it, and unarmed or at rest, it is believed to be there.
+    /// On the ground, as it says; silent about it for a while, and unarmed or at rest, it is believed to be there.
     pub fn stands(&self, now: Time) -> bool {
-        let armed_rests = || self.on_ground.unwrap_or(self.seems_to_rest(now) == Some(true));
-        self.first_beat.is_some() && if self.armed { armed_rests() } else { !self.flies_disarmed(now) }
+        let rests = self.seems_to_rest(now);
+        let silent =
+            || if self.armed { rests == Some(true) } else { self.has_waited(now) && rests != Some(false) };
+        self.first_beat.is_some() && self.on_ground.unwrap_or_else(silent)
     }
 
     /// In the air for certain: it says so, or is armed, silent about it, and moves (unarmed it may be carried).
@@ -196,9 +198,13 @@ impl Telemetry {
     /// Of one that does not say whether it stands: whether its position does. `None`: that is not known either, or it may still
     /// say it.
     fn seems_to_rest(&self, now: Time) -> Option<bool> {
-        let waited = self.first_beat.is_some_and(|at| now >= at + SAYS_WHERE);
-        let (_, fix) = self.fix.filter(|(at, _)| waited && now.saturating_sub(*at) < FRESH)?;
+        let is_fresh = |at: Time| self.has_waited(now) && now.saturating_sub(at) < FRESH;
+        let (_, fix) = self.fix.filter(|(at, _)| is_fresh(*at))?;
         Some(fix.north_mps.hypot(fix.east_mps) < STANDING_MPS && fix.down_mps.abs() < STANDING_MPS)
+    }
+
+    fn has_waited(&self, now: Time) -> bool {
+        self.first_beat.is_some_and(|at| now >= at + SAYS_WHERE)
     }
 
     /// Unarmed and in the air all the same: it says so, or is silent about it and moves. An autopilot that starts anew up there looks like
