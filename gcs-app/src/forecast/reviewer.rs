@@ -1,9 +1,9 @@
-//! The thread that reviews paths: the newest one of a plan that was left alone, then the extremes of its variables; the others can wait
-//! for ever.
+//! The thread that reviews paths: the newest one of a plan that was left alone, then remedies that have to be tried and the extremes of
+//! its variables; the others can wait for ever.
 
 use super::bench::profile_of;
 use super::worker::{Found, Outbox};
-use flight_exec::review::{Conditions, review, review_extremes};
+use flight_exec::review::{Conditions, leave_zones_out, put_remedies, review, review_extremes};
 use flight_plan::{Problem, Program};
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -48,7 +48,7 @@ impl Reviewer {
             if !self.standard(&path, outbox) || !self.trial(&path, outbox) {
                 return;
             }
-            let Some(interrupted) = self.extremes(&path, paths, outbox) else { return };
+            let Some(interrupted) = self.trials(&path, paths, outbox) else { return };
             next = interrupted.or_else(|| paths.recv().ok());
         }
     }
@@ -72,27 +72,41 @@ impl Reviewer {
         outbox.send(Found::WhatIfProblems(trial.forecast_version, found))
     }
 
-    /// Gives the path that interrupted it, if one did; `None`: nobody listens.
-    fn extremes(&mut self, path: &Path, paths: &Receiver<Path>, outbox: &Outbox) -> Option<Option<Path>> {
+    /// Remedies and extremes, once a version. Gives the path that interrupted it, if one did; `None`: nobody listens.
+    fn trials(&mut self, path: &Path, paths: &Receiver<Path>, outbox: &Outbox) -> Option<Option<Path>> {
         let mut next = None;
         if self.tried == Some(path.version) {
             return Some(next);
         }
         let profile = profile_of(&path.program.plan);
-        let known = self.known.as_ref().map(|(_, found)| found.as_slice()).unwrap_or_default();
         let conditions = Conditions::default();
-        let mut go_on = |_, _| {
+        let known = self.known.as_mut().map(|(_, found)| found)?;
+        let mut go_on = || {
             next = paths.try_recv().ok();
             next.is_none()
         };
-        let more = review_extremes(&path.program, &profile, &self.terrain, conditions, known, &mut go_on);
+        let remedied = leave_zones_out(&path.program, &profile, &self.terrain, conditions, known, &mut go_on);
+        if !remedied.is_empty() {
+            put_remedies(known, remedied.clone());
+            if !outbox.send(Found::Remedies(path.version, remedied)) {
+                return None;
+            }
+        }
+        if next.is_some() {
+            return Some(next);
+        }
+        let more = {
+            let mut go_on = |_, _| {
+                next = paths.try_recv().ok();
+                next.is_none()
+            };
+            review_extremes(&path.program, &profile, &self.terrain, conditions, known, &mut go_on)
+        };
         if next.is_some() {
             return Some(next);
         }
         self.tried = Some(path.version);
-        if let Some((_, found)) = &mut self.known {
-            found.extend_from_slice(&more);
-        }
+        known.extend_from_slice(&more);
         let told = more.is_empty() || outbox.send(Found::Problems(path.version, more));
         told.then_some(None)
     }

@@ -8,6 +8,7 @@ use super::bench::Bench;
 use super::reviewer::Reviewer;
 use super::{Alarm, Coverage, Flown, Shared};
 use flight_exec::rehearse::{Diversion, WhatIf};
+use flight_exec::review::put_remedies;
 use flight_plan::{FlightPlan, Problem};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -122,13 +123,16 @@ impl Analysis {
                 self.problems.extend(problems);
                 self.reviewed = true;
             }
+            Found::Remedies(version, remedied) if version == self.version => {
+                put_remedies(&mut self.problems, remedied);
+            }
             Found::WhatIfProblems(forecast, problems) => self.what_if_problems = Some((forecast, problems)),
             Found::Diversion(forecast, diversion) => {
                 self.diversion = diversion.map(|diversion| (forecast, Arc::new(diversion)));
             }
             Found::Coverage(forecast, coverage) => self.coverage = Some((forecast, Arc::new(coverage))),
             // of a version that is history
-            Found::Forecast(..) | Found::Hash(..) | Found::Problems(..) => {}
+            Found::Forecast(..) | Found::Hash(..) | Found::Problems(..) | Found::Remedies(..) => {}
         }
     }
 }
@@ -142,6 +146,8 @@ pub(super) enum Found {
     Hash(u64, String),
     /// Of the path of this version.
     Problems(u64, Vec<Problem>),
+    /// For errors of the path of this version that have none yet.
+    Remedies(u64, Vec<Problem>),
     /// Of this forecast.
     WhatIfProblems(u64, Vec<Problem>),
     /// From this forecast.

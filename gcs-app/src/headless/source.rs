@@ -5,7 +5,7 @@ use super::output::DASH;
 use super::tiles;
 use aircraft::Profile;
 use anyhow::Context;
-use flight_exec::{Conditions, review, review_extremes};
+use flight_exec::{Conditions, leave_zones_out, put_remedies, review, review_extremes};
 use flight_plan::suggest::did_you_mean;
 use flight_plan::{FlightPlan, Problem, Program, Reading};
 use interchange::Note;
@@ -159,8 +159,8 @@ impl Loaded {
         self.with_program(|program, profile| review(program, profile, &self.terrain, conditions))
     }
 
-    /// As [`Loaded::review`], and the problems at other values of variables; `progress` gets the number of flights done, and of
-    /// all flights with other values.
+    /// As [`Loaded::review`], with the remedies that have to be tried, and the problems at other values of variables; `progress`
+    /// gets the number of flights done, and of all flights with other values.
     pub fn review_changes(
         &self,
         conditions: Conditions,
@@ -172,6 +172,8 @@ impl Loaded {
         };
         self.with_program(|program, profile| {
             let mut found = review(program, profile, &self.terrain, conditions);
+            let remedied = leave_zones_out(program, profile, &self.terrain, conditions, &found, &mut || true);
+            put_remedies(&mut found, remedied);
             let more =
                 review_extremes(program, profile, &self.terrain, conditions, &found, &mut report_progress);
             found.extend(more);

@@ -91,6 +91,36 @@ fn a_remedy_says_what_it_does_before_it_is_made() {
     assert_eq!(window.plan(), flight_plan::read(steep).plan);
 }
 
+/// Moving the scan is no help where the zone is inside of what is to be seen. The remedy has to be tried, and comes a little later.
+#[test]
+fn a_zone_inside_of_a_scanned_area_is_left_out_of_it_by_one_click() {
+    let corners = [(36.290, -84.150), (36.290, -84.122), (36.312, -84.122), (36.312, -84.150)];
+    let corners = corners.map(|(lat, lon)| format!(r#"<corner lat="{lat}" lon="{lon}"/>"#)).concat();
+    let side = r#"<TF id="side2" fix="B"/>"#;
+    let scan = format!(
+        r#"{side}<scan id="sweep" spacing="400" altitude="300" altitudeReference="home"><area>{corners}</area></scan>"#
+    );
+    let village =
+        r#"<zones><keepOut id="village" lat="36.301" lon="-84.136" radius="120"/></zones><mainPlan"#;
+    let mut window = opened(&SQUARE.replacen(side, &scan, 1).replacen("<mainPlan", village, 1));
+    let keep_outs = |window: &Window| window.errors().iter().filter(|e| e.contains("[keep-out]")).count();
+    assert!(keep_outs(&window) > 0, "{:?}", window.errors());
+    window.until("the remedy", |app| {
+        app.analysis().problems.iter().any(|p| p.message.starts_with("leave the"))
+    });
+    let row = window.harness.query_all_by_label_contains("leave the zone out").next().unwrap().rect();
+    let fixes = window.harness.get_all_by_label("Fix").map(|fix| fix.rect().center());
+    let fix = fixes.min_by(|a, b| (a.y - row.bottom()).abs().total_cmp(&(b.y - row.bottom()).abs())).unwrap();
+    window.click_at(fix);
+    window.until_analysed();
+    assert_eq!(keep_outs(&window), 0, "{:?}", window.errors());
+    let plan = window.plan();
+    let flight_plan::LegKind::Scan(scan) = &plan.leg(&"sweep".into()).unwrap().leg.kind else { panic!() };
+    assert!(matches!(&scan.area, flight_plan::Area::Polygon { holes, .. } if holes.len() == 1));
+    window.click("Undo");
+    assert!(!window.is_enabled("Undo"), "one step");
+}
+
 #[test]
 fn a_slip_in_a_coordinate_stands_first_and_names_its_leg() {
     let far =

@@ -25,7 +25,7 @@ pub use api::*;
 pub use executor::{Executor, RestoreError, Snapshot};
 pub use rehearse::{Preview, PreviewError, preview};
 pub use review::{
-    Conditions, Margins, compile_and_review, compile_and_review_ahead, foresee, review, review_ahead,
-    review_command, review_extremes, review_turn,
+    Conditions, Margins, compile_and_review, compile_and_review_ahead, foresee, leave_zones_out,
+    put_remedies, review, review_ahead, review_command, review_extremes, review_turn,
 };
 pub use value::Config;

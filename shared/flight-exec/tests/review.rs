@@ -5,7 +5,7 @@
 mod field;
 
 use aircraft::{Profile, Wind};
-use flight_exec::{Conditions, compile_and_review, review, review_extremes};
+use flight_exec::{Conditions, compile_and_review, leave_zones_out, put_remedies, review, review_extremes};
 use flight_plan::{
     Altitude, AltitudeReference, Edit, FlightPlan, Id, Problem, Program, Spot, Value, check, compile,
     compile_document,
@@ -266,6 +266,63 @@ fn broken(zones: &str, legs: &str, conditions: Conditions) -> Vec<(&'static str,
 
 fn on(code: &'static str, leg: &str) -> Vec<(&'static str, String)> {
     vec![(code, leg.to_owned())]
+}
+
+/// The edit that leaves a zone out of the area that is scanned before a leg to this place, and what else is in error with it;
+/// `None`: it is not offered.
+fn left_out(zone: &str, entry: &str, then: (f64, f64)) -> Option<(Edit, Vec<String>)> {
+    let corner = |(lat, lon): (f64, f64)| format!(r#"<corner lat="{lat}" lon="{lon}"/>"#);
+    let area: String =
+        [(36.34, -84.22), (36.34, -84.17), (36.37, -84.17), (36.37, -84.22)].map(corner).concat();
+    let legs = format!(
+        r#"<scan id="sweep" spacing="500" overshoot="50" heading="0" {entry}><area>{area}</area></scan><TF id="on" lat="{}" lon="{}"/>"#,
+        then.0, then.1
+    );
+    let plan = flight_plan::read(rectangle(zone, &legs)).plan;
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let (profile, conditions) = (Profile::default(), Conditions::default());
+    let made = |plan: &FlightPlan| {
+        Arc::new(compile(plan.clone(), &profile, flat.as_ref()).unwrap_or_else(|p| panic!("{:?}", shown(&p))))
+    };
+    let program = made(&plan);
+    let mut found = review(&program, &profile, &flat, conditions);
+    let remedied = leave_zones_out(&program, &profile, &flat, conditions, &found, &mut || true);
+    put_remedies(&mut found, remedied);
+    let scan = found.iter().find(|p| p.code == "keep-out" && p.subject == Some("sweep".into())).unwrap();
+    assert_eq!(scan.message.starts_with("leave the zone out"), scan.fix.is_some(), "{scan}");
+    let edit = scan.fix.as_deref()?.clone();
+    let after = review(&made(&edit.apply(&plan).unwrap()), &profile, &flat, conditions);
+    Some((edit, shown(&after.into_iter().filter(Problem::is_error).collect::<Vec<_>>())))
+}
+
+/// The ways to the scan, within it and on from it lead around the zone, too.
+#[test]
+fn a_zone_in_a_scanned_area_is_left_out_of_it() {
+    let circle = r#"<keepOut id="z" lat="36.355" lon="-84.195" radius="150"/>"#;
+    let outline = r#"<keepOut id="z"><corner lat="36.353" lon="-84.2"/><corner lat="36.354" lon="-84.194"/><corner lat="36.357" lon="-84.197"/></keepOut>"#;
+    let mut detours = Vec::new();
+    // begun at its far corner, what follows the scan lies beyond the zone
+    for (zone, entry, then) in
+        [(circle, "", (36.379, -84.235)), (outline, r#"entry="end-right""#, (36.385, -84.2))]
+    {
+        let (edit, left) = left_out(zone, entry, then).unwrap_or_else(|| panic!("not offered: {zone}"));
+        assert_eq!(left, [""; 0], "{zone}");
+        let Edit::All(edits) = edit else { panic!("{edit:?}") };
+        detours.push(edits.len() - 1);
+    }
+    assert!(
+        detours[0] == 0 && detours[1] > 0,
+        "legs that lead around it, where they are needed: {detours:?}"
+    );
+}
+
+/// It reaches out of the area, or leaves no room beside it: nothing is offered that does not help.
+#[test]
+fn a_zone_that_cannot_be_left_out_is_not_offered_to_be() {
+    for (lon, radius_m) in [(-84.171, 150), (-84.195, 1500)] {
+        let zone = format!(r#"<keepOut id="z" lat="36.355" lon="{lon}" radius="{radius_m}"/>"#);
+        assert_eq!(left_out(&zone, "", (36.385, -84.2)), None, "{zone}");
+    }
 }
 
 #[test]

@@ -12,9 +12,9 @@
 //!
 //! [`compile_and_review`] is check and review together. The FP Manager runs it for each proposal on a thread of its own, with the
 //! wind and the time of day of now; `legwork check` and the window run it for each edit. The last two then try the extremes of the
-//! variables' bounds ([`review_extremes`]: the same plan with other initial values, at most [`MAX_TRIALS`] times). On board a proposal
-//! is answered without the extremes. A plan that was accepted is not reviewed again after a restart. For a flight under way see
-//! the module `ahead`.
+//! variables' bounds ([`review_extremes`]: the same plan with other initial values, at most [`MAX_TRIALS`] times), and look for
+//! remedies that have to be tried ([`leave_zones_out`]). On board a proposal is answered without both. A plan that was accepted is
+//! not reviewed again after a restart. For a flight under way see the module `ahead`.
 
 mod ahead;
 mod alternates;
@@ -34,6 +34,7 @@ mod glide;
 mod held;
 mod landings;
 mod layout;
+mod left_out;
 mod open_end;
 mod passes;
 pub mod plausibility;
@@ -63,6 +64,7 @@ use flight_plan::{
 };
 use flights::Flights;
 pub use foresight::foresee;
+pub use left_out::{leave_zones_out, put_remedies};
 pub use open_end::{ending_conditions, open_end};
 use prepared::Zones;
 use std::collections::HashSet;
@@ -152,12 +154,22 @@ pub fn review(
     terrain: &Arc<dyn Terrain>,
     conditions: Conditions,
 ) -> Vec<Problem> {
-    let flights = Flights::of(program, profile, terrain, conditions);
-    let variables = Variables::initial(program.flown());
-    View::new(program, profile, terrain.as_ref(), conditions, variables, flights).problems()
+    View::of(program, profile, terrain, conditions).problems()
 }
 
 impl<'a> View<'a> {
+    /// From its start, with the variables' initial values.
+    fn of(
+        program: &'a Arc<Program>,
+        profile: &'a Profile,
+        terrain: &'a Arc<dyn Terrain>,
+        conditions: Conditions,
+    ) -> Self {
+        let flights = Flights::of(program, profile, terrain, conditions);
+        let variables = Variables::initial(program.flown());
+        Self::new(program, profile, terrain.as_ref(), conditions, variables, flights)
+    }
+
     fn new(
         program: &'a Program,
         profile: &'a Profile,
