@@ -251,6 +251,12 @@ fn rectangle(zones: &str, legs: &str) -> Vec<u8> {
         .into_bytes()
 }
 
+fn verdict_over(document: &[u8]) -> Vec<Problem> {
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let program = Arc::new(compile_document(document, &Profile::default(), flat.as_ref()).unwrap());
+    review(&program, &Profile::default(), &flat, Conditions::default())
+}
+
 fn over_flat_ground(document: &[u8], conditions: Conditions) -> Vec<(&'static str, String)> {
     let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
     let program = compile_document(document, &Profile::default(), flat.as_ref());
@@ -523,6 +529,11 @@ fn every_branch_is_flown() {
     let zone = r#"<keepOut id="z0" lat="36.37" lon="-84.20" radius="300"/>"#;
     let found = broken(zone, fork, Conditions::default());
     assert_eq!(found, [on("keep-out", "y"), on("keep-out", "z")].concat(), "there and back");
+    // `z` is flown by default, too, far from the zone: it is told which way is meant
+    let problems = verdict_over(&rectangle(zone, fork));
+    let of = |leg: &str| problems.iter().find(|p| p.subject == Some(leg.into())).unwrap().message.clone();
+    assert!(of("z").contains(" m where it follows `y`: it goes into"), "{}", of("z"));
+    assert!(!of("y").contains("where it follows"), "{}", of("y"));
 }
 
 /// A hill of 620 m between the far leg and the runway.

@@ -89,6 +89,12 @@ impl Flown {
         Some((&last.waypoint.leg, last.wanted_amsl_m))
     }
 
+    /// The leg that is flown before the first passage of one.
+    pub fn leg_before(&self, leg: &Id) -> Option<&Id> {
+        let first = self.waypoints.iter().position(|w| w.waypoint.leg == *leg)?;
+        self.waypoints.get(first.checked_sub(1)?).map(|w| &w.waypoint.leg)
+    }
+
     /// The leg that is flown at a point.
     pub fn leg(&self, point: &Point) -> Option<&Id> {
         self.waypoints.get(point.waypoint).map(|w| &w.waypoint.leg)

@@ -9,7 +9,7 @@ use super::View;
 use super::flown::Flown;
 use super::prepared::{At, Prepared, When};
 use crate::api::Branching;
-use crate::rehearse::Preview;
+use crate::rehearse::{FlownWaypoint, Preview};
 use flight_plan::{Id, Problem, Zone, ZoneKind};
 use geometry::zone::Breach;
 use std::collections::HashMap;
@@ -31,9 +31,9 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     }
     let mut found = Findings::default();
     if let Ok(planned) = &view.flights.planned {
-        flights_of(planned).for_each(|legs| found.take(view, planned_track(view, planned, legs)));
+        flights_of(planned).for_each(|legs| found.take(view, planned_track(view, planned, legs), None));
     }
-    view.flights.all().for_each(|flown| found.take(view, bounded_track(flown)));
+    view.flights.all().for_each(|flown| found.take(view, bounded_track(flown), Some(flown)));
     problems.extend(found.problems(view));
     problems.extend(unconfined(view));
 }
@@ -111,6 +111,8 @@ struct Found<'a> {
     breach: Breach,
     /// Only if the flight comes there while the zone is active.
     perhaps: bool,
+    /// On which flight, if the plan as it stands does not go into the zone there.
+    on: Option<&'a Flown>,
 }
 
 /// Breaches, each once for a leg and a zone, in the order in which they were found.
@@ -121,14 +123,15 @@ struct Findings<'a> {
 }
 
 impl<'a> Findings<'a> {
-    fn take(&mut self, view: &'a View, track: impl Iterator<Item = (&'a Id, At)>) {
+    /// `on`: which flight, if it is not that of the plan as it stands.
+    fn take(&mut self, view: &'a View, track: impl Iterator<Item = (&'a Id, At)>, on: Option<&'a Flown>) {
         let track: Vec<(&Id, At)> = track.collect();
         let (legs, pieces): (Vec<&Id>, Vec<(At, At)>) =
             track.iter().zip(track.iter().skip(1)).map(|((leg, from), (_, to))| (*leg, (*from, *to))).unzip();
         for (legs, pieces) in legs.chunks(AT_ONCE).zip(pieces.chunks(AT_ONCE)) {
             for (number, (zone, breach, perhaps)) in view.zones.breaches(pieces, view.terrain) {
                 let Some(&leg) = legs.get(number) else { continue };
-                self.add(Found { leg, zone, breach, perhaps });
+                self.add(Found { leg, zone, breach, perhaps, on });
             }
         }
     }
@@ -137,7 +140,7 @@ impl<'a> Findings<'a> {
         let index = *self.worst.entry((found.leg, &found.zone.id)).or_insert(self.found.len());
         match self.found.get_mut(index) {
             None => self.found.push(found),
-            Some(old) if found.outweighs(old) => *old = found,
+            Some(old) if found.outweighs(old) => *old = Found { on: old.on.and(found.on), ..found },
             Some(_) => {}
         }
     }
@@ -157,6 +160,17 @@ impl Found<'_> {
         (old.perhaps, depth_m(&self.breach)) > (self.perhaps, depth_m(&old.breach))
     }
 
+    /// The leg before this one, if the plan as it stands comes to this one otherwise: by another branch, for instance.
+    fn way(&self, view: &View) -> Option<&Id> {
+        let before = self.on?.leg_before(self.leg)?;
+        let planned = &view.flights.planned.as_ref().ok()?.waypoints;
+        let of = |at: &FlownWaypoint, leg: &Id| at.waypoint.leg == *leg;
+        let is_planned = planned.iter().any(|at| of(at, self.leg));
+        let pairs = planned.iter().zip(planned.iter().skip(1));
+        let mut same = pairs.filter(|(a, b)| of(a, before) && of(b, self.leg));
+        (is_planned && same.next().is_none()).then_some(before)
+    }
+
     fn problem(&self, view: &View) -> Problem {
         let Breach { position, altitude_m, .. } = self.breach;
         // in whole metres that are enough
@@ -164,6 +178,7 @@ impl Found<'_> {
             (self.breach.horizontal_m.ceil().max(1.0), self.breach.vertical_m.ceil().max(1.0));
         let (lat, lon) = (position.lat_deg, position.lon_deg);
         let zone = &self.zone.id;
+        let after = self.way(view).map_or_else(String::new, |before| format!(" where it follows `{before}`"));
         let place = format!("at {lat:.5}, {lon:.5}");
         let (code, what) = match self.zone.kind {
             ZoneKind::KeepOut => {
@@ -172,13 +187,14 @@ impl Found<'_> {
                 (
                     "keep-out",
                     format!(
-                        "move this leg by {horizontal_m} m{remedy}: it goes into the zone `{zone}` {place}, {altitude_m:.0} m high"
+                        "move this leg by {horizontal_m} m{remedy}{after}: it goes into the zone `{zone}` {place}, {altitude_m:.0} m high"
                     ),
                 )
             }
-            ZoneKind::KeepIn if self.breach.horizontal_m > 0.0 => {
-                ("keep-in", format!("move this leg by {horizontal_m} m: it leaves the zone `{zone}` {place}"))
-            }
+            ZoneKind::KeepIn if self.breach.horizontal_m > 0.0 => (
+                "keep-in",
+                format!("move this leg by {horizontal_m} m{after}: it leaves the zone `{zone}` {place}"),
+            ),
             ZoneKind::KeepIn => (
                 "keep-in",
                 format!(
