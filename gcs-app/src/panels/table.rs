@@ -30,6 +30,8 @@ pub struct Table {
     cursor: Cursor,
     /// What was selected when it was last drawn.
     selected: Option<Selection>,
+    /// It had no row yet: it is of a version that is not foreseen, for instance.
+    sought: bool,
     editing: Option<Editing>,
     /// What was selected with a leg before it was clicked: the click may be the first of a double click.
     before_click: Vec<Id>,
@@ -89,8 +91,8 @@ impl Panel for Table {
         timeline::show(ui, scene, queue);
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        self.refresh(scene);
-        self.follow(scene);
+        let is_new = self.refresh(scene);
+        self.follow(scene, is_new);
         self.keys(ui, scene, queue);
         timeline::strip(ui, scene, queue);
         // where the columns have no room
@@ -100,21 +102,26 @@ impl Panel for Table {
 }
 
 impl Table {
-    fn refresh(&mut self, scene: &Scene<'_>) {
+    /// True: the rows are other ones.
+    fn refresh(&mut self, scene: &Scene<'_>) -> bool {
         let of = (scene.document.version(), scene.analysis.forecast_version);
-        if self.of != Some(of) {
-            self.of = Some(of);
-            self.rows = rows(scene.forecast(), scene.document.plan());
-            self.said = said(scene.document.plan());
+        if self.of == Some(of) {
+            return false;
         }
+        self.of = Some(of);
+        self.rows = rows(scene.forecast(), scene.document.plan());
+        self.said = said(scene.document.plan());
+        true
     }
 
-    /// Brings what was selected elsewhere into view.
-    fn follow(&mut self, scene: &Scene<'_>) {
-        if self.selected == scene.view.selection {
+    /// Brings what was selected elsewhere into view, as soon as it has a row.
+    fn follow(&mut self, scene: &Scene<'_>, is_new: bool) {
+        if self.selected != scene.view.selection {
+            self.selected.clone_from(&scene.view.selection);
+            self.sought = true;
+        } else if !(self.sought && is_new) {
             return;
         }
-        self.selected.clone_from(&scene.view.selection);
         let is_it = |row: &Row| match (row, &self.selected) {
             (Row::Stage(stage), Some(Selection::Stage(id))) => stage == id,
             (row, Some(Selection::Leg(id))) => {
@@ -124,6 +131,7 @@ impl Table {
         };
         if let Some(row) = self.rows.iter().position(is_it) {
             self.cursor = Cursor { row, moved: true, ..self.cursor };
+            self.sought = false;
         }
     }
 
@@ -190,6 +198,7 @@ impl Table {
     fn select(&mut self, scene: &Scene<'_>, queue: &mut Queue) {
         let selection = self.current(scene);
         self.selected.clone_from(&selection);
+        self.sought = false;
         queue.view(ViewCommand::Select(selection));
     }
 
@@ -281,7 +290,7 @@ impl Table {
             if let (None, Err(why)) = (column, entry.flown) {
                 row.col(|ui| {
                     if number == Column::ALL.len() {
-                        not_flown(ui, whole, why);
+                        not_flown(ui, whole, scene, why);
                     }
                 });
                 continue;

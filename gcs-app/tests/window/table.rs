@@ -5,7 +5,7 @@ use super::{SQUARE, Window};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Pos2, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{By, Queryable};
+use egui_kittest::kittest::{By, NodeT, Queryable};
 use flight_plan::{AltitudeReference, FlightPlan, Leg, Value};
 use gcs_app::command::Queue;
 use gcs_app::document::Document;
@@ -294,4 +294,28 @@ fn of_a_plan_with_an_error_the_table_shows_what_is_not_flown_and_changes_it() {
     window.type_into("TF side3", "Altitude of side3", "120 AGL");
     let said = &window.app().view().notice;
     assert_eq!(window.altitude("side3"), Some((120.0, AltitudeReference::Agl)), "{said:?}");
+}
+
+/// Its row comes with the next forecast, or stands behind an error.
+#[test]
+fn what_is_selected_elsewhere_comes_into_view_as_soon_as_it_has_a_row() {
+    for text in [SQUARE.to_owned(), SQUARE.replace(r#"<TF id="side1" fix=""#, r#"<TF id="side1" fix="NO"#)] {
+        let mut window = Window::open(&text);
+        window.until_analysed();
+        super::fleet::tab(&mut window, "Table");
+        window.steps(3);
+        window.click("TF side4");
+        assert!(window.shows("Name of side4"));
+        window.click("T/O take-off");
+        window.steps(3);
+        assert!(!window.shows("Name of side4"), "it is out of view");
+        window.click("TF side4");
+        window.paste("36.3, -84.19");
+        let new = window.selected();
+        assert_ne!(new, "side4");
+        window.until_analysed();
+        let named = window.harness.query_all_by_label_contains("Name of ");
+        let named: Vec<String> = named.filter_map(|cell| cell.accesskit_node().label()).collect();
+        assert!(named.contains(&format!("Name of {new}")), "{new}: {named:?}");
+    }
 }

@@ -58,6 +58,20 @@ fn frames_and_edits_go_on_while_the_preview_waits_for_the_ground() {
     window.until_analysed();
 }
 
+/// Legs without a forecast are not legs in error.
+#[test]
+fn the_table_says_that_a_sound_plan_is_still_being_looked_at() {
+    let (mut window, gate) = over_held_ground();
+    super::fleet::tab(&mut window, "Table");
+    window.steps(3);
+    assert!(window.shows("Not flown yet. The preview is being computed"));
+    assert!(!window.shows("the plan has an error"));
+    *gate.0.lock().unwrap() = true;
+    gate.1.notify_all();
+    window.until_analysed();
+    assert!(!window.shows("Not flown yet"));
+}
+
 /// Whatever the ground does: a leg that is drawn is tried out over it in the background.
 #[test]
 fn drawing_goes_on_while_the_trial_of_a_leg_waits_for_the_ground() {

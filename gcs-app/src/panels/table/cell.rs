@@ -31,14 +31,14 @@ pub(super) fn cell(ui: &mut Ui, at: (usize, Column), is_current: bool, text: Str
 }
 
 /// Why a leg is not flown: over all columns that would say how it is.
-pub(super) fn not_flown(ui: &mut Ui, whole: Rect, why: Why<'_>) {
+pub(super) fn not_flown(ui: &mut Ui, whole: Rect, scene: &Scene<'_>, why: Why<'_>) {
     let rect = ui.max_rect();
-    let text = why.to_string();
+    let text = why.told(scene);
     let painter = ui.painter().with_clip_rect(whole.intersect(rect.with_max_x(f32::INFINITY)));
     let p = theme::of(ui);
     let colour = match why {
         Why::LeftOut(_) => p.caution,
-        Why::Error => p.weak,
+        Why::NotForeseen => p.weak,
     };
     painter.text(rect.left_center(), Align2::LEFT_CENTER, &text, FontId::proportional(12.5), colour);
     let response = ui.response();

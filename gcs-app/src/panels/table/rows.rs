@@ -7,9 +7,8 @@ use crate::panels::Scene;
 use crate::panels::inspector::inherited::{self, Inherited};
 use crate::panels::tree::title;
 use crate::units;
-use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Section, Value};
+use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Problem, Section, Value};
 use std::collections::{HashMap, HashSet};
-use std::fmt;
 
 /// One row.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +19,7 @@ pub(super) enum Row {
     Passage(usize),
     /// A leg that would be left out, by its index in the forecast.
     LeftOut(usize),
-    /// A leg of a plan with an error that is flown no farther than to there, and its stage.
+    /// A leg that the forecast does not come to: there is none yet, or the plan has an error; and its stage.
     Written(Id, Id),
 }
 
@@ -38,15 +37,19 @@ pub(super) struct Entry<'a> {
 pub(super) enum Why<'a> {
     /// The aircraft would leave it out.
     LeftOut(&'a str),
-    /// The plan has an error, there or before.
-    Error,
+    /// The forecast does not come so far, or there is none.
+    NotForeseen,
 }
 
-impl fmt::Display for Why<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Why<'_> {
+    /// In words.
+    pub fn told(&self, scene: &Scene<'_>) -> String {
         match self {
-            Self::LeftOut(why) => write!(f, "⚠ Left out: {why}"),
-            Self::Error => f.write_str("Not flown yet: the plan has an error, see its problems"),
+            Self::LeftOut(why) => format!("⚠ Left out: {why}"),
+            Self::NotForeseen if scene.problems().any(Problem::is_error) => {
+                "Not flown yet: the plan has an error, see its problems".into()
+            }
+            Self::NotForeseen => format!("Not flown yet. {}", scene.analysis.why_no_forecast()),
         }
     }
 }
@@ -64,7 +67,7 @@ impl Row {
                 let left = forecast.left_out.get(*index)?;
                 Some(Entry { leg: &left.leg, stage: &left.stage, flown: Err(Why::LeftOut(&left.reason)) })
             }
-            Self::Written(leg, stage) => Some(Entry { leg, stage, flown: Err(Why::Error) }),
+            Self::Written(leg, stage) => Some(Entry { leg, stage, flown: Err(Why::NotForeseen) }),
         }
     }
 }
