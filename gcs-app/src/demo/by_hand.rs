@@ -42,16 +42,18 @@ fn held_s(events: &[(f64, Event)]) -> f64 {
         .sum()
 }
 
-/// The emergency plan on whose leg the flight ended.
-pub fn emergency_at_end(events: &[(f64, Event)]) -> Option<&Id> {
+/// The emergency plan on whose leg the flight ended, and why it was flown.
+pub fn emergency_at_end(events: &[(f64, Event)]) -> Option<(Id, Cause)> {
     let last = events.iter().rev().find_map(|(_, event)| match event {
         Event::LegEntered { place } => Some(&place.plan),
         _ => None,
     });
-    match last? {
-        Branching::Emergency(plan) => Some(plan),
-        Branching::Main => None,
-    }
+    let Branching::Emergency(flown) = last? else { return None };
+    let cause = events.iter().rev().find_map(|(_, event)| match event {
+        Event::EmergencyStarted { cause, plan, .. } if plan == flown => Some(*cause),
+        _ => None,
+    });
+    Some((flown.clone(), cause?))
 }
 
 #[cfg(test)]
@@ -102,7 +104,10 @@ mod tests {
             (1.0, Event::LegEntered { place })
         };
         let home = || on(Branching::Emergency("home".into()));
-        assert_eq!(emergency_at_end(&[on(Branching::Main), home()]).map(Id::as_str), Some("home"));
-        assert_eq!(emergency_at_end(&[home(), on(Branching::Main)]), None, "it went back");
+        let raised = |cause| (0.5, Event::EmergencyStarted { cause, plan: "home".into(), from_leg: None });
+        let (by_hand, by_alarm) = (raised(Cause::Operator), raised(Cause::Engine));
+        let ended = [on(Branching::Main), by_hand.clone(), home(), by_alarm, home()];
+        assert_eq!(emergency_at_end(&ended), Some(("home".into(), Cause::Engine)), "why it was flown last");
+        assert_eq!(emergency_at_end(&[by_hand, home(), on(Branching::Main)]), None, "it went back");
     }
 }

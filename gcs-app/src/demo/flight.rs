@@ -229,8 +229,8 @@ impl<'a> Flight<'a> {
         recorded.lost(self.plan_events.lost, "events of the FP Manager were lost");
         recorded.lost(self.gateway_events.lost, "events of the gateway were lost");
         let truth = components.simulator.truth();
-        let emergency = by_hand::emergency_at_end(&recorded.events).cloned();
-        let landed_by = emergency.as_ref().and_then(|plan| recorded.runway_of(plan));
+        let emergency = by_hand::emergency_at_end(&recorded.events);
+        let landed_by = emergency.as_ref().and_then(|(plan, _)| recorded.runway_of(plan));
         let outcome = Outcome {
             stands_at: truth.position,
             on_ground: truth.on_ground,

@@ -2,7 +2,7 @@
 
 use crate::report::{Findings, Record, clock};
 use flight_exec::Phase;
-use flight_plan::Id;
+use flight_plan::{Cause, Id};
 use geometry::{LatLon, LocalFrame, Vec2};
 use usal::contract::GatewayState;
 
@@ -32,8 +32,8 @@ pub struct Outcome {
     pub ground_speed_mps: f64,
     /// The runway to land on: that of the plan, or of the emergency plan with which the flight ended.
     pub runway: flight_plan::Runway,
-    /// The emergency plan with which the flight ended.
-    pub emergency: Option<Id>,
+    /// The emergency plan with which the flight ended, and why it was flown.
+    pub emergency: Option<(Id, Cause)>,
     /// What the operator did besides the mission logic.
     pub by_hand: Vec<String>,
     /// The executor's last phase.
@@ -122,8 +122,8 @@ fn landed(outcome: &Outcome) -> (bool, String) {
 fn finished(outcome: &Outcome) -> (bool, String) {
     match (outcome.phase, &outcome.emergency) {
         (Phase::Finished, None) => (true, "the plan was flown to its end".into()),
-        (Phase::Finished, Some(plan)) => (
-            !outcome.by_hand.is_empty(),
+        (Phase::Finished, Some((plan, cause))) => (
+            *cause == Cause::Operator,
             format!("the plan was not flown to its end: emergency plan {plan} was flown instead"),
         ),
         (other, _) => (false, format!("the plan did not come to its end: {other:?}")),
@@ -289,10 +289,14 @@ mod tests {
 
     #[test]
     fn emergency_that_ended_the_flight_is_told_and_a_failure_unless_the_operator_raised_it() {
-        let ended = Outcome { emergency: Some("home".into()), ..outcome() };
-        let (holds, text) = finished(&ended);
+        let ended = |cause| Outcome {
+            emergency: Some(("home".into(), cause)),
+            by_hand: vec!["decided for close at ask".into()],
+            ..outcome()
+        };
+        let (holds, text) = finished(&ended(Cause::Engine));
         assert!(!holds && text.contains("not flown to its end: emergency plan home"), "{text}");
-        assert!(finished(&Outcome { by_hand: vec!["had home flown".into()], ..ended }).0);
+        assert!(finished(&ended(Cause::Operator)).0);
     }
 
     #[test]
