@@ -74,10 +74,7 @@ impl App {
                 self.toasts.add(now_s, level, format!("{name}: {text}"));
             }
             let is_elsewhere = profile::is_elsewhere(&self.scene(now));
-            let shown = self.vehicles.shown_name().cloned();
-            if let Some(vehicle) = shown.and_then(|name| self.vehicles.get_mut(&name)) {
-                vehicle.outlook.set_elsewhere(is_elsewhere);
-            }
+            self.vehicles.set_elsewhere(is_elsewhere);
         }
     }
 }

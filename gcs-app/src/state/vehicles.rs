@@ -124,6 +124,14 @@ impl Vehicles {
         self.by_name.values_mut().for_each(|vehicle| vehicle.outlook.look(terrain));
     }
 
+    /// Whether the vehicle that is shown flies elsewhere than the preview has it. Of the others nobody looks: what they would tell of
+    /// their way is not drawn.
+    pub fn set_elsewhere(&mut self, is_elsewhere: bool) {
+        for (name, vehicle) in &mut self.by_name {
+            vehicle.outlook.set_elsewhere(is_elsewhere && self.shown.as_ref() == Some(name));
+        }
+    }
+
     /// Vehicles that fly an emergency plan, or otherwise than the preview has it, and should be asked now which way.
     pub fn due_for_way(&self, now_s: f64) -> Vec<VehicleName> {
         let due = self.by_name.iter().filter(|(_, vehicle)| vehicle.should_ask_which_way(now_s));
@@ -135,5 +143,26 @@ impl Vehicles {
         let due =
             self.by_name.iter_mut().filter_map(|(name, v)| v.should_ask_for_plan(now_s).then_some(name));
         due.cloned().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Once shown it flew elsewhere; now another one is shown, and nobody looks where it flies.
+    #[test]
+    fn a_vehicle_that_is_not_shown_any_more_is_not_asked_which_way_it_flies() {
+        let mut vehicles = Vehicles::default();
+        let names: [VehicleName; 2] = ["one".into(), "two".into()];
+        for (name, link) in names.iter().zip([1, 2].map(LinkId)) {
+            vehicles.open(name, link, "tcp/127.0.0.1:7447", 0.0);
+        }
+        vehicles.show(&names[0]);
+        vehicles.set_elsewhere(true);
+        assert_eq!(vehicles.due_for_way(1.0), [names[0].clone()]);
+        vehicles.show(&names[1]);
+        vehicles.set_elsewhere(false);
+        assert_eq!(vehicles.due_for_way(100.0), []);
     }
 }
