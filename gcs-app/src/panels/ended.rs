@@ -12,14 +12,14 @@ pub fn otherwise(scene: &Scene<'_>) -> Option<String> {
         return None;
     }
     let plan = vehicle.aboard.as_ref().map(|aboard| aboard.plan.as_ref());
-    let stands = vehicle.position.as_ref().filter(|p| p.value.on_ground).map(|p| p.value.position);
     if let Some(flown) = &vehicle.ended_in {
         let home = plan.and_then(|plan| plan.runway(&emergency::plan_named(plan, flown)?.runway));
-        let landed = home.zip(stands).map_or_else(String::new, |(home, at)| landed(scene, home, at));
+        let landed =
+            home.zip(vehicle.ended_at).map_or_else(String::new, |(home, at)| landed(scene, home, at));
         let name = vehicle.name_of(flown);
         return Some(format!("The plan was not flown to its end: {name} was flown instead{landed}"));
     }
-    let (end, stands) = (destination(plan?)?, stands?);
+    let (end, stands) = (destination(plan?)?, vehicle.ended_at?);
     let off = scene.units().distance().show(stands.distance_m(end.threshold));
     (!end.strip().is_landed_on(stands)).then(|| format!("Landed {off} from {}, where the plan ends", end.id))
 }

@@ -10,6 +10,7 @@ use crate::link::{
 };
 use flight_exec::{Event, Phase, ProposalReport, Status};
 use flight_plan::{Cause, FlightPlan, Id};
+use geometry::LatLon;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
 use terrain::Terrain;
@@ -104,6 +105,8 @@ pub struct Vehicle {
     pub decision_s: f64,
     /// The emergency plan with which the flight ended, instead of the main plan.
     pub ended_in: Option<Id>,
+    /// Where it stood when the flight had ended: afterwards it is carried away.
+    pub ended_at: Option<LatLon>,
     /// What was lost of its messages.
     pub losses: Losses,
     /// What others said in its name.
@@ -212,6 +215,7 @@ impl Vehicle {
             Telemetry::Position(p) => {
                 self.trail.add(p.value.position, p.time_s);
                 remember!(self.position, p, now_s);
+                self.note_end();
             }
             Telemetry::Attitude(v) => remember!(self.attitude, v, now_s),
             Telemetry::Air(v) => remember!(self.air, v, now_s),
@@ -224,6 +228,7 @@ impl Vehicle {
             Telemetry::Status(v) => {
                 self.follow(&v.value);
                 remember!(self.status, *v, now_s);
+                self.note_end();
             }
             Telemetry::Ahead(v) => remember!(self.ahead, v, now_s),
             Telemetry::Variables(v) => remember!(self.variables, v, now_s),
@@ -251,7 +256,7 @@ impl Vehicle {
                 if is_same { self.decision_s.max(asked.time_left_s) } else { asked.time_left_s };
         }
         if status.phase != Phase::Finished {
-            self.ended_in = None;
+            (self.ended_in, self.ended_at) = (None, None);
         } else if self.phase() != Phase::Finished {
             // the status of a flight that is over has none any more
             self.ended_in = self.emergency().cloned();
@@ -283,6 +288,13 @@ impl Vehicle {
         let is_news = self.strangers.heard(service, count, now_s);
         if let Some(text) = self.strangers.text().filter(|_| is_news) {
             self.log.add(now_s, Level::Caution, "link", &text);
+        }
+    }
+
+    fn note_end(&mut self) {
+        if self.phase() == Phase::Finished && self.ended_at.is_none() {
+            let stands = self.position.as_ref().filter(|position| position.value.on_ground);
+            self.ended_at = stands.map(|position| position.value.position);
         }
     }
 

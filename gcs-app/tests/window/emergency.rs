@@ -101,6 +101,9 @@ fn flight_that_did_not_end_as_planned_says_how_it_ended() {
         (value.phase, value.emergency) = (Phase::Finished, None);
         window.receive_status(value);
         assert!(window.shows(&text) && window.shows(chip), "{text}");
+        let carried = Position { position: at.destination(0.0, 5000.0), ..on_ground() };
+        window.receive(Telemetry::Position(Stamped { time_s: 200.0, validity_s: 2.0, value: carried }));
+        assert!(window.shows(&text), "it is told wherever the aircraft is carried: {text}");
     }
 }
 
