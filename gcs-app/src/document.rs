@@ -136,6 +136,10 @@ impl Document {
     pub fn would_be_missed(&self) -> bool {
         self.is_dirty() && !self.is_discarded && self.superseded_at != Some(self.edits)
     }
+    /// Its changes are not wanted any more.
+    pub fn is_discarded(&self) -> bool {
+        self.is_discarded
+    }
     /// Its changes are not wanted any more, or wanted again. Whoever edits it wants them.
     pub fn set_discarded(&mut self, is_discarded: bool) {
         self.is_discarded = is_discarded;

@@ -13,6 +13,15 @@ pub struct Shelf {
     after: Vec<Document>,
     /// The edits of the one that is shown when it was turned to: one more, and redo leads nowhere.
     edits: u64,
+    /// Its changes had been given up, and this way it was come to.
+    given_up: Option<Way>,
+}
+
+/// To which side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Way {
+    Back,
+    On,
 }
 
 impl Shelf {
@@ -20,6 +29,7 @@ impl Shelf {
     pub fn open(&mut self, shown: &mut Document, next: Document) {
         self.give_up_redo();
         let old = std::mem::replace(shown, next);
+        (self.edits, self.given_up) = (shown.edits(), None);
         if !old.is_nobodys() {
             self.before.push(old);
         }
@@ -34,9 +44,7 @@ impl Shelf {
             return false;
         }
         self.settle(shown);
-        let turned = turn(&mut self.before, shown, &mut self.after);
-        self.edits = shown.edits();
-        turned
+        self.turn(shown, Way::Back)
     }
 
     /// The other way.
@@ -46,9 +54,30 @@ impl Shelf {
             return false;
         }
         self.settle(shown);
-        let turned = turn(&mut self.after, shown, &mut self.before);
-        self.edits = shown.edits();
-        turned
+        self.turn(shown, Way::On)
+    }
+
+    /// To the next document on a side. True: another is shown.
+    fn turn(&mut self, shown: &mut Document, way: Way) -> bool {
+        let from = match way {
+            Way::Back => &mut self.before,
+            Way::On => &mut self.after,
+        };
+        let Some(mut next) = from.pop() else {
+            self.edits = shown.edits();
+            return false;
+        };
+        // what is shown is wanted; but who goes on the same way, and did nothing to it, only came by
+        let came_by = self.given_up == Some(way) && shown.edits() == self.edits;
+        shown.set_discarded(came_by);
+        (self.edits, self.given_up) = (next.edits(), next.is_discarded().then_some(way));
+        next.set_discarded(false);
+        let old = std::mem::replace(shown, next);
+        match way {
+            Way::Back => self.after.push(old),
+            Way::On => self.before.push(old),
+        }
+        true
     }
 
     /// Who edits the document that is shown does not redo what came after it. Undo still leads there: nothing is lost.
@@ -82,15 +111,14 @@ impl Shelf {
     pub fn turn_to(&mut self, shown: &mut Document, id: u64) -> bool {
         let before = self.before.iter().rev().position(|document| document.id() == id);
         let after = self.after.iter().rev().position(|document| document.id() == id);
-        let (steps, from, to) = match (before, after) {
-            (Some(steps), _) => (steps, &mut self.before, &mut self.after),
-            (_, Some(steps)) => (steps, &mut self.after, &mut self.before),
+        let (steps, way) = match (before, after) {
+            (Some(steps), _) => (steps, Way::Back),
+            (_, Some(steps)) => (steps, Way::On),
             (None, None) => return false,
         };
         for _ in 0..=steps {
-            turn(from, shown, to);
+            self.turn(shown, way);
         }
-        self.edits = shown.edits();
         true
     }
 
@@ -118,15 +146,6 @@ fn forget_oldest(documents: &mut Vec<Document>, most_bytes: usize) {
         bytes -= if is_forgotten { document.bytes() } else { 0 };
         !is_forgotten
     });
-}
-
-fn turn(from: &mut Vec<Document>, shown: &mut Document, to: &mut Vec<Document>) -> bool {
-    let Some(mut next) = from.pop() else { return false };
-    // who brings it back wants it again; and what is still shown nobody has given up
-    next.set_discarded(false);
-    shown.set_discarded(false);
-    to.push(std::mem::replace(shown, next));
-    true
 }
 
 #[cfg(test)]
@@ -170,6 +189,23 @@ mod tests {
         shown.set_discarded(true);
         assert!(shelf.undo(&mut shown) && shown.plan().name == "a");
         assert_eq!(names(shelf.unsaved(&shown)), ["b"]);
+    }
+
+    /// Undo and redo that go on past it leave it given up; who turns around there, or works on it, has brought it back.
+    #[test]
+    fn what_was_given_up_stays_so_where_undo_only_comes_past() {
+        let (mut shelf, mut shown) = (Shelf::default(), named("first", true));
+        shelf.open(&mut shown, named("given up", true));
+        shown.set_discarded(true);
+        shelf.open(&mut shown, named("last", true));
+        assert!(shelf.undo(&mut shown));
+        assert_eq!(names(shelf.unsaved(&shown)), ["given up", "first", "last"], "while it is shown");
+        assert!(shelf.undo(&mut shown));
+        assert_eq!(names(shelf.unsaved(&shown)), ["first", "last"]);
+        assert!(shelf.redo(&mut shown) && shelf.redo(&mut shown));
+        assert_eq!(names(shelf.unsaved(&shown)), ["last", "first"]);
+        assert!(shelf.undo(&mut shown) && shelf.redo(&mut shown));
+        assert_eq!(names(shelf.unsaved(&shown)), ["last", "first", "given up"]);
     }
 
     #[test]
