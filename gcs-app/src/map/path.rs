@@ -4,11 +4,13 @@ use super::polyline::{self, Cached, Style};
 use super::sketch::Sketch;
 use super::text;
 use super::view::{Mercator, View};
+use crate::chart::Point;
+use crate::chart::labels::{self, Labels};
 use crate::command::{PreviewCommand, Queue, Selection};
 use crate::map::coverage;
 use crate::panels::{Scene, bar, decision};
 use crate::theme::Palette;
-use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Shape, Stroke, pos2, vec2};
 use flight_plan::Id;
 
 /// The layer; keeps the decimated line until view or forecast change.
@@ -122,19 +124,31 @@ fn waypoints(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
 /// Where each branch of the decision that is asked for leads; the default's is the stronger line.
 pub fn draw_decision(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
     let Some((request, _)) = decision::open(scene) else { return };
+    let mut named = Labels::new(view.rect.into());
     for (number, option) in (1..).zip(&request.options) {
         let line: Vec<Mercator> = option.preview.iter().map(|at| (*at).into()).collect();
         let is_default = request.default.as_ref() == Some(&option.branch);
         let stroke = Stroke::new(if is_default { 2.6 } else { 1.8 }, p.active);
         let style = if is_default { Style::Solid } else { Style::Dashed };
         polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, style, p.halo);
-        // not at its end, where the name of a fix is
         let places: Vec<Pos2> = option.preview.iter().map(|at| view.place(*at)).collect();
-        if let Some(middle) = polyline::middle(&places) {
-            let at = middle + vec2(6.0, -6.0);
-            let name = format!("{number} {}", option.label);
-            text::haloed(painter, at, Align2::LEFT_BOTTOM, &name, 12.0, p.active, p);
-        }
+        name_branch(painter, &places, &format!("{number} {}", option.label), &mut named, p);
+    }
+}
+
+/// Beside the middle of its way (at its end is the name of a fix), or where no other branch has its name.
+fn name_branch(painter: &Painter, way: &[Pos2], name: &str, named: &mut Labels, p: &Palette) {
+    const SIZE: f32 = 12.0;
+    let Some(middle) = polyline::middle(way) else { return };
+    let size = painter.layout_no_wrap(name.into(), FontId::proportional(SIZE), p.active).size();
+    let beside = middle + vec2(6.0 + size.x / 2.0, -6.0 - size.y / 2.0);
+    let line: Vec<Point> = way.iter().map(|at| (at.x, at.y)).collect();
+    let room = (size.x, size.y);
+    let others = labels::along(&line, room).into_iter().chain(labels::beside((middle.x, middle.y), room));
+    let middles: Vec<Point> = std::iter::once((beside.x, beside.y)).chain(others).collect();
+    if let Some((x, y)) = named.best(&middles, room) {
+        let rect = text::haloed(painter, pos2(x, y), Align2::CENTER_CENTER, name, SIZE, p.active, p);
+        named.take(rect.into());
     }
 }
 

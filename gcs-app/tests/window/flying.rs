@@ -282,6 +282,9 @@ fn decisions_by_button_and_by_key() {
     value.decision = Some(decision(Some("again")));
     window.receive_status(value);
     assert!(window.shows("Decide at ask") && window.shows("36 s"));
+    // both lead the same way at first
+    let names = window.places_of(|text| ["1 Sweep again", "2 Close look"].contains(&text));
+    assert!(names.len() == 2 && !names[0].intersects(names[1]), "on the map: {names:?}");
     window.click("2  Close look");
     let decide =
         |branch: &str| Some(Call::Plan(Command::Decide { leg: "ask".into(), branch: branch.into() }));
