@@ -10,7 +10,7 @@ use crate::panels::start;
 use egui::{Context, Event, Ui, ViewportCommand};
 use flight_plan::clipboard::{self, Pasted};
 use flight_plan::create::{self, Drawn, LegChoice};
-use flight_plan::{Id, Place, Thing, Value};
+use flight_plan::{FlightPlan, Id, Place, Thing, Value};
 use geometry::LatLon;
 use interchange::{Feature, Format};
 use new_leg::{Aim, Side};
@@ -29,6 +29,8 @@ struct Paste {
     read: Task<Read>,
     /// Behind what was selected when it was pasted, or why it can't be put anywhere.
     aim: Result<Aim, String>,
+    /// Into which document: by now another may be shown.
+    into: u64,
 }
 
 impl Pastes {
@@ -40,7 +42,7 @@ impl Pastes {
     fn begin(&mut self, format: Format, text: String, canvas: &Canvas<'_>) {
         let read = move || drawings::read(format, &text);
         let read = Task::begin(canvas.scene.layers.wake(), read);
-        self.0.push_back(Paste { read, aim: aim(canvas) });
+        self.0.push_back(Paste { read, aim: aim(canvas), into: canvas.scene.document.id() });
     }
 
     /// Puts what was read into the plan.
@@ -51,12 +53,18 @@ impl Pastes {
             Taken::Done(read) => read,
             Taken::Failed => Err("The drawing could not be read: open it as a file.".into()),
         };
-        if let Some(Paste { aim, .. }) = self.0.pop_front() {
-            paste_drawing(read, aim, canvas, queue);
+        match self.0.pop_front() {
+            Some(Paste { aim, into, .. }) if into == canvas.scene.document.id() => {
+                paste_drawing(read, aim, canvas, queue);
+            }
+            Some(_) => queue.view(ViewCommand::Notice(NOT_SHOWN.into())),
+            None => {}
         }
     }
 }
 
+const NOT_SHOWN: &str =
+    "The drawing was not pasted: it was meant for a plan that is not shown any more. Paste it again.";
 const NO_BRANCH: &str = "A branch can't be cut: cut its legs, or delete it with Del.";
 
 /// Takes the keys and what the menu asked for, unless something is being typed.
@@ -142,8 +150,10 @@ fn paste_drawing(drawing: Read, aim: Result<Aim, String>, canvas: &Canvas<'_>, q
     }
     match aim {
         Ok(Aim::Spot(at)) => {
-            let approach = new_leg::approach(canvas, &Aim::Spot(at.clone()));
-            put(drawing.and_then(|features| drawings::legs(&features, at, approach, plan)), queue);
+            let aim = Aim::Spot(at.clone());
+            let approach = new_leg::approach(canvas, &aim);
+            let pasted = drawing.and_then(|features| drawings::legs(&features, at, approach, plan));
+            put_at(&aim, pasted, plan, queue);
         }
         Ok(Aim::Way { .. }) => {}
         Err(why) => queue.view(ViewCommand::Notice(why)),
@@ -175,9 +185,23 @@ fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Que
         }
         Err(_) => {
             if let Aim::Spot(at) = &aim {
-                put(clipboard::paste(plan, text, at, under), queue);
+                put_at(&aim, clipboard::paste(plan, text, at, under), plan, queue);
             }
         }
+    }
+}
+
+/// Puts what was pasted into the plan, and says where the legs are, if they are not in the main plan: what is selected may have been
+/// selected for something else.
+fn put_at(aim: &Aim, pasted: Result<Pasted, String>, plan: &FlightPlan, queue: &mut Queue) {
+    let has_legs = pasted.as_ref().is_ok_and(|pasted| !pasted.legs.is_empty());
+    let aside = new_leg::aside(aim, plan).filter(|_| has_legs);
+    put(pasted, queue);
+    if let Some(whose) = aside {
+        queue.view(ViewCommand::Notice(format!(
+            "Pasted into {whose}, {}. For the main plan undo it, select a leg or stage there, and paste again.",
+            new_leg::words(aim, plan)
+        )));
     }
 }
 

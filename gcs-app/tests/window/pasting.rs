@@ -201,6 +201,21 @@ fn a_drawing_of_another_program_becomes_legs() {
     assert_eq!(legs(&window).len(), 4, "one step");
 }
 
+/// Who clicked a problem of the emergency plan has it selected, and may mean the main plan.
+#[test]
+fn what_is_pasted_into_an_emergency_plan_is_told() {
+    let drawing = include_str!("../../../shared/interchange/tests/fixtures/places.kml");
+    let mut window = window();
+    window.click("TF side2");
+    window.paste(drawing);
+    assert_eq!(legs(&window).len(), 7, "into the main plan");
+    assert!(!window.shows("Pasted into"));
+    window.click("ALT return");
+    assert_eq!(window.selected(), "return");
+    window.paste(drawing);
+    assert!(window.shows("Pasted into emergency plan return > "), "{:?}", window.app().view().notice);
+}
+
 #[test]
 fn the_map_comes_to_what_is_pasted_out_of_its_view() {
     let mut window = window();

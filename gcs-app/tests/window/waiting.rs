@@ -140,6 +140,22 @@ fn no_frame_waits_for_a_large_drawing_that_is_pasted() {
     });
 }
 
+/// While it was read another plan took the place of the one that it was pasted into.
+#[test]
+fn a_drawing_that_was_meant_for_another_plan_is_pasted_into_none() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.harness.event(egui::Event::Paste(large_drawing()));
+    window.harness.step();
+    window.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::N);
+    window.harness.run_steps(2);
+    assert!(window.app().is_busy() && window.plan().stages.is_empty(), "it is still being read");
+    window.until("the refusal", |app| {
+        app.view().notice.as_ref().is_some_and(|why| why.contains("not shown any more"))
+    });
+    assert!(window.plan().stages.is_empty());
+}
+
 /// A disk of which each read waits until the gate is opened. It has one long file and one that is read in many parts.
 struct Slow {
     window: ThreadId,

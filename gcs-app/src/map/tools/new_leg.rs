@@ -116,7 +116,7 @@ pub fn words(aim: &Aim, plan: &FlightPlan) -> String {
 
 /// Whose place that is, for people: `Main plan > Survey`.
 pub fn whose(aim: &Aim, plan: &FlightPlan) -> Option<String> {
-    let (Aim::Spot(Spot::Before(id) | Spot::After(id) | Spot::EndOf(id)) | Aim::Way { from: id, .. }) = aim;
+    let id = place_in(aim);
     if let Some((procedure, _)) = plan.procedure_leg(id) {
         return Some(format!("procedure {}", plan.label(&procedure.id)));
     }
@@ -127,6 +127,22 @@ pub fn whose(aim: &Aim, plan: &FlightPlan) -> Option<String> {
         Section::Main => format!("Main plan > {stage}"),
         Section::Emergency(emergency) => format!("emergency plan {} > {stage}", plan.label(&emergency.id)),
     })
+}
+
+/// Whose place that is, for people, where it is not in the main plan.
+pub fn aside(aim: &Aim, plan: &FlightPlan) -> Option<String> {
+    let id = place_in(aim);
+    let is_main = match plan.leg(id) {
+        Some(context) => matches!(context.section, Section::Main),
+        None => plan.stages.iter().any(|stage| stage.id == *id),
+    };
+    whose(aim, plan).filter(|_| !is_main)
+}
+
+/// The leg, stage or procedure that a place is told by.
+fn place_in(aim: &Aim) -> &Id {
+    let (Aim::Spot(Spot::Before(id) | Spot::After(id) | Spot::EndOf(id)) | Aim::Way { from: id, .. }) = aim;
+    id
 }
 
 /// Lets the side be chosen, where there is a choice.
