@@ -79,8 +79,8 @@ impl App {
             }
             over_map(ui, floor, &scene, queue);
             if let Some(found) = scene.left_behind.filter(|_| !scene.view.recovers_later) {
-                let may_close = !scene.is_asking();
-                let ask = |ui: &mut Ui| recover::show(ui, found, may_close, queue);
+                let keys = (!scene.is_asking(), scene.vehicles.flying().next().is_none());
+                let ask = |ui: &mut Ui| recover::show(ui, found, keys, queue);
                 floating(ui, "recover", floor, Align2::CENTER_CENTER, ask);
             }
             notice(ui, floor, &scene, queue);

@@ -4,14 +4,14 @@ use super::primary_button;
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::recovery::LeftBehind;
 use crate::{theme, units};
-use egui::{Key, Label, RichText, ScrollArea, Ui};
+use egui::{Key, Label, Response, RichText, ScrollArea, Ui};
 
 /// Of the list of plans, screen points.
 const LIST_HEIGHT: f32 = 120.0;
 
 /// Draws it. It hides nothing that a flight is led with: a window may have crashed in the middle of one.
-/// `may_close`: Escape is for it.
-pub fn show(ui: &mut Ui, found: &LeftBehind, may_close: bool, queue: &mut Queue) {
+/// `may_close`: Escape is for it. `is_calm`: no vehicle flies, and Return may be for it.
+pub fn show(ui: &mut Ui, found: &LeftBehind, (may_close, is_calm): (bool, bool), queue: &mut Queue) {
     ui.set_width(380.0);
     ui.strong("The last window ended without saving");
     let age = units::duration(found.age.as_secs_f64());
@@ -28,12 +28,7 @@ pub fn show(ui: &mut Ui, found: &LeftBehind, may_close: bool, queue: &mut Queue)
     ui.add_space(8.0);
     ui.horizontal(|ui| {
         let recover = ui.add(primary_button("Recover the changes", theme::of(ui)));
-        // Return presses it, until something else is chosen
-        let asked = recover.id.with("asked");
-        if !ui.data(|d| d.get_temp(asked)).unwrap_or(false) {
-            ui.data_mut(|d| d.insert_temp(asked, true));
-            recover.request_focus();
-        }
+        offer_return(ui, &recover, is_calm);
         if recover.clicked() {
             queue.document(DocumentCommand::Recover);
         }
@@ -45,4 +40,17 @@ pub fn show(ui: &mut Ui, found: &LeftBehind, may_close: bool, queue: &mut Queue)
             queue.view(ViewCommand::AskRecovery(false));
         }
     });
+}
+
+/// Return presses it, until something else is chosen. While something else has the keyboard, or in a flight, Return is not meant for it.
+fn offer_return(ui: &Ui, recover: &Response, is_calm: bool) {
+    let id = recover.id.with("offered");
+    let is_offered: bool = ui.data(|d| d.get_temp(id)).unwrap_or(false);
+    if is_calm && !is_offered && ui.memory(|m| m.focused().is_none()) {
+        recover.request_focus();
+        ui.data_mut(|d| d.insert_temp(id, true));
+    } else if !is_calm && is_offered {
+        recover.surrender_focus();
+        ui.data_mut(|d| d.insert_temp(id, false));
+    }
 }
