@@ -230,6 +230,19 @@ fn inherited_values_say_where_they_come_from_and_editing_begins_with_them() {
     assert_eq!(window.plan(), before);
 }
 
+/// The preview flies no emergency plan: what the legs before it say holds.
+#[test]
+fn a_leg_of_an_emergency_plan_inherits_what_is_said_before_it() {
+    let r1 = r#"<DF id="r1" fix="D" altitude="150" altitudeReference="home"/>"#;
+    let mut window = Window::open(&SQUARE.replacen(r1, &format!(r#"{r1}<TF id="r2" fix="A"/>"#), 1));
+    window.until_analysed();
+    window.click("TF r2");
+    assert!(window.shows("from the leg before"));
+    window.click("Own altitude");
+    let own = window.plan().leg(&"r2".into()).unwrap().leg.altitude.clone().unwrap();
+    assert_eq!((own.metres, own.reference), (Value::Constant(150.0), flight_plan::AltitudeReference::Home));
+}
+
 #[test]
 fn table_tells_name_energy_and_height_above_ground_of_each_leg() {
     let text = SQUARE.replacen("<TF id=\"side2\"", "<TF name=\"Second side\" id=\"side2\"", 1);

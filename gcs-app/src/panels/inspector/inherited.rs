@@ -5,7 +5,7 @@ use crate::panels::Scene;
 use crate::units::Unit;
 use aircraft::Profile;
 use flight_plan::describe::Property;
-use flight_plan::{Altitude, AltitudeReference, EmergencyChoice, Id, LegContext, Value};
+use flight_plan::{Altitude, AltitudeReference, EmergencyChoice, Id, LegContext, Section, Value};
 
 /// A value and where it comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,13 +32,35 @@ pub fn altitude(scene: &Scene<'_>, of: &Id) -> Option<Inherited<Altitude>> {
     let context = scene.document.plan().leg(of);
     let given =
         context.and_then(|context| around(&context, |leg| leg.altitude.as_ref(), |s| s.altitude.as_ref()));
-    Some(given.unwrap_or_else(|| Inherited {
-        value: Altitude {
-            metres: Value::Constant(arrival_amsl_m(scene, of)),
-            reference: AltitudeReference::Amsl,
-        },
-        from: "the leg before".into(),
-    }))
+    given.or_else(|| {
+        let from = BEFORE.into();
+        let amsl_m =
+            |metres| Altitude { metres: Value::Constant(metres), reference: AltitudeReference::Amsl };
+        let value = match arrival_amsl_m(scene, of) {
+            Some(metres) => amsl_m(metres),
+            // the preview flies no emergency plan
+            None => said_before(scene, of).unwrap_or_else(|| amsl_m(home_amsl_m(scene))),
+        };
+        Some(Inherited { value, from })
+    })
+}
+
+const BEFORE: &str = "the leg before";
+
+/// What is said of the last leg before one, in the main plan or its emergency plan, of which anything is said.
+fn said_before(scene: &Scene<'_>, of: &Id) -> Option<Altitude> {
+    let legs = scene.document.plan().all_legs();
+    let here = legs.iter().position(|context| context.leg.id == *of)?;
+    let (before, own) = (legs.get(..here)?, emergency_of(legs.get(here)?));
+    let same = before.iter().rev().filter(|context| emergency_of(context) == own);
+    same.filter_map(|context| altitude_said(context)).map(|said| said.value).next()
+}
+
+fn emergency_of<'a>(context: &LegContext<'a>) -> Option<&'a Id> {
+    match context.section {
+        Section::Main => None,
+        Section::Emergency(plan) => Some(&plan.id),
+    }
 }
 
 fn is_called(scene: &Scene<'_>, of: &Id) -> bool {
@@ -91,13 +113,17 @@ fn around<T: Clone>(
     })
 }
 
-/// Whole metres; that of the first runway where the path does not lead there.
-fn arrival_amsl_m(scene: &Scene<'_>, of: &Id) -> f64 {
+/// Whole metres; `None`: the path does not lead there.
+fn arrival_amsl_m(scene: &Scene<'_>, of: &Id) -> Option<f64> {
     let forecast = scene.forecast();
     let passage = forecast.passages.iter().find(|passage| passage.leg == *of || passage.stage == *of);
     let before = passage.and_then(|passage| forecast.points.get(passage.first));
-    let home = || scene.document.plan().home().map(|runway| runway.elevation_amsl_m);
-    before.map(|point| point.altitude_amsl_m).or_else(home).unwrap_or(0.0).round()
+    before.map(|point| point.altitude_amsl_m.round())
+}
+
+/// Of the first runway.
+fn home_amsl_m(scene: &Scene<'_>) -> f64 {
+    scene.document.plan().home().map_or(0.0, |runway| runway.elevation_amsl_m.round())
 }
 
 /// What holds where a property names nothing: of an alternate, the one from outside.
