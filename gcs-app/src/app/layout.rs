@@ -158,7 +158,7 @@ fn notice(ui: &Ui, map: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(text) = &scene.view.notice else { return };
     let side = if decision::open(scene).is_some() { Align2::CENTER_BOTTOM } else { Align2::CENTER_TOP };
     floating(ui, "notice", below_tool(ui.ctx(), map), side, |ui| {
-        ui.set_max_width(NOTICE);
+        ui.set_max_width(ui.available_width().min(NOTICE));
         ui.horizontal(|ui| {
             if field::small_button(ui, "✖", "Close this message") {
                 queue.view(ViewCommand::DismissNotice);

@@ -363,12 +363,7 @@ pub fn last_command(ui: &mut Ui, scene: &Scene<'_>) {
     ui.add(egui::Label::new(RichText::new(text).color(colour)).wrap());
 }
 
-/// The last command, while it is pending, refused, or was accepted a moment ago.
+/// The last command, while it is pending, or was answered a short while ago.
 fn last_request<'a>(scene: &Scene<'a>) -> Option<&'a Request> {
-    const SHOWN_S: f64 = 8.0;
-    scene.vehicle.requests.last().filter(|request| {
-        request
-            .settled_s
-            .is_none_or(|at| scene.now_s - at < SHOWN_S || matches!(request.outcome, Outcome::Refused(_)))
-    })
+    scene.vehicle.requests.last().filter(|request| request.is_news(scene.now_s))
 }

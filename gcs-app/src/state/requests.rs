@@ -33,6 +33,15 @@ pub struct Request {
     pub outcome: Outcome,
 }
 
+impl Request {
+    /// It is pending, or was answered a short while ago. A refusal stays for as long as it takes to read and mend what it says; then
+    /// it is in the log.
+    pub fn is_news(&self, now_s: f64) -> bool {
+        let shown_s = if matches!(self.outcome, Outcome::Refused(_)) { 60.0 } else { 8.0 };
+        self.settled_s.is_none_or(|at| now_s - at < shown_s)
+    }
+}
+
 /// The latest requests, newest last.
 #[derive(Debug, Default)]
 pub struct Requests {
@@ -98,6 +107,18 @@ impl Requests {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_answer_is_news_for_a_while_and_a_refusal_longer() {
+        for (outcome, last_s) in [(Outcome::Accepted, 7.0), (Outcome::Refused("too steep".into()), 59.0)] {
+            let mut requests = Requests::default();
+            let ticket = requests.open("Hold", 100.0);
+            assert!(requests.last().is_some_and(|request| request.is_news(1000.0)), "it is pending");
+            requests.settle(ticket, outcome, 200.0);
+            let is_news = |now_s| requests.last().is_some_and(|request| request.is_news(now_s));
+            assert!(is_news(200.0 + last_s) && !is_news(202.0 + last_s));
+        }
+    }
 
     #[test]
     fn a_late_answer_is_not_taken_for_a_new_one() {

@@ -121,6 +121,7 @@ fn a_name_of_several_places_is_chosen_from_a_list_and_nothing_typed_is_lost() {
     assert_eq!(text_of(&window, "Place"), "nowhere at all");
     type_into(&mut window, "Place", "springfield");
     assert_eq!(text_of(&window, "Place"), "springfield");
+    assert!(window.shows("Choose which of them is meant"), "Enter does not do nothing");
     let named = guide(&window).search.clone().unwrap().named;
     assert!(named.len() > 1 && guide(&window).threshold.is_none(), "{named:?}");
     window.click(&named[1].name);

@@ -2,6 +2,7 @@
 
 use super::emergency::in_emergency;
 use super::vehicle::position;
+use super::{SQUARE, Window};
 use egui::vec2;
 use egui_kittest::kittest::Queryable;
 use gcs_app::link::Telemetry;
@@ -30,5 +31,23 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
         assert!(!window.shows("Coverage of the whole path"), "{size}");
         window.click("What if");
         assert!(window.shows("Coverage of the whole path"), "{size}: it was asked for");
+    }
+}
+
+#[test]
+fn a_message_is_no_wider_than_the_map() {
+    let mut window = Window::open_with(SQUARE, vec2(960.0, 600.0), None);
+    window.until_analysed();
+    window.click("TF side2");
+    window.paste("something that is neither a leg nor a drawing nor coordinates, and goes on for long enough to be cut");
+    let map = window.harness.get_by_label("Map").rect();
+    assert!(map.width() < 440.0, "{map:?}");
+    let text = window.app().view().notice.clone().unwrap();
+    for part in ["Close this message", text.as_str()] {
+        let rect = window.harness.get_by_label(part).rect();
+        assert!(
+            map.x_range().contains(rect.left()) && map.x_range().contains(rect.right()),
+            "{part}: {rect:?}"
+        );
     }
 }

@@ -49,8 +49,11 @@ pub fn ask(
     let named = if is_typing { &suggested[..] } else { search.map_or(&[][..], |search| &search.named[..]) };
     let offers = ui.scope(|ui| {
         let chosen = choose(ui, named);
-        if is_typing && !named.is_empty() {
-            ui.label(RichText::new("Enter takes what is typed").size(11.0).color(theme::of(ui).weak));
+        let p = theme::of(ui);
+        match (named.is_empty(), is_typing) {
+            (true, _) => {}
+            (_, true) => drop(ui.label(RichText::new("Choose one, or type on").size(11.0).color(p.weak))),
+            (_, false) => drop(ui.label(RichText::new(AMBIGUOUS).size(12.0).color(p.caution))),
         }
         chosen
     });
@@ -63,6 +66,9 @@ pub fn ask(
     }
     found
 }
+
+/// What was typed is the name of several places.
+const AMBIGUOUS: &str = "Choose which of them is meant";
 
 /// In the field, as long as nothing else is.
 const HINT: &str = "town or 46.5, 9.9";
