@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     Panel::top("emergency").frame(Frame::new().fill(fill).inner_margin(Margin::symmetric(10, 6))).show(
         ui,
         |ui| {
-            ui.horizontal_wrapped(|ui| {
+            steady(ui, flown, |ui| {
                 let text = RichText::new(sentence(scene, flown)).strong().color(on(fill));
                 ui.label(text);
                 if !has_come_down(scene) {
@@ -24,6 +24,19 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             });
         },
     );
+}
+
+/// As high as it was at most since this plan is flown, in a window of this width: where its text gets shorter, nothing below moves
+/// away under the pointer.
+fn steady(ui: &mut Ui, flown: &Id, show: impl FnOnce(&mut Ui)) {
+    let id = egui::Id::unique("height of the emergency's banner");
+    let width = ui.available_width();
+    let kept = ui.data(|d| d.get_temp::<(Id, f32, f32)>(id));
+    let least =
+        kept.filter(|(plan, of, _)| plan == flown && *of == width).map_or(0.0, |(_, _, height)| height);
+    ui.set_min_height(least);
+    let height = ui.horizontal_wrapped(show).response.rect.height();
+    ui.data_mut(|d| d.insert_temp(id, (flown.clone(), width, height.max(least))));
 }
 
 /// What can be read on a warning's colour.

@@ -4,6 +4,7 @@ use super::considering::foresight;
 use super::flying::{flying, flying_its_plan};
 use super::vehicle::{place, position, status};
 use super::{SQUARE, Window};
+use egui_kittest::kittest::Queryable;
 use flight_exec::{Branching, Command, Event, Phase};
 use flight_plan::Cause;
 use gcs_app::link::{Call, LinkEvent, Numbered, Reply, Telemetry};
@@ -62,6 +63,33 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     window.click("Return to the main plan at side3");
     let back = Command::ReturnToMain { leg: "side3".into() };
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(back))));
+}
+
+/// Who is about to press what stands below presses that.
+#[test]
+fn nothing_moves_when_the_banner_gets_shorter() {
+    let (mut window, ticket) = raised();
+    let foresight = flight_exec::Foresight { time_s: 604.0, ..foresight() };
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight))));
+    let top = |window: &Window, label: &str| {
+        window.harness.query_all_by_label_contains(label).next().unwrap().rect().center().y
+    };
+    // the widest window in which the last of its parts is on a second line
+    let (mut low, mut high) = (600.0_f32, 1900.0_f32);
+    while high - low > 1.0 {
+        let width = ((low + high) / 2.0).round();
+        window.harness.set_size(egui::vec2(width, 800.0));
+        window.receive(position(1.0, 500.0, false));
+        assert!(window.shows("lands in 10:0"));
+        let wraps = top(&window, "another leg") > top(&window, "Return to the main plan at side3") + 10.0;
+        if wraps { low = width } else { high = width }
+    }
+    window.harness.set_size(egui::vec2(low, 800.0));
+    window.receive(position(1.0, 500.0, false));
+    let before = top(&window, "⏸ Hold");
+    window.receive(position(20.0, 500.0, false));
+    assert!(window.shows("lands in 9:4"));
+    assert_eq!(top(&window, "⏸ Hold"), before);
 }
 
 #[test]
