@@ -14,6 +14,8 @@ use flight_plan::Id;
 const WIDTH: f32 = 260.0;
 /// Nearer to the ground is a caution, metres.
 const LOW_M: f64 = 30.0;
+/// What was told so long ago, by the aircraft's clock, is of another place, seconds.
+const OLD_S: f64 = 20.0;
 /// So many legs are named.
 const MOST_LEGS: usize = 12;
 
@@ -68,7 +70,8 @@ fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
     let p = theme::of(ui);
     let text = effect(considered, scene.vehicle);
     let units = scene.units();
-    let is_clean = matches!(&considered.foresight, Some(Ok(foresight)) if cautions(considered, foresight, units).is_empty());
+    let is_new = old_s(considered, scene).is_none();
+    let is_clean = matches!(&considered.foresight, Some(Ok(foresight)) if is_new && cautions(considered, foresight, units).is_empty());
     let given = if is_clean {
         ui.add(super::primary_button(&text, p)).clicked()
     } else {
@@ -77,6 +80,12 @@ fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
     if given {
         queue.plan(considered.command.clone());
     }
+}
+
+/// How long ago what follows was told, if that is long, seconds.
+fn old_s(considered: &Considered, scene: &Scene<'_>) -> Option<f64> {
+    let age_s = scene.vehicle.clock_s(scene.now_s)? - considered.told_s?;
+    Some(age_s).filter(|age_s| *age_s > OLD_S)
 }
 
 /// `Skip side2, fly side3 next`.
@@ -101,6 +110,10 @@ fn follows(ui: &mut Ui, considered: &Considered, foresight: &Foresight, scene: &
     let p = theme::of(ui);
     ui.label(RichText::new("╌╌ on the map: the path that would be flown").color(p.text));
     ScrollArea::vertical().id_salt("consider").auto_shrink(false).show(ui, |ui| {
+        if let Some(age_s) = old_s(considered, scene) {
+            let text = format!("⚠ Looked at {} ago: look again", units::duration(age_s));
+            ui.label(RichText::new(text).color(p.caution));
+        }
         for line in cautions(considered, foresight, scene.units()) {
             ui.label(RichText::new(format!("⚠ {line}")).color(p.caution));
         }

@@ -15,6 +15,8 @@ pub struct Considered {
     pub on_leg: Option<Id>,
     /// What would follow it, or why that is not known; `None`: not known yet.
     pub foresight: Option<Result<Box<Foresight>, String>>,
+    /// When that was told, seconds of the aircraft's clock.
+    pub told_s: Option<f64>,
     /// The least height above this window's ground on that way; `None`: that is known nowhere, or not yet.
     pub clearance: Option<Clearance>,
     is_over_ground: bool,
@@ -84,6 +86,7 @@ impl Outlook {
             command,
             on_leg,
             foresight: None,
+            told_s: None,
             clearance: None,
             is_over_ground: false,
             ticket: None,
@@ -142,6 +145,7 @@ impl Outlook {
             self.way = told.map(|(foresight, told_s)| Way { foresight, told_s, over_ground: None });
         } else if let Some(considered) = self.considered.as_mut().filter(|c| c.ticket == Some(ticket)) {
             considered.foresight = Some(answer);
+            considered.told_s = aircraft_s;
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::emergency::in_emergency;
 use super::flying::{fly_its_plan, flying, flying_its_plan};
-use super::vehicle::{place, status};
+use super::vehicle::{place, position, status};
 use super::{SQUARE, Window};
 use egui_kittest::kittest::Queryable;
 use flight_exec::{Command, Foresight, PathPoint, Phase};
@@ -59,6 +59,17 @@ fn skip_shows_what_follows_and_is_given_by_a_button_named_by_its_effect() {
     window.click("Skip side2, fly side3 next");
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::SkipLeg)));
     assert!(!window.shows("Left out"), "it was given");
+}
+
+/// The aircraft has flown on since.
+#[test]
+fn what_was_looked_at_long_ago_says_so_and_has_to_be_held() {
+    let (mut window, ticket) = considered();
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    assert!(!window.shows("Looked at"));
+    window.receive(position(46.0, 500.0, false));
+    assert!(window.shows("⚠ Looked at 0:45 ago: look again"));
+    assert!(window.shows("Skip side2, fly side3 next (hold)"));
 }
 
 #[test]
