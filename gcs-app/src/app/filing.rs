@@ -310,6 +310,7 @@ impl App {
     pub(super) fn recover(&mut self) {
         let Some(found) = self.take_left_behind() else { return };
         self.document.set_discarded(false);
+        let several = found.documents.len() > 1;
         // the one that was shown is shown again
         for left in found.documents.into_iter().rev() {
             let mut recovered = Document::recovered(left.text.as_bytes(), left.path);
@@ -317,6 +318,7 @@ impl App {
             self.shelf.open(&mut self.document, recovered);
         }
         self.show_another();
+        self.view.notice = several.then(|| self.also_recovered());
     }
 
     pub(super) fn take_left_behind(&mut self) -> Option<LeftBehind> {
@@ -328,6 +330,13 @@ impl App {
         self.view.browsing = None;
         self.saving.insert(self.document.id());
         self.files.save(path, Writing { over: over_if(over), ..known(&self.document) });
+    }
+
+    /// Of several plans one is shown, and nobody looks for the others where nothing tells of them.
+    fn also_recovered(&self) -> String {
+        let others = self.shelf.unsaved(&self.document).skip(1);
+        let names = others.map(|other| format!("“{}” ({})", other.plan().name, other.file_name()));
+        format!("Recovered, too: {}. Undo (Ctrl+Z) leads there.", names.collect::<Vec<_>>().join(", "))
     }
 
     pub(super) fn ask_save(&mut self) {

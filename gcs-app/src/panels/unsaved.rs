@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let modal = Modal::new(Id::unique("unsaved")).show(ui.ctx(), |ui| {
         ui.set_width(400.0);
         if !documents.is_empty() {
-            title(ui, &documents);
+            title(ui, &documents, scene.document.id());
             ui.label(consequence(with));
         }
         if let Some(flying) = &flying {
@@ -64,10 +64,14 @@ fn flying(scene: &Scene<'_>) -> Option<String> {
     (!names.is_empty()).then(|| format!("{} {verb} in the air", names.join(", ")))
 }
 
-fn title(ui: &mut Ui, documents: &[&Document]) {
+/// `shown`: the number of the document that is shown.
+fn title(ui: &mut Ui, documents: &[&Document], shown: u64) {
     let name = |document: &Document| document.plan().name.clone();
     if let [document] = documents {
-        ui.strong(format!("“{}” has unsaved changes", name(document)));
+        ui.strong(format!("“{}” ({}) has unsaved changes", name(document), document.file_name()));
+        if document.id() != shown {
+            ui.label("It is not the plan that is shown: undo leads there.");
+        }
         return;
     }
     ui.strong(format!("{} plans have unsaved changes", documents.len()));

@@ -368,6 +368,7 @@ fn every_document_survives_a_crash() {
     next.steps(3);
     assert!(next.shows("second.xml") && next.shows("first.xml"));
     next.click("Recover the changes");
+    assert!(next.shows("Recovered, too: “Square circuit” (first.xml). Undo (Ctrl+Z) leads there."));
     for name in ["second.xml", "first.xml"] {
         assert_eq!(next.app().document().path(), Some(folder.path().join(name).as_path()));
         assert!(next.app().document().is_dirty() && next.plan().leg(&"side2".into()).is_none());
