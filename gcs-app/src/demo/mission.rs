@@ -73,7 +73,7 @@ fn fire_watch() -> Vec<Step> {
         },
         Step {
             name: "another round",
-            story: "The operator decided at the fork: another round",
+            story: "The demo decided at the fork: another round",
             when: asked(1),
             acts: vec![decide("again")],
         },
@@ -88,7 +88,7 @@ fn fire_watch() -> Vec<Step> {
         },
         Step {
             name: "a closer look",
-            story: "The operator decided at the fork: a closer look, in circles above the fire",
+            story: "The demo decided at the fork: a closer look, in circles above the fire",
             when: asked(2),
             acts: vec![decide("close")],
         },
@@ -335,7 +335,9 @@ mod tests {
         };
         let mut script = waiting();
         assert!(script.next_due(114.0, 15.0).is_none() && script.is_waiting());
-        assert_eq!(script.next_due(115.0, 15.0).map(|step| step.name), Some("another round"));
+        let step = script.next_due(115.0, 15.0).unwrap();
+        assert_eq!(step.name, "another round");
+        assert!(step.story.starts_with("The demo decided"), "nobody else did: {}", step.story);
         let mut script = waiting();
         let taken = Event::DecisionTaken { leg: "ask".into(), branch: "close".into(), by: "operator".into() };
         script.hear(&taken, 105.0);
