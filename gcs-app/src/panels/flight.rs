@@ -234,9 +234,8 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if flying || (phase == Phase::Holding && !is_down) {
         choose_emergency(ui, scene, queue);
     }
-    let start = if phase == Phase::Grounded { "Start the next flight" } else { "Start and take off" };
-    if can_launch(scene) && !is_down && field::hold_button(ui, start, p.accent, 150.0) {
-        queue.fly(FlyCommand::Launch);
+    if can_launch(scene) && !is_down {
+        launch(ui, scene, queue);
     }
     if flying && ui.button("⏸ Hold").clicked() {
         queue.plan(Command::Hold);
@@ -255,6 +254,26 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.label(RichText::new(format!("⚠ {how}")).color(p.caution));
     } else if let Some(text) = nothing_to_do(scene) {
         ui.label(RichText::new(text).color(p.weak));
+    }
+}
+
+/// Named by what would be flown: that is the plan aboard, whatever is shown.
+fn launch(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let p = theme::of(ui);
+    let shown = scene.analysis.hash_of(scene.document.version());
+    let is_another = shown.is_some_and(|shown| scene.vehicle.active_hash().as_deref() != Some(shown));
+    let start =
+        if scene.vehicle.phase() == Phase::Grounded { "Start the next flight" } else { "Start and take off" };
+    let (text, colour) = match is_another {
+        true => (format!("{start} with the plan aboard"), p.caution),
+        false => (start.to_owned(), p.accent),
+    };
+    if field::hold_button(ui, &text, colour, 150.0) {
+        queue.fly(FlyCommand::Launch);
+    }
+    if is_another {
+        let text = "⚠ What is shown is not aboard and would not be flown: push it first";
+        ui.label(RichText::new(text).color(p.caution));
     }
 }
 

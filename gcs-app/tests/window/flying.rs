@@ -244,6 +244,22 @@ fn a_late_answer_is_not_taken_for_a_new_one() {
     assert_eq!(window.app().vehicle().requests.last().unwrap().outcome, Outcome::Accepted);
 }
 
+/// The plan aboard is flown, whatever was edited here since.
+#[test]
+fn who_starts_with_a_draft_on_the_screen_is_told_that_another_plan_is_flown() {
+    let (mut window, hash) = connected();
+    let mut value = status(Phase::Idle);
+    value.plan = Some(hash.into());
+    window.receive_status(value.clone());
+    assert!(!window.shows("with the plan aboard") && !window.shows("would not be flown"));
+    window.click("TF side2");
+    window.press(egui::Key::Delete);
+    window.until_analysed();
+    window.receive_status(value);
+    assert!(window.shows("Start and take off with the plan aboard (hold)"));
+    assert!(window.shows("⚠ What is shown is not aboard and would not be flown: push it first"));
+}
+
 #[test]
 fn taking_off_needs_a_held_button() {
     let (mut window, hash) = connected();
