@@ -20,10 +20,13 @@ impl Gateway {
     /// A gateway that starts while the aircraft flies: it finds out what is flown before it acts.
     pub(super) fn meet_in_flight(&mut self, now: Time, out: &mut Vec<Output>) {
         use GatewayState::{Manual, Off, Stop};
-        let unknown = !self.buffer.course().aboard && self.control.intent == Intent::Nothing;
-        if !unknown || !self.telemetry.flies(now) {
+        if self.control.intent != Intent::Nothing || !self.telemetry.flies(now) {
             self.control.met_at = None;
             return;
+        }
+        if self.buffer.course().aboard {
+            self.control.met_at = None;
+            return self.leave_to_who_took_off(out);
         }
         let is_unread = now.saturating_sub(*self.control.met_at.get_or_insert(now)) >= READ_WITHIN;
         match (self.state, self.telemetry.mode) {
@@ -39,6 +42,14 @@ impl Gateway {
             // he gives back what an earlier gateway had put aboard
             (Manual, Some(Mode::Waypoints)) if self.adopting.is_some() => self.ask_what_flies(out),
             _ => {}
+        }
+    }
+
+    /// What is aboard is known, and nobody has ordered the launch.
+    fn leave_to_who_took_off(&mut self, out: &mut Vec<Output>) {
+        let on_ground = matches!(self.state, GatewayState::Off | GatewayState::Stop);
+        if on_ground && self.telemetry.mode.is_some_and(|mode| mode != Mode::Waypoints) {
+            self.change(Trigger::PilotTook, "taken off under a pilot's control", out);
         }
     }
 

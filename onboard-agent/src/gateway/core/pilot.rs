@@ -11,10 +11,16 @@ use usal::contract::GatewayState;
 const SHOWS_WITHIN: Duration = Duration::from_secs(3);
 
 impl Gateway {
-    /// The pilot gave the aircraft back when he switched to the waypoints: they are what is wanted again.
+    /// The pilot gave the aircraft back when he switched to the waypoints, or launched it with them by hand: they are what is wanted, and
+    /// what a next takeover is seen by.
     pub(super) fn take_back(&mut self, out: &mut Vec<Output>) {
-        let given_back = self.state == GatewayState::Manual && self.flies_waypoints();
-        if given_back && self.buffer.course().aboard && self.control.intent != Intent::Fly {
+        let is_his = match self.state {
+            GatewayState::Manual => self.control.intent != Intent::Fly,
+            // what is met in flight and is to hold still has another mode before it
+            GatewayState::Off | GatewayState::Stop => self.control.intent == Intent::Nothing,
+            _ => false,
+        };
+        if is_his && self.flies_waypoints() && self.buffer.course().aboard {
             self.control.set_intent(Intent::Fly, self.telemetry.mode);
             out.push(Output::Save);
         }

@@ -1,5 +1,6 @@
 //! The core alone: what it says and orders upon what is reported to it.
 
+mod by_hand;
 mod disarmed;
 mod launching;
 mod met;

@@ -1,0 +1,48 @@
+//! The list is aboard, no launch is waited for, and the pilot launches by hand.
+
+use super::*;
+
+/// On the ground with its list aboard; nobody has asked for a launch, or it was refused.
+fn ready() -> Core {
+    let mut core = Core::in_stop_with_a_plan();
+    core.step(Input::Report(Report::Course(course(true))));
+    core
+}
+
+fn in_mode(mode: Mode) -> [Report; 4] {
+    let mut reports = flying(25.0, 25.0);
+    reports[0] = beat(mode, true);
+    reports
+}
+
+#[test]
+fn who_launches_it_with_the_list_by_hand_is_seen_when_he_takes_over() {
+    let mut core = ready();
+    core.run(1, &in_mode(Mode::Waypoints));
+    assert_eq!((core.gateway.state(), core.gateway.control.intent), (GatewayState::Nav, Intent::Fly));
+    assert!(core.out.contains(&Output::Save), "a gateway that starts anew knows it, too");
+    core.run(1, &in_mode(Mode::Other(5)));
+    assert_eq!(core.gateway.state(), GatewayState::Manual);
+    assert!(core.raised("not-in-command"));
+    for _ in 0..200 {
+        // the FP Manager is silent
+        core.now += Duration::from_millis(100);
+        in_mode(Mode::Other(5)).into_iter().for_each(|report| core.step(Input::Report(report)));
+    }
+    assert!(core.gateway.state() == GatewayState::Manual && !was_steered(&core), "he is not overruled");
+}
+
+/// The state was `Stop` for his whole flight: whoever asked was told that it stands.
+#[test]
+fn who_takes_off_by_hand_in_a_mode_of_his_own_flies_in_manual() {
+    for mode in [Mode::Other(5), Mode::Hold, Mode::Return] {
+        let mut core = ready();
+        core.run(2, &in_mode(mode));
+        assert_eq!(core.gateway.state(), GatewayState::Manual, "{mode:?}");
+        assert!(core.raised("not-in-command") && core.was_ordered(&Order::HandsOff(true)), "{mode:?}");
+        let launch = core.answer(Input::Request(4, GatewayRequest::Launch));
+        assert!(matches!(launch, Answer::Request(Err(_))), "{launch:?}");
+        core.run(2, &in_mode(Mode::Waypoints));
+        assert_eq!(core.gateway.state(), GatewayState::Nav, "{mode:?}: he gives it back");
+    }
+}
