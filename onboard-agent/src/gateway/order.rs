@@ -102,6 +102,8 @@ pub enum Order {
     Steer(Aim),
     /// Arm.
     Arm,
+    /// A launch is given up, on the ground: take back an order to arm that is under way, and disarm.
+    StandDown,
     /// Airspeed from now on, m/s.
     Speed(f64),
     /// End the flight by force: stop the engine now.

@@ -5,14 +5,12 @@ use super::io::{Intent, Output};
 use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Time};
 use geometry::LatLon;
 use std::time::Duration;
-use usal::contract::{Action, GatewayEvent, GatewayState};
+use usal::contract::{Action, GatewayState};
 
 /// An order that failed is given again after this.
-const RETRY: Duration = Duration::from_millis(1000);
+pub(super) const RETRY: Duration = Duration::from_millis(1000);
 /// An aircraft that does not arm yet, while its autopilot still starts up, is ordered to again for so long.
 const ARMS_WITHIN: Duration = Duration::from_secs(20);
-/// A launch that does not begin is given up after this.
-const LAUNCHES_WITHIN: Duration = Duration::from_secs(60);
 /// An order of ours that was overtaken by another may still come into effect for so long.
 const OVERTAKEN: Duration = Duration::from_secs(3);
 /// A list that is not ours is flown for so long, where ours is wanted, before the aircraft is made to circle: nothing can be written
@@ -58,11 +56,16 @@ pub struct Control {
     pub ordered: Option<Mode>,
     /// Since when the wanted mode is confirmed.
     confirmed_at: Option<Time>,
-    arm: Option<OrderId>,
+    /// The order to arm.
+    pub arm: Option<OrderId>,
     /// It was armed since the launch.
-    was_armed: bool,
-    /// Since when a launch waits.
-    launch_since: Option<Time>,
+    pub was_armed: bool,
+    /// Since when a launch waits that was granted.
+    pub launch_since: Option<Time>,
+    /// When a launch was given up whose order to arm may still be carried out.
+    pub given_up_at: Option<Time>,
+    /// The order to take that back.
+    pub stand_down: Option<OrderId>,
     /// Since when it is to be armed, and puts it off.
     put_off_since: Option<Time>,
     speed: Option<(OrderId, f64)>,
@@ -101,6 +104,8 @@ impl Default for Control {
             arm: None,
             was_armed: false,
             launch_since: None,
+            given_up_at: None,
+            stand_down: None,
             put_off_since: None,
             speed: None,
             adopt: None,
@@ -164,12 +169,6 @@ impl Control {
         self.forget(id);
     }
 
-    /// A take-off is wanted.
-    pub fn launch(&mut self, mode: Option<Mode>) {
-        self.was_armed = false;
-        self.set_intent(Intent::Fly, mode);
-    }
-
     /// An order failed. True: it was the arming of a launch.
     pub fn failed(&mut self, now: Time, id: OrderId) -> bool {
         let arming = self.arm == Some(id);
@@ -188,7 +187,7 @@ impl Control {
         if self.mode.is_some_and(|(mode, _)| mode == id) {
             self.mode = None;
         }
-        for lane in [&mut self.arm, &mut self.adopt] {
+        for lane in [&mut self.arm, &mut self.adopt, &mut self.stand_down] {
             if *lane == Some(id) {
                 *lane = None;
             }
@@ -255,25 +254,6 @@ impl Gateway {
         self.leave_loiter(out);
     }
 
-    /// A launch waits until the list is aboard and the autopilot arms, but not for longer than this: whoever mends what is in the way
-    /// stands before the propeller.
-    fn wait_for_launch(&mut self, now: Time, out: &mut Vec<Output>) {
-        let on_ground = matches!(self.state, GatewayState::Stop | GatewayState::Off);
-        if !on_ground || self.control.intent != Intent::Fly || self.telemetry.armed {
-            self.control.launch_since = None;
-        } else if now.saturating_sub(*self.control.launch_since.get_or_insert(now)) >= LAUNCHES_WITHIN {
-            self.give_up_launch("the take-off did not begin within a minute", out);
-        }
-    }
-
-    pub(super) fn give_up_launch(&mut self, cause: &str, out: &mut Vec<Output>) {
-        self.control.launch_since = None;
-        self.control.set_intent(Intent::Nothing, self.telemetry.mode);
-        self.cause = format!("{cause}: start again");
-        out.push(Output::Event(GatewayEvent::NotLaunched { reason: self.cause.clone() }));
-        out.push(Output::Save);
-    }
-
     fn steer_mode(&mut self, now: Time, out: &mut Vec<Output>) {
         let Some(wanted) = self.control.wanted_mode() else { return };
         let flies = wanted == Mode::Waypoints;
@@ -283,12 +263,8 @@ impl Gateway {
         if self.telemetry.armed {
             (self.control.was_armed, self.control.arm) = (true, None);
         } else {
-            if flies && self.state == GatewayState::Stop && std::mem::take(&mut self.control.was_armed) {
-                return self.give_up_launch("disarmed before the take-off, and not by the gateway", out);
-            }
-            if flies && self.state == GatewayState::Stop && self.control.arm.is_none() {
-                self.control.arm = Some(self.order(Order::Arm, out));
-                self.control.retry_at = Some(now + RETRY);
+            if flies && self.state == GatewayState::Stop {
+                self.arm(now, out);
             }
             return;
         }

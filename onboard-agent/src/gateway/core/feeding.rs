@@ -203,11 +203,4 @@ impl Gateway {
         }
         out.push(Output::Save);
     }
-
-    /// Nothing is to be flown any more: a take-off that was granted is not begun.
-    fn stand_down(&mut self, out: &mut Vec<Output>) {
-        self.control.set_intent(Intent::Nothing, self.telemetry.mode);
-        self.forget_waypoints(out);
-        out.push(Output::Save);
-    }
 }

@@ -12,6 +12,7 @@ mod control;
 mod deviation;
 mod feeding;
 mod io;
+mod launch;
 mod met;
 mod observe;
 mod pilot;
@@ -189,6 +190,7 @@ impl Gateway {
             Report::ListUnfit(true) => self.list_refused(now),
             Report::HoldsByItself => self.control.holds_by_itself = true,
             Report::ListReplaced => self.list_replaced(out),
+            Report::Rebooted => self.rebooted(out),
             Report::Capability(result) => self.control.capability = Some(result.map(|_| ())),
             _ => {}
         }

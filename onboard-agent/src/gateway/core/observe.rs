@@ -49,6 +49,10 @@ impl Gateway {
     }
 
     fn seen_on_course(&self) -> Option<(Trigger, &'static str)> {
+        if self.state == GatewayState::Stop && self.control.intent == Intent::Nothing {
+            // armed by an order that was taken back: it is disarmed
+            return None;
+        }
         if matches!(self.control.intent, Intent::Hold | Intent::Direct) && self.control.mode_pending() {
             return None;
         }

@@ -17,7 +17,9 @@ impl Gateway {
         let is_his = match self.state {
             GatewayState::Manual => self.control.intent != Intent::Fly,
             // what is met in flight and is to hold still has another mode before it
-            GatewayState::Off | GatewayState::Stop => self.control.intent == Intent::Nothing,
+            GatewayState::Off | GatewayState::Stop => {
+                self.control.intent == Intent::Nothing && !self.may_arm_late(self.now)
+            }
             _ => false,
         };
         if is_his && self.flies_waypoints() && self.buffer.course().aboard {

@@ -63,8 +63,7 @@ impl Gateway {
         if !self.telemetry.gps.is_some_and(|(_, g)| g.fix_3d) {
             return Err("There is no GPS fix; wait for it.".into());
         }
-        self.control.launch(self.telemetry.mode);
-        out.push(Output::Save);
+        self.begin_launch(out);
         Ok(())
     }
 

@@ -444,7 +444,7 @@ fn disarmed_in_the_air_it_still_flies() {
     }
 }
 
-/// The list can't be brought aboard, or the autopilot is switched off: it took off when that was mended.
+/// The list can't be brought aboard: it took off when that was mended.
 #[test]
 fn a_launch_that_does_not_begin_is_given_up() {
     let mut core = Core::in_stop_with_a_plan();

@@ -180,6 +180,7 @@ impl Driver for GliderDriver {
             Order::Steer(Aim::Waypoints) => "FLY".into(),
             Order::Steer(Aim::Hold) => "CIRCLE".into(),
             Order::Arm => "ARM".into(),
+            Order::StandDown => "DISARM".into(),
             Order::Speed(mps) => format!("SPEED {mps}"),
             Order::Steer(_) | Order::Terminate => {
                 let why = "a glider can't do that".to_owned();

@@ -31,6 +31,7 @@ pub const DIALECT: Dialect = Dialect {
     mode_name: modes::name,
     steer: modes::steer,
     arm: &[Command::Arm],
+    stands: None,
     holds_at_end: false,
     forgets_speed: true,
     speed_repeats: 0,

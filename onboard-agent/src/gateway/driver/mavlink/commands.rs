@@ -39,6 +39,8 @@ pub enum Command {
     Mode(ModeNumber),
     /// Arm.
     Arm,
+    /// Disarm; in flight it refuses that.
+    Disarm,
     /// Airspeed, m/s.
     Speed(f64),
     /// Go to a place, metres AMSL, and circle there; `None`: where it is. `shows`: the mode in which it does so, if it
@@ -116,12 +118,21 @@ impl Commands {
         if self.queue.len() >= LONGEST_QUEUE {
             return Some((client, Err(Refusal::from("too many commands are waiting".to_string()))));
         }
-        match command {
-            // what is urgent does not wait behind what is not
-            Command::Terminate | Command::ForceDisarm => self.queue.push_front((client, command)),
-            _ => self.queue.push_back((client, command)),
+        if !is_urgent(command) {
+            self.queue.push_back((client, command));
+            return None;
         }
-        None
+        // it does not wait behind what is not, nor for the answer to that
+        self.queue.push_front((client, command));
+        let less = self.flight.take_if(|given| !is_urgent(given.command))?;
+        let why = format!("{command:?} came before the autopilot had done {:?}", less.command);
+        Some((less.client, Err(why.into())))
+    }
+
+    /// What is not to be carried out any more is not sent again.
+    pub fn take_back(&mut self, client: Client) {
+        self.queue.retain(|(of, _)| *of != client);
+        self.flight.take_if(|given| given.client == client);
     }
 
     /// When `tick` is due.
@@ -216,6 +227,7 @@ impl Commands {
             (Command::Mode(wanted), Shown::Mode(mode, _)) => wanted.shown == mode,
             (Command::GoTo { shows: Some(wanted), .. }, Shown::Mode(mode, _)) => wanted == mode,
             (Command::Arm, Shown::Mode(_, armed)) => armed,
+            (Command::Disarm, Shown::Mode(_, armed)) => !armed,
             _ => return None,
         };
         if obeyed {
@@ -226,11 +238,19 @@ impl Commands {
     }
 }
 
+fn is_urgent(command: Command) -> bool {
+    matches!(command, Command::Terminate | Command::ForceDisarm)
+}
+
 /// The command has an effect that the autopilot shows.
 fn is_seen(command: Command) -> bool {
     matches!(
         command,
-        Command::Current(_) | Command::Mode(_) | Command::Arm | Command::GoTo { shows: Some(_), .. }
+        Command::Current(_)
+            | Command::Mode(_)
+            | Command::Arm
+            | Command::Disarm
+            | Command::GoTo { shows: Some(_), .. }
     )
 }
 
@@ -238,7 +258,7 @@ fn number(command: Command) -> MavCmd {
     match command {
         Command::Current(_) => MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT,
         Command::Mode(_) => MavCmd::MAV_CMD_DO_SET_MODE,
-        Command::Arm | Command::ForceDisarm => MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
+        Command::Arm | Command::Disarm | Command::ForceDisarm => MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
         Command::Speed(_) => MavCmd::MAV_CMD_DO_CHANGE_SPEED,
         Command::GoTo { .. } => MavCmd::MAV_CMD_DO_REPOSITION,
         Command::Terminate => MavCmd::MAV_CMD_DO_FLIGHTTERMINATION,
@@ -251,6 +271,7 @@ fn encode(command: Command, confirmation: u8, peer: Peer) -> MavMessage {
         // 1: the number is the autopilot's own
         Command::Mode(mode) => (1.0, f32::from(mode.main), f32::from(mode.sub)),
         Command::Arm | Command::Terminate => (1.0, 0.0, 0.0),
+        Command::Disarm => (0.0, 0.0, 0.0),
         Command::ForceDisarm => (0.0, FORCE, 0.0),
         // 0: airspeed; throttle −1: as it is
         Command::Speed(mps) => (0.0, mps as f32, -1.0),

@@ -36,6 +36,8 @@ pub struct Dialect {
     pub steer: fn(mode: Option<u32>, &Aim) -> Vec<Command>,
     /// The commands that arm it.
     pub arm: &'static [Command],
+    /// What ends that if no launch follows: the mode in which it was armed may start its list.
+    pub stands: Option<Command>,
     /// Behind the last entry of its list it changes to circling by itself.
     pub holds_at_end: bool,
     /// A change of mode makes it forget the airspeed that was commanded.

@@ -3,6 +3,7 @@
 //! What an autopilot does in its own way is its [`Dialect`], which the first heartbeat chooses: nobody has to say which
 //! autopilot it is. One without a dialect is refused in plain words, and so is one that turns into another.
 
+mod arming;
 mod capability;
 mod mode;
 mod speed;
@@ -112,16 +113,6 @@ impl MavlinkDriver {
             self.steps.push(Steps { order: id, rest });
         }
         self.session.command(now, Client::Order(id), first, events);
-    }
-
-    fn arm(&mut self, now: Time, id: OrderId, events: &mut Vec<SessionEvent>) {
-        match self.dialect() {
-            Some(dialect) => {
-                self.arming = Some(id);
-                self.give(now, id, dialect.arm.to_vec(), events);
-            }
-            None => self.refuse(id),
-        }
     }
 
     fn refuse(&mut self, id: OrderId) {
@@ -246,15 +237,6 @@ impl MavlinkDriver {
         });
     }
 
-    /// It gives its reasons in words of its own.
-    fn not_armed(&self, now: Time, id: OrderId, Refusal { why, for_now }: Refusal) -> Report {
-        let why = match self.session.words.lately(now) {
-            Some(words) => format!("{why} (it says: {words})"),
-            None => why,
-        };
-        if for_now { Report::PutOff(id, why) } else { Report::Failed(id, why) }
-    }
-
     fn next_step(&mut self, id: OrderId) -> Option<Command> {
         self.steps.iter_mut().find(|steps| steps.order == id)?.rest.pop_front()
     }
@@ -330,6 +312,7 @@ impl Driver for MavlinkDriver {
             Order::Adopt(known) => self.list.adopt(id, known),
             Order::Steer(aim) => self.steer(now, id, aim, &mut events),
             Order::Arm => self.arm(now, id, &mut events),
+            Order::StandDown => self.stand_down(now, id, &mut events),
             Order::Speed(mps) => {
                 self.speed = speed::Speed::said(mps, self.dialect());
                 self.session.command(now, Client::Order(id), Command::Speed(mps), &mut events);

@@ -157,6 +157,11 @@ impl Session {
         self.tick(now, events);
     }
 
+    /// Takes back a command.
+    pub fn take_back(&mut self, client: Client) {
+        self.commands.take_back(client);
+    }
+
     /// The autopilot's list: begin something, if nothing is being done to it.
     pub fn mission(&mut self) -> (&mut Mission, &mut Vec<MavMessage>) {
         (&mut self.mission, &mut self.out)

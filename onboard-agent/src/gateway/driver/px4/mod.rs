@@ -10,6 +10,7 @@ mod tests;
 mod window;
 
 use super::mavlink::Peer;
+use super::mavlink::commands::Command;
 use super::mavlink::dialect::{Dialect, Manner, Summary};
 use super::mavlink::examine::Advice;
 use super::mavlink::item::{self, Item};
@@ -31,6 +32,7 @@ pub const FIXED_WING: Dialect = Dialect {
     mode_name: modes::name,
     steer: |_, aim| modes::steer(aim),
     arm: &modes::ARM,
+    stands: Some(Command::Mode(modes::HOLD)),
     holds_at_end: true,
     forgets_speed: true,
     // one that comes in the moment in which a take-off ends is said to be accepted, and flown from the next entry on

@@ -9,7 +9,7 @@ const AUTO: u8 = 4;
 /// It flies its list.
 const MISSION: ModeNumber = number(AUTO, 4);
 /// It circles, or goes to a place to circle there: nothing that it shows tells which.
-const HOLD: ModeNumber = number(AUTO, 3);
+pub const HOLD: ModeNumber = number(AUTO, 3);
 /// It returns by itself.
 const RETURN: ModeNumber = number(AUTO, 5);
 

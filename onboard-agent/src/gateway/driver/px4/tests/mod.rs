@@ -3,6 +3,7 @@
 mod acks;
 mod fake;
 mod met;
+mod standing;
 mod summary;
 
 use crate::gateway::driver::{DEFAULT, Driver, FromLink, Setup};

@@ -1,0 +1,96 @@
+//! A launch: granted, waited for, and given up.
+
+use super::Gateway;
+use super::control::RETRY;
+use super::io::{Intent, Output};
+use crate::gateway::order::{Order, Time};
+use std::time::Duration;
+use usal::contract::{GatewayEvent, GatewayState};
+
+/// A launch that does not begin is given up after this.
+const LAUNCHES_WITHIN: Duration = Duration::from_secs(60);
+/// On a bad link an order to arm may be carried out so long after it was taken back.
+const ARMS_LATE: Duration = Duration::from_secs(10);
+
+impl Gateway {
+    /// A take-off is wanted from now on.
+    pub(super) fn begin_launch(&mut self, out: &mut Vec<Output>) {
+        self.control.was_armed = false;
+        self.control.launch_since = Some(self.now);
+        self.control.given_up_at = None;
+        self.control.set_intent(Intent::Fly, self.telemetry.mode);
+        out.push(Output::Save);
+    }
+
+    /// A launch waits until the list is aboard and the autopilot arms, but not for long, nor for an autopilot that is gone: whoever mends
+    /// what is in the way stands before the propeller.
+    pub(super) fn wait_for_launch(&mut self, now: Time, out: &mut Vec<Output>) {
+        self.disarm_late(now, out);
+        let Some(since) = self.control.launch_since else { return };
+        let on_ground = matches!(self.state, GatewayState::Stop | GatewayState::Off);
+        if !on_ground || self.control.intent != Intent::Fly || self.telemetry.armed {
+            self.control.launch_since = None;
+        } else if self.state == GatewayState::Off {
+            self.give_up_launch("the autopilot is not heard any more", out);
+        } else if now.saturating_sub(since) >= LAUNCHES_WITHIN {
+            self.give_up_launch("the take-off did not begin within a minute", out);
+        }
+    }
+
+    /// Somebody switched it off and on again, and stands beside it.
+    pub(super) fn rebooted(&mut self, out: &mut Vec<Output>) {
+        if self.control.launch_since.is_some() {
+            self.give_up_launch("the autopilot started anew", out);
+        }
+    }
+
+    /// The next step of a launch, on the ground.
+    pub(super) fn arm(&mut self, now: Time, out: &mut Vec<Output>) {
+        if self.control.was_armed || self.control.launch_since.is_none() {
+            self.give_up_launch("disarmed before the take-off, and not by the gateway", out);
+        } else if self.control.arm.is_none() {
+            self.control.arm = Some(self.order(Order::Arm, out));
+            self.control.retry_at = Some(now + RETRY);
+        }
+    }
+
+    /// Nothing takes off any more, and that is told.
+    pub(super) fn give_up_launch(&mut self, cause: &str, out: &mut Vec<Output>) {
+        self.take_back_launch(out);
+        self.cause = format!("{cause}: start again");
+        out.push(Output::Event(GatewayEvent::NotLaunched { reason: self.cause.clone() }));
+        out.push(Output::Save);
+    }
+
+    /// Nothing is to be flown any more: a take-off that was granted is not begun.
+    pub(super) fn stand_down(&mut self, out: &mut Vec<Output>) {
+        if self.control.intent == Intent::Fly {
+            self.take_back_launch(out);
+        }
+        self.control.set_intent(Intent::Nothing, self.telemetry.mode);
+        self.forget_waypoints(out);
+        out.push(Output::Save);
+    }
+
+    /// What was ordered for it is not done any more, nor is it left half done.
+    fn take_back_launch(&mut self, out: &mut Vec<Output>) {
+        self.control.given_up_at = self.control.arm.take().map(|_| self.now);
+        self.control.launch_since = None;
+        self.control.was_armed = false;
+        self.control.set_intent(Intent::Nothing, self.telemetry.mode);
+        self.control.stand_down = Some(self.order(Order::StandDown, out));
+    }
+
+    /// It may arm by an order of ours that was taken back; nobody else did it.
+    pub(super) fn may_arm_late(&self, now: Time) -> bool {
+        self.control.given_up_at.is_some_and(|at| now.saturating_sub(at) < ARMS_LATE)
+    }
+
+    fn disarm_late(&mut self, now: Time, out: &mut Vec<Output>) {
+        let is_idle = self.state == GatewayState::Stop && self.control.intent == Intent::Nothing;
+        let is_ours = self.telemetry.armed && self.may_arm_late(now);
+        if is_idle && is_ours && self.control.stand_down.is_none() {
+            self.control.stand_down = Some(self.order(Order::StandDown, out));
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Arming for a launch, and what takes that back.
+
+use super::MavlinkDriver;
+use crate::gateway::driver::mavlink::commands::{Client, Command, Refusal};
+use crate::gateway::driver::mavlink::session::SessionEvent;
+use crate::gateway::order::{Mode, OrderId, Report, Time};
+
+impl MavlinkDriver {
+    pub(super) fn arm(&mut self, now: Time, id: OrderId, events: &mut Vec<SessionEvent>) {
+        match self.dialect() {
+            Some(dialect) => {
+                self.arming = Some(id);
+                self.give(now, id, dialect.arm.to_vec(), events);
+            }
+            None => self.refuse(id),
+        }
+    }
+
+    /// What was sent already may still be carried out: it is disarmed after it.
+    pub(super) fn stand_down(&mut self, now: Time, id: OrderId, events: &mut Vec<SessionEvent>) {
+        let Some(dialect) = self.dialect() else { return self.refuse(id) };
+        let arming = self.arming.take();
+        if let Some(arming) = arming {
+            self.steps.retain(|steps| steps.order != arming);
+            self.session.take_back(Client::Order(arming));
+            self.reports.push_back(Report::Failed(arming, "taken back".into()));
+        }
+        let is_armed = self.seen.is_some_and(|seen| seen.armed);
+        let would_fly = self.seen.is_some_and(|seen| (dialect.meaning)(seen.mode, false) == Mode::Waypoints);
+        let disarm = (arming.is_some() || is_armed).then_some(Command::Disarm);
+        let stands = dialect.stands.filter(|_| arming.is_some() || would_fly);
+        self.give(now, id, disarm.into_iter().chain(stands).collect(), events);
+    }
+
+    /// It gives its reasons in words of its own.
+    pub(super) fn not_armed(&self, now: Time, id: OrderId, Refusal { why, for_now }: Refusal) -> Report {
+        let why = match self.session.words.lately(now) {
+            Some(words) => format!("{why} (it says: {words})"),
+            None => why,
+        };
+        if for_now { Report::PutOff(id, why) } else { Report::Failed(id, why) }
+    }
+}

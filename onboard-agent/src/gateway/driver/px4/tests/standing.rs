@@ -1,0 +1,71 @@
+//! A launch that is given up on the ground.
+
+use super::*;
+
+fn is_arming(message: &MavMessage) -> bool {
+    matches!(message, MavMessage::COMMAND_LONG(c) if c.command == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM)
+}
+
+fn stands(rig: &Rig) -> bool {
+    !rig.px4.armed && (rig.px4.main, rig.px4.sub) == (4, 3)
+}
+
+#[test]
+fn an_order_to_arm_that_is_taken_back_is_not_sent_again() {
+    let mut rig = Rig::loaded();
+    rig.pass = Box::new(|to, m| to == To::Driver || !is_arming(m));
+    let arm = rig.order(Order::Arm);
+    rig.run(3);
+    let stand_down = rig.order(Order::StandDown);
+    assert!(rig.outcome(arm).is_some_and(|outcome| outcome.is_err()), "it is answered");
+    rig.pass = Box::new(|_, _| true);
+    rig.until("it stands", |rig| rig.outcome(stand_down).is_some());
+    rig.run(20);
+    assert!(stands(&rig) && rig.outcome(stand_down) == Some(Ok(())));
+}
+
+#[test]
+fn what_armed_before_that_was_heard_is_disarmed() {
+    let mut rig = Rig::loaded();
+    let tells = |m: &MavMessage| matches!(m, MavMessage::COMMAND_ACK(a) if a.command == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM);
+    rig.pass = Box::new(move |to, m| to == To::Px4 || !tells(m));
+    rig.order(Order::Arm);
+    rig.until("armed", |rig| rig.px4.armed);
+    rig.pass = Box::new(|_, _| true);
+    assert_eq!(rig.carry_out(Order::StandDown), Ok(()));
+    rig.run(5);
+    assert!(stands(&rig));
+}
+
+/// Armed later by somebody's sticks it would take off.
+#[test]
+fn after_a_refused_arming_it_does_not_stay_in_the_mode_in_which_it_takes_off() {
+    let mut rig = Rig::loaded();
+    rig.px4.refuses_arming = Some("Arming denied: safety switch");
+    rig.carry_out(Order::Arm).unwrap_err();
+    rig.run(2);
+    assert_eq!(rig.mode(), Some(Mode::Waypoints));
+    assert_eq!(rig.carry_out(Order::StandDown), Ok(()));
+    assert!(stands(&rig));
+}
+
+/// It waited for up to sixteen tries of what was asked before.
+#[test]
+fn to_end_the_flight_by_force_waits_for_nothing() {
+    let mut rig = Rig::flying();
+    rig.pass = Box::new(|to, _| to == To::Px4);
+    let speed = rig.order(Order::Speed(27.0));
+    rig.run(1);
+    let end = rig.order(Order::Terminate);
+    let mut outbox = Outbox::default();
+    rig.driver.send(&mut outbox);
+    let sent = outbox.frames().filter(|bytes| {
+        rig.decoder.push_datagram(bytes);
+        let message = rig.decoder.next_frame().unwrap().message().unwrap();
+        matches!(message, MavMessage::COMMAND_LONG(c) if c.command == MavCmd::MAV_CMD_DO_FLIGHTTERMINATION)
+    });
+    assert!(sent.count() > 0, "it is out at once");
+    rig.step();
+    let why = rig.outcome(speed).unwrap().unwrap_err();
+    assert!(why.contains("Terminate") && rig.outcome(end).is_none(), "{why}");
+}
