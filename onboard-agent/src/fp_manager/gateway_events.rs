@@ -81,7 +81,10 @@ impl Manager {
             self.feeder.clear();
             self.step(now, Input::GatewayControls(true), out);
         }
-        self.alarms.all(&status.alarms);
+        // one that does not know yet what flies has raised nothing, and forgotten nothing
+        if status.state != GatewayState::Off {
+            self.alarms.all(&status.alarms);
+        }
         if self.gateway_session.is_joined() && self.gateway_session.is_airborne() {
             for call in self.alarms.listed(&status.alarms) {
                 self.emergency(now, call, out);
@@ -136,6 +139,10 @@ impl Manager {
         }
         let cause = call.cause;
         tracing::warn!(?cause, "alarm of the gateway: emergency");
+        // laid out before it is known that the engine is out, its plan would be fed twice
+        if let Some(state) = self.aircraft_state() {
+            self.step(now, Input::Aircraft(state), out);
+        }
         if let Err(refusal) = self.order(now, Command::Emergency { cause, plan: None }, GATEWAY, out) {
             tracing::warn!(?cause, "no emergency plan flown: {refusal}");
             if refusal.code == "not-more-severe" {

@@ -263,8 +263,12 @@ impl GatewaySession {
         }
     }
 
-    /// The executor flies on: if the gateway holds or follows a direct command, it should too.
+    /// The executor flies on: if the gateway holds or follows a direct command, it should too. If the pilot flies, a hold that waits for him
+    /// to give the aircraft back is not wanted any more, and that is all.
     pub fn flies_on(&mut self) {
+        if self.state == Some(GatewayState::Manual) {
+            return self.unwant(GatewayRequest::Hold);
+        }
         let led_away = matches!(self.state, Some(GatewayState::Hold | GatewayState::Directed));
         if led_away || self.wanted() == Some(&GatewayRequest::Hold) {
             self.want(GatewayRequest::Resume);
@@ -392,6 +396,23 @@ mod tests {
         assert!(session.take_back(), "but who asks for it now gets it");
         session.state(Duration::ZERO, GatewayState::Manual);
         assert_eq!(session.request_back(Duration::ZERO), Some(GatewayRequest::Resume));
+    }
+
+    /// The pilot flies, the operator holds, and an alarm leads on: it took the aircraft from him.
+    #[test]
+    fn a_hold_that_waits_for_the_pilot_becomes_no_resume() {
+        let mut session = GatewaySession::default();
+        for hold_first in [true, false] {
+            session.state(Duration::ZERO, GatewayState::Nav);
+            if hold_first {
+                session.want(GatewayRequest::Hold);
+            }
+            session.state(Duration::ZERO, GatewayState::Manual);
+            session.want(GatewayRequest::Hold);
+            session.flies_on();
+            assert_eq!(session.wanted(), None);
+            assert_eq!(session.request_back(Duration::ZERO), None);
+        }
     }
 
     /// He turns to the pilot; a second later the aircraft left the pilot's mode all the same.

@@ -154,10 +154,14 @@ impl Manager {
         if let Some(reason) = self.gateway_session.tick(now) {
             self.not_launched(now, reason, out);
         }
-        let state = self.aircraft.state(self.alarms.engine_is_out());
-        let input = state.map_or(Input::Tick, Input::Aircraft);
+        let input = self.aircraft_state().map_or(Input::Tick, Input::Aircraft);
         self.step(now, input, out);
         self.send(now, out);
+    }
+
+    /// The executor's view of the aircraft, once its position is known.
+    pub(super) fn aircraft_state(&self) -> Option<AircraftState> {
+        self.aircraft.state(self.alarms.engine_is_out())
     }
 
     /// A command of a person or a service; `by` is who asks, `id` the request's own name. One that was

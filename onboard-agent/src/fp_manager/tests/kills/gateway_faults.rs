@@ -2,9 +2,10 @@
 
 use super::asks::{What, asks};
 use super::*;
+use crate::fp_manager::manager::Manager;
 use flight_exec::Phase;
 use flight_plan::Id;
-use usal::contract::{Cause, GatewayEvent, GatewayRequest};
+use usal::contract::{Alarm, Cause, GatewayEvent, GatewayRequest, Severity};
 
 /// In the air, so many waypoints flown; nothing but these first requests is asked.
 fn flown(waypoints: usize, requests: usize) -> Flight {
@@ -218,6 +219,11 @@ fn a_command_to_lead_elsewhere_ends_a_direct_command_but_takes_nothing_from_the_
         let mut piloted = led_away_and_told(GatewayState::Manual);
         run(&mut piloted, 6);
         assert_eq!(piloted.gateway.state, GatewayState::Manual, "{command:?}");
+        piloted.ask_once(&What::Command(Command::Hold), "hold").unwrap();
+        run(&mut piloted, 2);
+        piloted.ask_once(&What::Command(Command::GoTo { leg: Id::new("back") }), "on").ok();
+        run(&mut piloted, 6);
+        assert_eq!(piloted.gateway.state, GatewayState::Manual, "{command:?}, held");
     }
 }
 
@@ -283,6 +289,21 @@ fn alarm_less_severe_is_answered_when_another_plan_is_entered_as_well() {
     flight.ask_once(&What::Command(command), "commit").unwrap();
     run(&mut flight, 2);
     assert_eq!(emergencies(&flight), 2, "{:?}", flight.events);
+}
+
+/// It was laid out with power first, and 50 ms later for a glide: another transaction, on PX4 another list.
+#[test]
+fn the_plan_for_an_engine_that_is_out_is_laid_out_once() {
+    let mut flight = flown(10, STARTED);
+    let (now, manager) = (flight.time, &mut flight.process.manager);
+    let (severity, cause) = (Severity::Warning, Some(Cause::Engine));
+    let alarm =
+        Alarm { id: "engine-out".into(), severity, source: "gateway".into(), advice: "land".into(), cause };
+    manager.gateway_event(now, GatewayEvent::AlarmRaised(alarm), &mut Vec::new());
+    let ahead = |manager: &Manager| manager.executor().ahead().cloned().collect::<Vec<_>>();
+    let laid_out = ahead(manager);
+    manager.tick(now, &mut Vec::new());
+    assert_eq!(ahead(manager), laid_out);
 }
 
 /// It ran dry; what it then took is not flown by what it says of before.
