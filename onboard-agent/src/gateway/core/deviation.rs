@@ -29,8 +29,9 @@ const SLOW: f64 = 0.7;
 const FAST: f64 = 1.4;
 /// Unless it still gains more than this, m/s²: it was told to fly faster a moment ago.
 const GAINING_MPS2: f64 = 0.2;
-/// Slower than this nothing with wings flies, neither over the ground nor through the air, m/s.
+/// Slower than this over the ground nothing with wings flies, m/s, unless into a wind: with more than this share of its least airspeed.
 const STANDING_MPS: f64 = 1.5;
+const STILL_SHARE: f64 = 0.5;
 
 /// A landing rolls no farther than this behind the place that it was told to touch down at, metres.
 const MOST_ROLL_M: f64 = 3000.0;
@@ -116,10 +117,13 @@ impl Gateway {
             _ => false,
         };
         let slow = |mps: f64| mps < STANDING_MPS;
-        let air = self.telemetry.air.map_or(0.0, |(_, air)| air.airspeed_mps);
+        // in a wind it still measures some; nothing hovers against a wind that is slower than half of what it needs to fly
+        let flies_mps = STILL_SHARE * self.settings.profile.min_airspeed_mps;
+        let air = self.telemetry.air.filter(|(at, _)| now.saturating_sub(*at) < FRESH);
+        let hovers = air.is_some_and(|(_, air)| air.airspeed_mps >= flies_mps);
         let moves = |fix: Fix| !slow(fix.north_mps.hypot(fix.east_mps)) || !slow(fix.down_mps.abs());
         let may_fly = self.telemetry.armed || self.telemetry.is_up(now);
-        !on_runway && may_fly && slow(air) && self.fix().is_some_and(|fix| !moves(fix))
+        !on_runway && may_fly && !hovers && self.fix().is_some_and(|fix| !moves(fix))
     }
 
     /// So far below what it was told to fly at, and sinking so fast.

@@ -2,6 +2,7 @@
 
 mod by_hand;
 mod disarmed;
+mod down;
 mod launching;
 mod met;
 mod replaced;
