@@ -4,30 +4,17 @@
 //! down sooner it would lack that height before the runway. What the rest of the way can't lose is lost in circles where the approach
 //! begins, and what is left of it on the way there.
 
+use super::gates::{Gate, circles, is_over_ground};
 use super::way::gates;
-use super::{Approach, Situation, along};
+use super::{Approach, Situation};
 use aircraft::glide::{Circle, GlidePoint, GlideStart, glide};
-use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 use usal::contract::{SafeParameters, SafeRunway};
 
 /// Height above the threshold that a glide comes there with, and above the ground on the way, metres.
-const SPARE_M: f64 = 15.0;
+pub(super) const SPARE_M: f64 = 15.0;
 /// Share of the steepest descent that is counted on.
 const STEEP: f64 = 0.7;
-/// Waypoints of a circle.
-const CORNERS: u32 = 8;
-
-/// A place on the way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Gate {
-    /// Where.
-    pub position: LatLon,
-    /// Metres AMSL.
-    pub altitude_amsl_m: f64,
-    /// A corner of a circle.
-    pub on_arc: bool,
-}
 
 /// A glide that comes to a runway, and above the ground on the way.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,12 +41,12 @@ pub(super) fn glide_in(
     let told = told(runway, s, [at_initial, at_last, end])?;
     let right = normalise_180(runway.heading_deg - s.position.bearing_deg(initial)) >= 0.0;
     let sides = [right, !right].map(|right| {
-        let from_m = at_initial.altitude_amsl_m;
-        let mut gates = circles(initial, runway.heading_deg, right, (from_m, &told), s);
+        let altitudes = (at_initial.altitude_amsl_m, told.initial_m);
+        let mut gates = circles(initial, (runway.heading_deg, right), told.circles, altitudes, s);
         gates.push(Gate { position: last, altitude_amsl_m: told.last_m, on_arc: false });
         gates
     });
-    let gates = sides.into_iter().find(|gates| is_over_ground(gates, s))?;
+    let gates = sides.into_iter().find(|gates| is_over_ground(gates, s, |_| SPARE_M))?;
     Some(Glide { gates, time_s: end.time_s })
 }
 
@@ -84,53 +71,10 @@ fn told(runway: &SafeRunway, s: &Situation, [initial, last, end]: [&GlidePoint; 
         |from: &GlidePoint, to: &GlidePoint| STEEP * s.profile.max_descent_mps * (to.time_s - from.time_s);
     let most_last_m = (last.altitude_amsl_m - too_much_m).max(runway.elevation_amsl_m + falls_m(last, end));
     let most_initial_m = (height_m - too_much_m).max(most_last_m + falls_m(initial, last));
-    let circle = circle(s);
+    let circle = Circle::of(s.profile, s.wind());
     let circles = if height_m > most_initial_m { circle.most(too_much_m) } else { 0 };
     let initial_m = (height_m - f64::from(circles) * circle.height_m).min(most_initial_m);
     Some(Told { circles, initial_m, last_m: (initial_m - sinks_m).min(most_last_m) })
-}
-
-fn circle(s: &Situation) -> Circle {
-    Circle::of(s.profile, s.wind())
-}
-
-/// The initial point, and the circles from there and back to it in line with the runway, evenly down.
-fn circles(
-    initial: LatLon,
-    heading_deg: f64,
-    right: bool,
-    (from_m, told): (f64, &Told),
-    s: &Situation,
-) -> Vec<Gate> {
-    let side = if right { 1.0 } else { -1.0 };
-    let radius_m = circle(s).radius_m;
-    let centre = initial.destination(heading_deg + 90.0 * side, radius_m);
-    let corners = told.circles * CORNERS;
-    let corner = |i: u32| {
-        let turned_deg = 360.0 * f64::from(i % CORNERS) / f64::from(CORNERS);
-        let position = match i % CORNERS {
-            0 => initial,
-            _ => centre.destination(heading_deg + side * (turned_deg - 90.0), radius_m),
-        };
-        let share = if corners == 0 { 1.0 } else { f64::from(i) / f64::from(corners) };
-        let altitude_amsl_m = from_m + share * (told.initial_m - from_m);
-        Gate { position, altitude_amsl_m, on_arc: corners > 0 }
-    };
-    (0..=corners).map(corner).collect()
-}
-
-/// It stays above all ground that is known until the last gate, by the altitudes that it is told.
-fn is_over_ground(gates: &[Gate], s: &Situation) -> bool {
-    let Some(terrain) = s.terrain else { return true };
-    let mut from = (s.position, s.altitude_amsl_m);
-    gates.iter().all(|gate| {
-        let ((start, start_m), end_m) = (from, gate.altitude_amsl_m);
-        from = (gate.position, end_m);
-        along(start, gate.position).all(|(share, place)| {
-            let height_m = start_m + share * (end_m - start_m);
-            terrain.elevation_m(place).is_none_or(|ground_m| height_m > ground_m + SPARE_M)
-        })
-    })
 }
 
 #[cfg(test)]

@@ -1,10 +1,13 @@
 //! Safe mode's own flight: which runway, and the waypoints to it. Needs no other service.
 
+mod gates;
 mod gliding;
+mod powered;
 mod ranking;
 mod way;
 
 use aircraft::{Profile, Wind};
+use flight_exec::review::plausibility::ALTITUDES_M;
 use geometry::LatLon;
 pub use ranking::choose;
 use terrain::Terrain;
@@ -13,6 +16,8 @@ pub use way::path;
 
 /// Spacing at which the ground on the way is sampled, metres.
 const GROUND_STEP_M: f64 = 200.0;
+/// No runway is longer, metres.
+const LONGEST_RUNWAY_M: f64 = 20_000.0;
 /// Most samples of the ground on one way.
 const MAX_SAMPLES: f64 = 1000.0;
 
@@ -81,7 +86,8 @@ pub fn is_usable(runway: &SafeRunway, profile: &Profile) -> bool {
     let numbers = [runway.elevation_amsl_m, runway.heading_deg, runway.length_m];
     runway.threshold.is_navigable()
         && numbers.iter().all(|n| n.is_finite())
-        && runway.length_m >= profile.min_runway_m
+        && (profile.min_runway_m..=LONGEST_RUNWAY_M).contains(&runway.length_m)
+        && ALTITUDES_M.contains(&runway.elevation_amsl_m)
         && runway.elevation_amsl_m < profile.ceiling_amsl_m
 }
 
@@ -99,12 +105,32 @@ fn along(from: LatLon, to: LatLon) -> impl Iterator<Item = (f64, LatLon)> {
 mod tests {
     use super::*;
 
+    #[test]
+    fn a_runway_whose_numbers_no_runway_has_is_not_usable() {
+        let (profile, sound) = (Profile::default(), runway("it", 0.0, 4.0, 0.0, 1));
+        assert!(is_usable(&sound, &profile));
+        let bad = |elevation_amsl_m, length_m| SafeRunway { elevation_amsl_m, length_m, ..sound.clone() };
+        for runway in [bad(-1e9, 600.0), bad(322.0, 1e7), bad(f64::NAN, 600.0), bad(322.0, 1.0)] {
+            assert!(!is_usable(&runway, &profile), "{runway:?}");
+        }
+    }
+
     pub(super) const HOME: LatLon = LatLon::new(36.4905, -84.2710);
 
     pub(super) fn runway(id: &str, bearing_deg: f64, km: f64, heading_deg: f64, priority: u32) -> SafeRunway {
         let threshold = HOME.destination(bearing_deg, km * 1000.0);
         let (elevation_amsl_m, length_m) = (322.0, 600.0);
         SafeRunway { id: id.into(), threshold, elevation_amsl_m, heading_deg, length_m, priority }
+    }
+
+    /// A wall north of a latitude, so high.
+    pub(super) struct Wall(pub f64, pub f64);
+
+    impl Terrain for Wall {
+        fn elevation_m(&self, at: LatLon) -> Option<f64> {
+            let is_there = (self.0..self.0 + 0.003).contains(&at.lat_deg);
+            Some(if is_there { self.1 } else { 300.0 })
+        }
     }
 
     pub(super) fn situation(profile: &Profile) -> Situation<'_> {

@@ -1,15 +1,16 @@
 //! Which runway: of those within reach the one with the least cost, in seconds of flight.
 //!
-//! With its engine an aircraft reaches a runway if the energy lasts for the way in this wind, and if the ground on the way lies
-//! below its ceiling. Gliding, if it comes to the threshold with height to spare, and above all ground on the way (`gliding`). The cost
-//! is the time for the way, with the climb over the ground; a lower priority, a tailwind on landing, a short runway and the other end of
+//! With its engine an aircraft reaches a runway if the energy lasts for the way in this wind, and if that leads above all ground and below
+//! its ceiling (`powered`). Gliding, if it comes to the threshold with height to spare, and above all ground on the way (`gliding`). The
+//! cost is the time for the way; a lower priority, a tailwind on landing, a short runway and the other end of
 //! one make it worse.
 
 use super::gliding::glide_in;
-use super::way::{gates, ground_to_clear_m};
+use super::powered::powered;
+use super::way::gates;
 use super::{Approach, Landing, Situation, along, is_usable};
 use geometry::LatLon;
-use geometry::near::{distance_and_course, distance_m};
+use geometry::near::distance_m;
 use usal::contract::{SafeParameters, SafeRunway};
 
 /// Share of the energy left that may be planned with.
@@ -58,9 +59,10 @@ fn tailwind_mps(s: &Situation, direction_deg: f64) -> f64 {
     s.wind().vector().dot(geometry::Vec2::from_bearing_rad(direction_deg.to_radians()))
 }
 
-/// The same runway from its other end, where the wind is better there and the ground before it is known to be low.
+/// The same runway from its other end, where the wind is better there and the ground before it is known to be low. A glide takes the end
+/// that it reaches: what it flies over is looked at there.
 fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Option<(SafeRunway, bool)> {
-    if tailwind_mps(s, runway.heading_deg) <= 0.0 {
+    if !s.glides && tailwind_mps(s, runway.heading_deg) <= 0.0 {
         return None;
     }
     let reversed = SafeRunway {
@@ -68,6 +70,9 @@ fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Optio
         heading_deg: geometry::geodesy::normalise_360(runway.heading_deg + 180.0),
         ..runway.clone()
     };
+    if s.glides {
+        return Some((reversed, true));
+    }
     let [initial, last] = gates(&reversed, Approach::Whole, safe);
     let length_m = distance_m(last.0, reversed.threshold);
     let terrain = s.terrain?;
@@ -88,31 +93,14 @@ fn time_s(runway: &SafeRunway, approach: Approach, safe: &SafeParameters, s: &Si
     if s.glides {
         return glide_in(runway, approach, safe, s).map(|glide| glide.time_s);
     }
-    let [initial, last] = gates(runway, approach, safe);
-    powered_s(runway, &[initial.0, last.0, runway.threshold], s)
-}
-
-fn powered_s(runway: &SafeRunway, way: &[LatLon; 3], s: &Situation) -> Option<f64> {
-    let speed_mps = s.profile.cruise_airspeed_mps;
-    let (mut here, mut time_s) = (s.position, 0.0);
-    for place in way {
-        let (distance_m, course_deg) = distance_and_course(here, *place);
-        time_s += distance_m / s.wind().ground_speed_mps(speed_mps, course_deg)?;
-        here = *place;
-    }
-    let [initial, ..] = way;
-    let over_m = ground_to_clear_m(s, *initial).unwrap_or(runway.elevation_amsl_m);
-    if over_m > s.profile.ceiling_amsl_m {
-        return None;
-    }
-    time_s += (over_m - s.altitude_amsl_m).max(0.0) / s.profile.max_climb_mps.max(0.1);
+    let time_s = powered(runway, safe, s)?.time_s;
     let endurance_s = USABLE * s.battery * s.profile.energy_j / s.profile.cruise_power_w.max(1.0);
     (time_s < endurance_s).then_some(time_s)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{HOME, runway, situation};
+    use super::super::tests::{HOME, Wall, runway, situation};
     use super::*;
     use aircraft::Profile;
     use terrain::{Flat, Terrain};
@@ -178,16 +166,6 @@ mod tests {
         assert_eq!(chosen(&[abeam], &behind).as_deref(), Some("runway abeam by a short final"));
     }
 
-    /// A wall north of a latitude, so high.
-    struct Wall(f64, f64);
-
-    impl Terrain for Wall {
-        fn elevation_m(&self, at: LatLon) -> Option<f64> {
-            let is_there = (self.0..self.0 + 0.003).contains(&at.lat_deg);
-            Some(if is_there { self.1 } else { 300.0 })
-        }
-    }
-
     #[test]
     fn no_glide_leads_through_a_hill_and_no_climb_above_the_ceiling() {
         let wall = Wall(HOME.lat_deg + 0.02, 1500.0);
@@ -217,6 +195,17 @@ mod tests {
             chosen(&runways, &Situation { terrain: Some(&lower), ..s }).as_deref(),
             Some("runway behind")
         );
+    }
+
+    /// Straight in on the one, past the other and round.
+    #[test]
+    fn without_an_engine_it_takes_the_end_that_it_reaches() {
+        let (profile, flat) = (Profile::default(), Flat(320.0));
+        let main = runway("main", 230.0, 2.6, 50.0, 1);
+        let s = Situation { track_deg: 230.0, altitude_amsl_m: 542.0, ..situation(&profile) };
+        let gliding = Situation { glides: true, terrain: Some(&flat), ..s };
+        let way = chosen(&[main], &gliding).unwrap();
+        assert!(way.starts_with("runway main from its other end"), "{way}");
     }
 
     #[test]
