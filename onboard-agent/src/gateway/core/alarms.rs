@@ -93,6 +93,22 @@ impl Alarms {
             .any(|watch| matches!(watch, Watch::EngineOut | Watch::EngineSuspected | Watch::Disarmed))
     }
 
+    /// The alarm of an engine that has failed, or seems to, for a gateway that follows this one: on the way down nothing else shows it.
+    pub fn of_engine(&self) -> Option<String> {
+        let engine = [Watch::EngineOut, Watch::EngineSuspected];
+        engine.into_iter().find(|watch| self.raised.contains(watch)).map(|watch| watch.alarm().id)
+    }
+
+    /// Takes that up again, until it is seen to be over.
+    pub fn take_up(&mut self, id: &str, out: &mut Vec<GatewayEvent>) {
+        let engine = [Watch::EngineOut, Watch::EngineSuspected];
+        let was = engine.into_iter().find(|watch| watch.alarm().id == id && !self.raised.contains(watch));
+        if let Some(watch) = was {
+            self.raised.push(watch);
+            out.push(GatewayEvent::AlarmRaised(self.alarm(watch)));
+        }
+    }
+
     /// What is down has to be found: that alarm says where. What is ignored is counted.
     fn alarm(&self, watch: Watch) -> Alarm {
         let mut alarm = watch.alarm();

@@ -118,4 +118,7 @@ pub struct Snapshot {
     /// The flight was ended by force; a restart does not bring it back.
     #[serde(default)]
     pub terminated: bool,
+    /// The alarm of an engine that has failed, or seemed to.
+    #[serde(default)]
+    pub engine: Option<String>,
 }

@@ -82,6 +82,11 @@ impl Gateway {
             waypoints.truncate(count);
             self.buffer.adopt(waypoints);
             let wanted = self.still_wanted(intent, known.as_ref());
+            if let Some(engine) = known.as_ref().and_then(|k| k.engine.as_deref()) {
+                let mut events = vec![];
+                self.alarms.take_up(engine, &mut events);
+                out.extend(events.into_iter().map(Output::Event));
+            }
             self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
             self.control.set_intent(wanted, self.telemetry.mode);
             if wanted == Intent::Nothing {

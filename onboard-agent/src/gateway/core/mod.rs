@@ -171,6 +171,7 @@ impl Gateway {
             plan: self.fp_manager.plan.clone(),
             mode: self.telemetry.mode.map(|_| self.telemetry.mode_name.clone().into_owned()),
             terminated: self.terminated,
+            engine: self.alarms.of_engine(),
         }
     }
 
@@ -239,9 +240,12 @@ impl Gateway {
             not_stored: self.not_stored,
             flooded: self.flooded,
         };
-        let mut events = vec![];
+        let (mut events, engine) = (vec![], self.alarms.of_engine());
         self.alarms.update(now, &self.telemetry, inputs, &mut events);
         out.extend(events.into_iter().map(Output::Event));
+        if self.alarms.of_engine() != engine {
+            out.push(Output::Save);
+        }
     }
 
     /// It is in the air, or about to be, as far as is known; not once it is silent for so long that it is off, or has come down: a

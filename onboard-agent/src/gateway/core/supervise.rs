@@ -3,6 +3,7 @@
 use super::io::{Intent, Output};
 use super::safe::{self, Situation};
 use super::states::Trigger;
+use super::telemetry::OUT_OF_DATE;
 use super::{Gateway, seconds};
 use crate::gateway::order::Time;
 use std::time::Duration;
@@ -239,9 +240,9 @@ impl Gateway {
         Some((cause, safe::path(&landing, &self.safe, &situation)))
     }
 
-    /// Where the aircraft is, for the choice of a runway.
+    /// Where the aircraft is, for the choice of a runway. Wind and battery change slowly: the last that was told of them counts.
     pub(super) fn situation(&self) -> Option<Situation<'_>> {
-        let (_, fix) = self.telemetry.fix?;
+        let (_, fix) = self.telemetry.fix.filter(|(at, _)| self.now.saturating_sub(*at) < OUT_OF_DATE)?;
         Some(Situation {
             position: fix.position,
             altitude_amsl_m: fix.altitude_amsl_m,
@@ -257,7 +258,10 @@ impl Gateway {
     /// No runway is known within reach (or no position): the autopilot's own return.
     fn return_by_itself(&mut self, out: &mut Vec<Output>) {
         self.control.set_intent(Intent::Return, self.telemetry.mode);
-        let cause = "no runway known within reach: the autopilot returns by its own means";
+        let cause = match self.situation() {
+            Some(_) => "no runway known within reach: the autopilot returns by its own means",
+            None => "its position is not known: the autopilot returns by its own means",
+        };
         self.change(Trigger::ReturnDue, cause, out);
         out.push(Output::Save);
     }

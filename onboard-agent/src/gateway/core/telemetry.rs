@@ -17,7 +17,7 @@ const STANDING_MPS: f64 = 0.5;
 pub const FRESH: Duration = Duration::from_secs(2);
 
 /// Nothing is known of what a value is that has not come for so long, though it changes slowly.
-const OUT_OF_DATE: Duration = Duration::from_secs(10);
+pub const OUT_OF_DATE: Duration = Duration::from_secs(10);
 
 /// What it warned of so lately may be why it does what it does: its heartbeat, which shows that, comes once a second.
 const EXPLAINS: Duration = Duration::from_secs(5);

@@ -52,3 +52,42 @@ fn without_an_engine_a_manager_that_is_back_and_sends_nothing_is_waited_for_no_l
     core.run(2, &with_engine(Mode::Hold, 0.0));
     assert_eq!(core.gateway.state(), GatewayState::SafeReturn);
 }
+
+/// It flew on since, and runway and way home were chosen from there.
+#[test]
+fn nothing_is_chosen_from_where_it_was_long_ago() {
+    let mut core = Core::in_nav();
+    let near = crate::gateway::tests::flights::runway_at(LatLon::new(36.3190, -84.1730));
+    core.step(Input::Request(4, GatewayRequest::SetRunways { runways: vec![near] }));
+    core.run(60, &[beat(Mode::Waypoints, true)]);
+    core.step(Input::Request(5, GatewayRequest::Safe));
+    let t2_s = core.gateway.safe.t2_s as u64;
+    core.run(t2_s + 2, &[beat(Mode::Hold, true)]);
+    let status = core.gateway.status(core.now);
+    assert_eq!(status.state, GatewayState::SafeReturn, "{}", status.cause);
+    assert!(status.cause.contains("position is not known"), "{}", status.cause);
+}
+
+/// A glide is told the altitudes that it has: nothing would show again that its engine stands.
+#[test]
+fn a_gateway_that_starts_anew_in_a_glide_knows_that_the_engine_is_out() {
+    let mut core = Core::in_nav();
+    core.run(5, &with_engine(Mode::Waypoints, 0.0));
+    assert!(core.raised("engine-out") && core.out.contains(&Output::Save));
+    let mut core = Core::started_anew(Some(core.gateway.snapshot()));
+    let gliding = |down_mps| {
+        let mut reports = at_height(0.0, down_mps);
+        reports[0] = beat(Mode::Waypoints, true);
+        reports
+    };
+    core.run(2, &gliding(2.0));
+    let (adopt, order) =
+        core.orders().into_iter().rfind(|(_, order)| matches!(order, Order::Adopt(_))).unwrap();
+    let Order::Adopt(known) = order else { unreachable!() };
+    core.step(Input::Report(Report::Adopted(adopt, Some(known.len()))));
+    core.step(Input::Report(Report::Course(course(true))));
+    core.run(5, &gliding(2.0));
+    assert!(core.raised("engine-out") && core.gateway.situation().unwrap().glides);
+    core.run(2, &with_engine(Mode::Waypoints, 5000.0));
+    assert!(!core.raised("engine-out"), "it runs");
+}
