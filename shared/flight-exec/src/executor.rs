@@ -200,10 +200,8 @@ impl Executor {
     /// The world as the cursor sees it.
     pub fn world(&self) -> World<'_> {
         let decisions = self.flight.questions.decisions();
-        let world = self.setup.world(&self.life, &self.flight.overrides);
-        // whoever flies the main plan on trusts the engine, whatever an alarm says
-        let glides_in = world.glides_in.filter(|_| self.flight.emergencies.plan().is_some());
-        World { decisions, glides_in, ..world }
+        let Flight { overrides, emergencies, .. } = &self.flight;
+        World { decisions, ..self.setup.world(&self.life, overrides, emergencies) }
     }
 
     /// The path ahead, measured from the aircraft.
@@ -222,8 +220,9 @@ impl Executor {
         if !looks_ahead && !self.flight.horizon.has_forks() {
             return;
         }
-        let Self { setup, life, flight: Flight { questions, horizon, overrides, .. }, .. } = self;
-        let (path, world) = (setup.path_ahead(life, horizon), setup.world(life, overrides));
+        let Self { setup, life, flight: Flight { questions, horizon, overrides, emergencies, .. }, .. } =
+            self;
+        let (path, world) = (setup.path_ahead(life, horizon), setup.world(life, overrides, emergencies));
         questions.attend(&path, &world, out);
         if looks_ahead {
             questions.ask_ahead(&path, &world, out);

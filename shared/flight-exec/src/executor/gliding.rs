@@ -16,12 +16,16 @@ struct Shortcut {
 impl Executor {
     /// The aircraft reports where it is.
     pub(super) fn aircraft_reported(&mut self, state: AircraftState, out: &mut Vec<Output>) {
-        let ran = self.life.aircraft().is_none_or(|before| !before.engine_out);
+        let was_out = self.life.aircraft().is_some_and(|before| before.engine_out);
         self.life.put_aircraft(Some(state));
+        if state.engine_out != was_out {
+            self.flight.emergencies.engine_changes(state.engine_out);
+        }
         if !state.engine_out || self.flight.emergencies.plan().is_none() || self.is_muted() {
             return;
         }
-        if ran {
+        // perhaps a while ago: it was held, or somebody else flew
+        if self.flight.emergencies.is_laid_out() {
             self.replan(out);
         }
         if let Some(shortcut) = self.shortcut(&state) {
@@ -47,19 +51,21 @@ impl Executor {
             return None;
         }
         let enough = (1..last).find(|from| spare_m(*from).is_some_and(|(_, spare_m)| spare_m >= 0.0));
-        let chosen = enough.unwrap_or(last);
-        Some(Shortcut { to: halts.get(chosen)?.id.clone(), arrival: spare_m(chosen)?.0 })
+        let chosen = halts.get(enough.unwrap_or(last))?;
+        let arrival = match (enough, chosen.place) {
+            (Some(from), _) => spare_m(from)?.0,
+            (None, Some(begins)) => {
+                Arrival::at_landing(&self.world(), state.wind(), glide_from(state), begins, runway).1
+            }
+            (None, None) => None,
+        };
+        Some(Shortcut { to: chosen.id.clone(), arrival })
     }
 
     /// The glide from here by way of what is ahead.
     fn arrival(&self, state: &AircraftState, halts: &[Halt], runway: &Runway) -> Option<Arrival> {
-        let from = GlideStart {
-            position: state.position,
-            altitude_amsl_m: state.altitude_amsl_m,
-            course_deg: state.track_deg,
-        };
         let places = halts.iter().filter_map(|halt| halt.place);
-        Arrival::of(&self.world(), state.wind(), from, places, runway)
+        Arrival::of(&self.world(), state.wind(), glide_from(state), places, runway)
     }
 
     fn take(&mut self, Shortcut { to, arrival }: Shortcut, out: &mut Vec<Output>) {
@@ -84,4 +90,9 @@ impl Executor {
         }));
         self.jump(cursor, out);
     }
+}
+
+fn glide_from(state: &AircraftState) -> GlideStart {
+    let AircraftState { position, altitude_amsl_m, track_deg: course_deg, .. } = *state;
+    GlideStart { position, altitude_amsl_m, course_deg }
 }

@@ -1,7 +1,7 @@
 //! What a flight is flown with: settings, ground, aircraft and plan.
 
 use crate::api::AircraftState;
-use crate::flight::{Horizon, Life, Overrides, PathAhead};
+use crate::flight::{Emergencies, Horizon, Life, Overrides, PathAhead};
 use crate::layout::path::{Level, PathEnd, PathState};
 use crate::layout::world::{ReadSet, World};
 use crate::value::Config;
@@ -24,8 +24,14 @@ pub(super) struct Setup {
 }
 
 impl Setup {
-    /// The world as the cursor sees it, but for the decisions.
-    pub fn world<'a>(&'a self, life: &'a Life, overrides: &'a Overrides) -> World<'a> {
+    /// The world as the cursor sees it, but for the decisions. Whoever flies the main plan on trusts the engine, whatever an alarm says.
+    pub fn world<'a>(
+        &'a self,
+        life: &'a Life,
+        overrides: &'a Overrides,
+        emergencies: &Emergencies,
+    ) -> World<'a> {
+        let glides = |aircraft: &&AircraftState| aircraft.engine_out && emergencies.plan().is_some();
         World {
             program: &self.program,
             config: &self.config,
@@ -37,7 +43,7 @@ impl Setup {
             released: overrides.released(),
             waited: overrides.waited(),
             counts: overrides.counts(),
-            glides_in: life.aircraft().filter(|a| a.engine_out).map(AircraftState::wind),
+            glides_in: life.aircraft().filter(glides).map(AircraftState::wind),
             arriving: false,
             looking_ahead: false,
             seen: self.seen.as_ref(),

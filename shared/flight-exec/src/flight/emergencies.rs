@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Emergencies {
     running: Option<Emergency>,
+    /// The engine has stopped since the way ahead was laid out.
+    #[serde(default)]
+    engine_stopped: bool,
 }
 
 /// Why an emergency plan is flown, and from where.
@@ -60,9 +63,19 @@ impl Emergencies {
         self.running = None;
     }
 
+    /// The engine stops, or runs after all.
+    pub fn engine_changes(&mut self, stopped: bool) {
+        self.engine_stopped = stopped;
+    }
+
+    /// The way ahead is laid out anew; true: since it was before, the engine has stopped.
+    pub fn is_laid_out(&mut self) -> bool {
+        std::mem::take(&mut self.engine_stopped)
+    }
+
     pub fn is_equivalent(&self, other: &Self) -> bool {
-        let Self { running } = self;
-        *running == other.running
+        let Self { running, engine_stopped } = self;
+        *running == other.running && *engine_stopped == other.engine_stopped
     }
 }
 

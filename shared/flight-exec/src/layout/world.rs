@@ -69,7 +69,7 @@ pub struct World<'a> {
     pub waited: Option<u64>,
     /// Counts set by command, or for a review.
     pub counts: &'a [LoopCount],
-    /// The engine is out: the wind in which it glides.
+    /// An emergency plan is flown with the engine out: the wind in which it glides.
     pub glides_in: Option<Wind>,
     /// The aircraft is at the cursor's place: measured values count instead of predicted ones.
     pub arriving: bool,

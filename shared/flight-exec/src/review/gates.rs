@@ -3,7 +3,7 @@
 use super::View;
 use super::flown::Flown;
 use crate::api::Action;
-use crate::layout::expand::runway::ALIGNED_DEG;
+use crate::layout::homeward::ALIGNED_DEG;
 use crate::layout::path::{distance_and_course, distance_m};
 use flight_plan::{Id, Problem};
 use geometry::geodesy::normalise_180;

@@ -1,6 +1,6 @@
 //! With the engine out: as much of an emergency plan as the height allows.
 
-use crate::grid::{GROUND_M, document_with};
+use crate::grid::{GROUND_M, HOME, document_with};
 use crate::rig::Rig;
 use flight_exec::{Action, Command, Event};
 use flight_plan::Cause;
@@ -87,4 +87,57 @@ fn the_main_plan_is_not_glided() {
     };
     assert_eq!(land(true), land(false));
     assert!(land(true) > 1, "it lines up first");
+}
+
+/// It was laid out with power, and nobody saw that the engine stops while it circles.
+#[test]
+fn an_engine_that_stops_while_it_is_held_is_glided_from_the_resume_on() {
+    for stops in [true, false] {
+        let mut rig = emergency_at(700.0, false);
+        rig.command(Command::Hold).unwrap();
+        rig.engine_out = stops;
+        rig.report();
+        rig.command(Command::Resume).unwrap();
+        rig.report();
+        let highest = rig.buffer.iter().filter(|w| w.leg.as_str() == "b-df").map(|w| w.altitude_amsl_m);
+        let highest = highest.fold(0.0, f64::max);
+        assert_eq!(highest > GROUND_M + 200.0, stops, "{highest} m: the plan's 150 m would be too low");
+    }
+}
+
+/// A pass along the runway: 600 m before its threshold, in line, and so high above the ground, metres.
+fn before_the_threshold(height_m: f64) -> Rig {
+    let mut rig = emergency_at(1500.0, true);
+    rig.position = HOME.destination(270.0, 600.0);
+    rig.altitude_amsl_m = Some(GROUND_M + height_m);
+    rig.report();
+    rig.command(Command::GoTo { leg: "b-land".into() }).unwrap();
+    rig
+}
+
+#[test]
+fn what_is_too_high_close_in_and_in_line_circles_before_it_lands() {
+    let circling = |height_m| before_the_threshold(height_m).buffer.iter().filter(|w| w.on_arc).count();
+    assert_eq!(circling(100.0), 0, "straight in");
+    assert!(circling(400.0) > 2);
+    let mut rig = before_the_threshold(400.0);
+    rig.fly_to_the_end();
+    let [.., last, land] = &rig.flown[..] else { panic!() };
+    assert!(last.altitude_amsl_m < GROUND_M + 200.0, "{last:?}");
+    assert!(matches!(land.action, Action::Land { .. }));
+}
+
+/// He may take it to a field.
+#[test]
+fn nobody_is_told_to_land_elsewhere_who_comes_to_the_runway_straight() {
+    let mut rig = emergency_at(1500.0, true);
+    rig.fly_to("b-hold");
+    rig.events.clear();
+    rig.position = HOME.destination(0.0, 1000.0);
+    rig.altitude_amsl_m = Some(GROUND_M + 170.0);
+    rig.report();
+    let told = left_out(&rig).expect("the hold is left");
+    let Event::ProblemAhead { reason, .. } = told else { panic!() };
+    assert!(reason.contains("above the threshold"), "{reason}");
+    assert_eq!(rig.buffer.len(), 1, "straight in: {:?}", rig.buffer);
 }

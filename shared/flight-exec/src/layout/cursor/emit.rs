@@ -7,7 +7,6 @@ use crate::layout::homeward::{Arrival, halts};
 use crate::layout::path::{PathEnd, PathState, distance_and_course};
 use crate::layout::world::World;
 use crate::value::Choice;
-use aircraft::Wind;
 use aircraft::glide::GlideStart;
 use aircraft::power::glide_sink_mps;
 use flight_plan::{Act, Trigger};
@@ -65,23 +64,18 @@ impl Cursor {
     fn vertical_room_m(&self, length_m: f64, airspeed_mps: f64, world: &World) -> (f64, f64) {
         let (profile, seconds) = (world.profile, length_m / world.ground_speed_mps(airspeed_mps));
         let descent_m = profile.max_descent_mps * seconds;
-        let climb_m = match self.glides_in(world) {
+        let climb_m = match world.glides_in {
             Some(_) => (-glide_sink_mps(profile, airspeed_mps, 1.0) * seconds).max(-descent_m),
             None => profile.max_climb_mps * seconds,
         };
         (descent_m, climb_m)
     }
 
-    /// An emergency plan is flown with the engine out: the wind.
-    fn glides_in(&self, world: &World) -> Option<Wind> {
-        world.glides_in.filter(|_| self.section.is_some())
-    }
-
     /// With the engine out: an altitude below which the glide home from a point would be short of its reserve, metres AMSL. No height is
     /// given away there.
     fn kept_for_the_glide(&self, point: Point, course_deg: f64, world: &World) -> f64 {
         let needed_m = || {
-            let (wind, section) = (self.glides_in(world)?, self.section?);
+            let (wind, section) = (world.glides_in?, self.section?);
             if matches!(point.action, Action::Land { .. }) {
                 return None;
             }

@@ -4,7 +4,7 @@ use super::arc::vertices;
 use super::track::SAME_PLACE_M;
 use super::{ExpandError, Point};
 use crate::api::Action;
-use crate::layout::homeward::Arrival;
+use crate::layout::homeward::{ALIGNED_DEG, Arrival, RESERVE_M, is_on_final};
 use crate::layout::path::{Level, PathState, distance_m};
 use crate::layout::world::World;
 use aircraft::Wind;
@@ -13,9 +13,6 @@ use aircraft::power::glide_sink_mps;
 use flight_plan::{AltitudeReference, Runway, Stage};
 use geometry::geodesy::{normalise_180, normalise_360};
 use geometry::{LatLon, PathElement};
-
-/// Off the runway's heading by more than this a path is not on the final approach, which then gets a point to line up at first, degrees.
-pub const ALIGNED_DEG: f64 = 30.0;
 
 /// The point at which a take-off is over: on the runway's line, as far as the climb takes at the profile's climb rate.
 ///
@@ -53,8 +50,7 @@ pub fn land(stage: &Stage, path: &PathState, world: &World) -> Result<Vec<Point>
             || normalise_180(from.bearing_deg(gate.position) - runway.heading_deg).abs() <= ALIGNED_DEG
     };
     if let Some(wind) = world.glides_in {
-        let straight = !is_worth_its_height(gate.position, path, runway, (wind, world));
-        let approach = if straight { Vec::new() } else { losing_height(gate, path, runway, (wind, world)) };
+        let approach = gliding_in(gate, path, runway, (wind, world));
         return Ok(approach.into_iter().chain([touch_down(runway)]).collect());
     }
     let mut from = path.last.position;
@@ -85,21 +81,25 @@ fn touch_down(runway: &Runway) -> Point {
     }
 }
 
-/// With the engine out a final approach begins at its gate, if the height suffices for the way by it; nothing is flown to line up for it,
-/// and nobody goes back to it from nearer on the runway's line.
-fn is_worth_its_height(
-    gate: LatLon,
-    path: &PathState,
-    runway: &Runway,
-    (wind, world): (Wind, &World),
-) -> bool {
-    let (here, altitude_amsl_m) = (path.last.position, path.predicted_amsl_m);
-    let is_nearer = distance_m(here, runway.threshold) <= distance_m(gate, runway.threshold);
-    let is_in_line =
-        normalise_180(here.bearing_deg(runway.threshold) - runway.heading_deg).abs() <= ALIGNED_DEG;
-    let from = GlideStart { position: here, altitude_amsl_m, course_deg: path.course_deg };
-    let arrival = Arrival::of(world, wind, from, [gate].into_iter(), runway);
-    !(is_nearer && is_in_line) && arrival.is_some_and(|arrival| arrival.height_m >= 0.0)
+/// With the engine out a final approach begins at its gate, if the height suffices for the way by it; nothing is flown to line up for it.
+/// Nearer on the runway's line nobody goes back to it: what the steepest descent can't lose is lost in circles there.
+fn gliding_in(gate: Point, path: &PathState, runway: &Runway, (wind, world): (Wind, &World)) -> Vec<Point> {
+    let (position, altitude_amsl_m) = (path.last.position, path.predicted_amsl_m);
+    let from = GlideStart { position, altitude_amsl_m, course_deg: path.course_deg };
+    if Arrival::at_landing(world, wind, from, gate.position, runway).0 {
+        return losing_height(gate, path, runway, (wind, world));
+    }
+    let mps = path.last.airspeed_mps.max(1.0);
+    let left_s = distance_m(position, runway.threshold) / mps;
+    let is_too_high = altitude_amsl_m - world.profile.max_descent_mps * left_s > runway.elevation_amsl_m;
+    if !is_too_high || !is_on_final(position, gate.position, runway) {
+        return Vec::new();
+    }
+    let needed_m = RESERVE_M + glide_sink_mps(world.profile, mps, 1.0) * left_s;
+    let level = Level { metres: runway.elevation_amsl_m + needed_m, reference: AltitudeReference::Amsl };
+    let here = Point { level: Some(level), ..Point::fly(position) };
+    // it is there
+    losing_height(here, path, runway, (wind, world)).split_off(1)
 }
 
 /// With the engine out: to where the final approach begins, and around there as often as it takes to lose what is too much of the height.
