@@ -237,8 +237,7 @@ impl Relay {
         match control {
             Control::Inject(request) => {
                 let now_ns = self.now_ns();
-                // there is no ice in their worlds; and as they come, nothing tells how fast the engine turns
-                if request.fault == Fault::Ice || !self.faults.add(request, now_ns) {
+                if !is_had(request.fault) || !self.faults.add(request, now_ns) {
                     self.complain(format!("{request} can't be had"));
                 }
             }
@@ -289,6 +288,15 @@ impl Relay {
         }
         let is_as_asked = self.voice.is_done();
         self.state.send_modify(|state| state.is_as_asked = is_as_asked);
+    }
+}
+
+/// It can be made of the radio, or be told to their worlds. As they come, nothing tells how fast the engine turns.
+fn is_had(fault: Fault) -> bool {
+    match fault {
+        Fault::PacketLoss(_) | Fault::Duplicate(_) | Fault::Reorder(_) | Fault::Silence => true,
+        Fault::GpsLoss | Fault::EngineOut | Fault::LowBattery | Fault::NoRpm => true,
+        Fault::NoStream(_) | Fault::Ice | Fault::Crash | Fault::Reboot => false,
     }
 }
 

@@ -7,7 +7,8 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 /// Who speaks: what ground stations call themselves.
-const OWN: Sender = Sender { system: 255, component: MavComponent::MAV_COMP_ID_MISSIONPLANNER as u8 };
+const OWN_SYSTEM: u8 = 255;
+const OWN: Sender = Sender { system: OWN_SYSTEM, component: MavComponent::MAV_COMP_ID_MISSIONPLANNER as u8 };
 /// Said again after this.
 const AGAIN: Duration = Duration::from_millis(500);
 /// Given up after this.
@@ -50,14 +51,16 @@ impl Voice {
                 }
             }
             MavMessage::PARAM_VALUE(said) => {
-                let Some(Order::Set(name, value, _)) = self.orders.front() else { return };
-                if said.param_id.to_str() == Ok(name) && is_same(said.param_value, *value) {
+                let Some(Order::Set(name, value, kind)) = self.orders.front() else { return };
+                if said.param_id.to_str() == Ok(name) && is_same(said.param_value, *value, *kind) {
                     self.answered();
                 }
             }
             MavMessage::COMMAND_ACK(said) => {
                 let Some(Order::Do(command, _)) = self.orders.front() else { return };
-                if said.command == *command && said.result != MavResult::MAV_RESULT_IN_PROGRESS {
+                // over a router what is answered to the agent is heard, too
+                let is_ours = matches!(said.target_system, 0 | OWN_SYSTEM);
+                if is_ours && said.command == *command && said.result != MavResult::MAV_RESULT_IN_PROGRESS {
                     if said.result != MavResult::MAV_RESULT_ACCEPTED {
                         self.trouble = Some(format!("the autopilot answers {command:?}: {:?}", said.result));
                     }
@@ -102,9 +105,12 @@ impl Voice {
     }
 }
 
-/// Real numbers are sent as they are kept, whole ones come back as their bits.
-fn is_same(said: f32, meant: f32) -> bool {
-    said.to_bits() == meant.to_bits() || (said - meant).abs() < 1e-3
+/// Real numbers may come back rounded; of a whole one these are its bits.
+fn is_same(said: f32, meant: f32, kind: MavParamType) -> bool {
+    match kind {
+        MavParamType::MAV_PARAM_TYPE_INT32 => said.to_bits() == meant.to_bits(),
+        _ => (said - meant).abs() < 1e-3,
+    }
 }
 
 fn message(to: Sender, order: Order) -> MavMessage {
@@ -176,6 +182,37 @@ mod tests {
         assert!(voice.is_done());
         assert_eq!(said(&mut voice, 5000), None);
         assert_eq!(voice.trouble(), None);
+    }
+
+    /// As real numbers they are all nearly zero.
+    #[test]
+    fn a_whole_number_of_px4_is_confirmed_by_no_other() {
+        let mut voice = Voice::default();
+        voice.wish(Wish::Gps(false));
+        voice.hear(AUTOPILOT, &heartbeat(MavAutopilot::MAV_AUTOPILOT_PX4));
+        said(&mut voice, 0).unwrap();
+        voice.hear(AUTOPILOT, &value("SIM_GPS_USED", f32::from_bits(10)));
+        assert!(!voice.is_done(), "it is refused: what it was before");
+        voice.hear(AUTOPILOT, &value("SIM_GPS_USED", f32::from_bits(0)));
+        assert!(voice.is_done());
+    }
+
+    #[test]
+    fn what_is_answered_to_the_agent_is_no_answer() {
+        for (target_system, is_ours) in [(1, false), (255, true), (0, true)] {
+            let mut voice = met(&[Wish::Mode(sim::Mode::Auto)]);
+            said(&mut voice, 0).unwrap();
+            voice.hear(
+                AUTOPILOT,
+                &MavMessage::COMMAND_ACK(COMMAND_ACK_DATA {
+                    command: MavCmd::MAV_CMD_DO_SET_MODE,
+                    result: MavResult::MAV_RESULT_ACCEPTED,
+                    target_system,
+                    ..Default::default()
+                }),
+            );
+            assert_eq!(voice.is_done(), is_ours, "{target_system}");
+        }
     }
 
     #[test]
