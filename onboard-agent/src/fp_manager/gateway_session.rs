@@ -263,8 +263,8 @@ impl GatewaySession {
         }
     }
 
-    /// The executor flies on: if the gateway holds or follows a direct command, it should too. If the pilot flies, a hold that waits for him
-    /// to give the aircraft back is not wanted any more, and that is all.
+    /// The executor flies on: if the gateway holds or follows a direct command, it should too. If the pilot flies, a hold that waits
+    /// for him to give the aircraft back is not wanted any more, and that is all.
     pub fn flies_on(&mut self) {
         if self.state == Some(GatewayState::Manual) {
             return self.unwant(GatewayRequest::Hold);

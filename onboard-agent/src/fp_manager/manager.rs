@@ -11,8 +11,8 @@ use super::plan_history::PlanHistory;
 use super::timeline::Timeline;
 use ::aircraft::Wind;
 use flight_exec::{
-    Answer, Command, Conditions, Event, Executor, Input, Output, Phase, ProposalReport, Refusal, RequestId,
-    ResolvedAct, Token,
+    AircraftState, Answer, Command, Conditions, Event, Executor, Input, Output, Phase, ProposalReport,
+    Refusal, RequestId, ResolvedAct, Token,
 };
 use flight_plan::{Id, Problem, Program};
 use service::Time;

@@ -84,6 +84,7 @@ mod tests {
     use super::*;
     use aircraft::autopilot::{Action as Does, Guidance, Target};
     use aircraft::{Aircraft, Profile, Wind};
+    use geometry::LatLon;
     use usal::contract::{Action, Air, Waypoint};
 
     const LENGTH_M: f64 = 600.0;

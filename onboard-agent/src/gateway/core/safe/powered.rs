@@ -21,7 +21,7 @@ const LEVEL_M: f64 = 10.0;
 /// Share of the steepest climb and descent that is told.
 const STEEP: f64 = 0.7;
 /// More waypoints are not fed.
-const MOST_GATES: usize = 200;
+const MOST_GATES: u32 = 200;
 
 /// A way with the engine.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +61,7 @@ pub(super) fn powered(runway: &SafeRunway, safe: &SafeParameters, s: &Situation)
         let mut gates = up(circles_up, circles_down, &ends)?;
         gates.extend(down(circles_down, &ends)?);
         gates.push(Gate { position: last.0, altitude_amsl_m: last.1, on_arc: false });
-        if gates.len() > MOST_GATES || !is_over_ground(&gates, s, clearance_m) {
+        if gates.len() > MOST_GATES as usize || !is_over_ground(&gates, s, clearance_m) {
             return None;
         }
         let time_s = time_s(&gates, runway.threshold, s)?;
@@ -121,7 +121,7 @@ fn descent_m(ends: &Ends) -> f64 {
 /// So many circles for a height at a rate, m/s; `None`: too many.
 fn count(height_m: f64, mps: f64, s: &Situation) -> Option<u32> {
     let count = (height_m / (mps * Circle::of(s.profile, s.wind()).time_s)).ceil().max(1.0);
-    (count * f64::from(CORNERS) < MOST_GATES as f64).then_some(count as u32)
+    (count * f64::from(CORNERS) < f64::from(MOST_GATES)).then_some(count as u32)
 }
 
 fn time_s(gates: &[Gate], threshold: LatLon, s: &Situation) -> Option<f64> {

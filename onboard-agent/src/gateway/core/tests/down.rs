@@ -5,7 +5,7 @@ use super::*;
 fn is_told(airspeed: Option<f64>) -> bool {
     let mut core = Core::in_nav();
     let on_ground = [beat(Mode::Waypoints, true), Report::OnGround(false), fix(0.0)];
-    core.run(12, &[&on_ground[..], &airspeed.map(air).into_iter().collect::<Vec<_>>()].concat());
+    core.run(12, &[&on_ground[..], &airspeed.map(air).into_iter().collect::<Vec<_>>()[..]].concat());
     core.raised("stands-still")
 }
 

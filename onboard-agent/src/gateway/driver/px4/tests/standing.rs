@@ -17,6 +17,7 @@ fn an_order_to_arm_that_is_taken_back_is_not_sent_again() {
     let arm = rig.order(Order::Arm);
     rig.run(3);
     let stand_down = rig.order(Order::StandDown);
+    rig.step();
     assert!(rig.outcome(arm).is_some_and(|outcome| outcome.is_err()), "it is answered");
     rig.pass = Box::new(|_, _| true);
     rig.until("it stands", |rig| rig.outcome(stand_down).is_some());
