@@ -8,6 +8,8 @@ mod arduplane;
 pub mod examination;
 mod mavlink;
 mod px4;
+#[cfg(test)]
+mod transfers;
 
 use super::order::{Order, OrderId, Report, Time};
 use autopilot_link::Outbox;

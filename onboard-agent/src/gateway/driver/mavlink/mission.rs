@@ -24,6 +24,8 @@ pub struct Rules {
     pub id: Option<fn(&[Entry]) -> u32>,
     /// Entries may be asked for only after the list was, and in order; otherwise it breaks off.
     pub reads_in_order: bool,
+    /// An entry that it does not wait for is passed over without a word: it does no harm to send one twice.
+    pub passes_over: bool,
 }
 
 /// How it ended.
@@ -283,7 +285,7 @@ mod tests {
     use super::*;
 
     const PEER: Peer = Peer { system: 1, component: 1 };
-    const RULES: Rules = Rules { same: is_same, id: Some(length), reads_in_order: false };
+    const RULES: Rules = Rules { same: is_same, id: Some(length), reads_in_order: false, passes_over: false };
 
     fn is_same(one: &Entry, other: &Entry) -> bool {
         one == other

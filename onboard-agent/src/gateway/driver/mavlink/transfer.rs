@@ -5,6 +5,8 @@
 //! over from an earlier transfer, so it proves nothing: every write is read back, and only what was
 //! read back is claimed, or what the autopilot names as the list in use.
 
+mod sending;
+
 use super::mission::{Entry, Outcome, Rules, request_list, thanks};
 use super::rto::Rto;
 use super::{Peer, mission_type};
@@ -19,6 +21,9 @@ const PATIENCE: u32 = 30;
 const BROKEN_OFF: u32 = 8;
 /// Times that a list that reads back differently is written again.
 const REWRITES: u32 = 5;
+/// Times that a list of which some was taken is sent anew from its first entry before that is given up: each begins with all the
+/// patience there is, for on a bad link every entry is lost as often as before.
+const RESTARTS: u32 = 10;
 /// More entries than this is no list.
 const MAX_ITEMS: u16 = 2000;
 
@@ -46,6 +51,9 @@ pub struct Transfer {
     /// Most that was ever acknowledged: only more than that is progress.
     best: usize,
     rewrites: u32,
+    restarts: u32,
+    /// The link has lost something.
+    careful: bool,
     went_back: Option<Time>,
     /// When something was sent whose answer can be timed.
     probe: Option<Time>,
@@ -85,10 +93,12 @@ impl Transfer {
             id: rules.id.map(|id| id(&items)).filter(|id| *id != 0),
             items,
             phase: Phase::Counting,
+            careful: rto.copies() > 1,
             rto,
             silent: 0,
             best: 0,
             rewrites: 0,
+            restarts: 0,
             went_back: None,
             probe: Some(now),
         }
@@ -118,53 +128,6 @@ impl Transfer {
         self.rto.deadline()
     }
 
-    fn send_from_start(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
-        self.phase = Phase::Sending { acked: 0, sent: 0, asked: 0 };
-        out.push(self.opening(peer));
-        self.send_window(out);
-    }
-
-    fn opening(&self, peer: Peer) -> MavMessage {
-        MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
-            count: self.items.len() as u16,
-            target_system: peer.system,
-            target_component: peer.component,
-            mission_type: mission_type(),
-            opaque_id: 0,
-        })
-    }
-
-    fn send_window(&mut self, out: &mut Vec<MavMessage>) {
-        let Phase::Sending { acked, sent, .. } = &mut self.phase else { return };
-        let end = (*acked + WINDOW).min(self.items.len());
-        for item in self.items.iter().take(end).skip(*sent) {
-            out.push(MavMessage::MISSION_ITEM_INT(item.clone()));
-        }
-        *sent = end.max(*sent);
-    }
-
-    /// The autopilot asks for an entry.
-    pub fn requested(&mut self, now: Time, seq: u16, out: &mut Vec<MavMessage>) {
-        let index = usize::from(seq);
-        let Phase::Sending { acked, asked, .. } = &mut self.phase else { return };
-        if index >= self.items.len() || index < *acked {
-            return;
-        }
-        if index > *acked {
-            (*acked, *asked) = (index, 1);
-            self.progressed(now);
-            self.send_window(out);
-            return;
-        }
-        *asked += 1;
-        let again = *asked > 1;
-        if !again {
-            self.progressed(now);
-        } else {
-            self.go_back(now, out);
-        }
-    }
-
     fn progressed(&mut self, now: Time) {
         if let Some(sent) = self.probe.take() {
             self.rto.sample(now.saturating_sub(sent));
@@ -178,22 +141,6 @@ impl Transfer {
             self.best = reached.min(self.items.len());
         }
         self.rto.progress(now);
-    }
-
-    /// Sends again from the first entry that was not acknowledged; at most once a round trip, for
-    /// each of a window's remaining items is answered with the same complaint.
-    fn go_back(&mut self, now: Time, out: &mut Vec<MavMessage>) {
-        if self.went_back.is_some_and(|at| now < at + self.rto.timeout() / 3) {
-            return;
-        }
-        self.went_back = Some(now);
-        self.silent += 1;
-        self.probe = None;
-        if let Phase::Sending { acked, sent, .. } = &mut self.phase {
-            *sent = *acked;
-        }
-        self.send_window(out);
-        self.rto.start(now);
     }
 
     /// The autopilot says how the transfer went, or that something is wrong.
@@ -236,6 +183,7 @@ impl Transfer {
                 Some(Outcome::Failed(format!("the autopilot refused the list: {refused:?}")))
             }
             (Phase::Reading { .. }, MAV_MISSION_ERROR) if self.rules.reads_in_order => {
+                self.careful = true;
                 self.read_back(now, peer, out);
                 None
             }
@@ -267,7 +215,8 @@ impl Transfer {
     fn ask(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
         let Phase::Reading { got, next } = &mut self.phase else { return };
         let have = got.iter().flatten().count();
-        let window = if self.rules.reads_in_order { 1 } else { WINDOW };
+        // asked for in order, it gives them all in a row, but breaks off if one is missing
+        let window = if self.rules.reads_in_order && self.careful { 1 } else { WINDOW };
         let end = (have + window).min(got.len());
         for (i, _) in got.iter().enumerate().take(end).skip(*next).filter(|(_, g)| g.is_none()) {
             out.push(MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA {
@@ -361,12 +310,13 @@ impl Transfer {
         }
         self.silent += 1;
         self.probe = None;
-        if self.silent > PATIENCE {
+        self.careful = true;
+        if self.silent > PATIENCE || self.restarts > RESTARTS {
             return Some(Outcome::Failed("the autopilot does not answer".into()));
         }
         // it may still be waiting for entries: then it does not let us read
         if self.is_kept_from_reading() {
-            self.send_from_start(peer, out);
+            self.send_anew(peer, out);
             return None;
         }
         match &mut self.phase {
@@ -379,7 +329,7 @@ impl Transfer {
                 self.read_back(now, peer, out);
                 self.probe = None;
             }
-            Phase::Sending { .. } if self.silent.is_multiple_of(4) => self.send_from_start(peer, out),
+            Phase::Sending { .. } if self.silent.is_multiple_of(4) => self.send_anew(peer, out),
             Phase::Sending { acked, sent, .. } => {
                 *sent = *acked;
                 self.send_window(out);

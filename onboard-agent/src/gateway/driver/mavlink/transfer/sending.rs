@@ -1,0 +1,81 @@
+//! Entries on their way to the autopilot.
+
+use super::{Phase, Transfer, WINDOW};
+use crate::gateway::driver::mavlink::{Peer, mission_type};
+use crate::gateway::order::Time;
+use mavlink::dialects::ardupilotmega::*;
+
+impl Transfer {
+    pub(super) fn send_from_start(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
+        self.phase = Phase::Sending { acked: 0, sent: 0, asked: 0 };
+        out.push(self.opening(peer));
+        self.send_window(out);
+    }
+
+    /// What it took before, it has to take again: that is progress, too.
+    pub(super) fn send_anew(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
+        self.restarts += 1;
+        self.best = 0;
+        self.send_from_start(peer, out);
+    }
+
+    fn opening(&self, peer: Peer) -> MavMessage {
+        MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
+            count: self.items.len() as u16,
+            target_system: peer.system,
+            target_component: peer.component,
+            mission_type: mission_type(),
+            opaque_id: 0,
+        })
+    }
+
+    /// On a link that loses frames each entry goes twice where that does no harm: of those behind a lost one none is taken.
+    pub(super) fn send_window(&mut self, out: &mut Vec<MavMessage>) {
+        let copies = if self.rules.passes_over && self.careful { 2 } else { 1 };
+        let Phase::Sending { acked, sent, .. } = &mut self.phase else { return };
+        let end = (*acked + WINDOW).min(self.items.len());
+        for item in self.items.iter().take(end).skip(*sent) {
+            out.extend(std::iter::repeat_n(MavMessage::MISSION_ITEM_INT(item.clone()), copies));
+        }
+        *sent = end.max(*sent);
+    }
+
+    /// The autopilot asks for an entry.
+    pub fn requested(&mut self, now: Time, seq: u16, out: &mut Vec<MavMessage>) {
+        let index = usize::from(seq);
+        let Phase::Sending { acked, asked, .. } = &mut self.phase else { return };
+        if index >= self.items.len() || index < *acked {
+            return;
+        }
+        if index > *acked {
+            (*acked, *asked) = (index, 1);
+            self.progressed(now);
+            self.send_window(out);
+            return;
+        }
+        *asked += 1;
+        let again = *asked > 1;
+        if !again {
+            self.progressed(now);
+        } else {
+            self.go_back(now, out);
+        }
+    }
+
+    /// Sends again from the first entry that was not acknowledged; at most once a round trip, for
+    /// each of a window's remaining items is answered with the same complaint.
+    pub(super) fn go_back(&mut self, now: Time, out: &mut Vec<MavMessage>) {
+        if self.went_back.is_some_and(|at| now < at + self.rto.timeout() / 3) {
+            return;
+        }
+        self.went_back = Some(now);
+        self.careful = true;
+        self.silent += 1;
+        self.probe = None;
+        if let Phase::Sending { acked, sent, .. } = &mut self.phase {
+            *sent = *acked;
+        }
+        self.send_window(out);
+        self.rto.start(now);
+    }
+}
