@@ -57,7 +57,7 @@ pub struct Mission {
     replaced: Option<u32>,
     /// What the list that was verified last will be called, if it is named at all.
     expected: Option<u32>,
-    /// What is aboard was verified or read since something was last done to it.
+    /// The whole list was verified or read since it was last replaced; a write of some of its entries leaves its length.
     known: bool,
     /// It tells how long its list is.
     tells_length: bool,
@@ -124,7 +124,8 @@ impl Mission {
             self.named = self.expected;
         }
         let is_other = self.is_of_other_length(said.total) || self.is_other(said.mission_id);
-        self.foreign = if is_other && self.known && !self.is_busy() { self.foreign + 1 } else { 0 };
+        let is_replaced_by_us = matches!(self.job, Some(Job::Transfer(_)));
+        self.foreign = if is_other && self.known && !is_replaced_by_us { self.foreign + 1 } else { 0 };
         let found = self.foreign >= FOREIGN_AFTER;
         self.known &= !found;
         found
@@ -204,7 +205,9 @@ impl Mission {
     fn finish(&mut self, outcome: Option<Outcome>) -> Option<Outcome> {
         let outcome = outcome?;
         self.aboard.ended(&outcome);
-        self.known = !matches!(outcome, Outcome::Failed(_));
+        if matches!(self.job, Some(Job::Transfer(_))) {
+            self.known = !matches!(outcome, Outcome::Failed(_));
+        }
         (self.replaced, self.named, self.expected, self.foreign) = (None, None, None, 0);
         self.link = match self.job.take()? {
             Job::Transfer(transfer) => {
@@ -341,6 +344,24 @@ mod tests {
         assert!(!once_late.is_foreign(&said(5, 5)));
         assert_eq!(found(&mut once_late, 9, 0), Some(5), "counted anew");
         assert_eq!(found(&mut once_late, 9, 0), None, "it is told once");
+    }
+
+    /// Its entries can't be written where there are none any more, and that is tried again and again.
+    #[test]
+    fn a_list_that_is_replaced_while_entries_are_written_is_found_too() {
+        let mut mission = Mission::default();
+        mission.upload(Time::ZERO, vec![Entry::DEFAULT; 5], &RULES, PEER, &mut vec![]);
+        mission.finish(Some(Outcome::Verified));
+        assert_eq!(found(&mut mission, 5, 0), None);
+        mission.overwrite(Time::ZERO, vec![Entry::DEFAULT; 2], is_same, PEER, &mut vec![]);
+        assert_eq!(found(&mut mission, 9, 0), Some(5), "while it is written");
+        mission.break_off("no answer");
+        assert_eq!(found(&mut mission, 9, 0), None, "it is told once");
+        mission.upload(Time::ZERO, vec![Entry::DEFAULT; 5], &RULES, PEER, &mut vec![]);
+        mission.finish(Some(Outcome::Verified));
+        mission.overwrite(Time::ZERO, vec![Entry::DEFAULT; 2], is_same, PEER, &mut vec![]);
+        mission.break_off("no answer");
+        assert_eq!(found(&mut mission, 9, 0), Some(5), "after it was given up");
     }
 
     #[test]

@@ -265,6 +265,8 @@ impl Session {
                 self.judged(current, events);
                 events.extend(self.mission.in_use(current.mission_id).map(SessionEvent::Mission));
                 if self.mission.is_foreign(current) {
+                    let broken = self.mission.break_off("another station has replaced the list");
+                    events.extend(broken.map(SessionEvent::Mission));
                     events.push(SessionEvent::Replaced);
                 } else if !self.mission.is_replaced(current.mission_id) {
                     self.current(now, current.seq, events);
