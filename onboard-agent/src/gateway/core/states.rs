@@ -94,6 +94,7 @@ pub fn next(from: GatewayState, trigger: Trigger) -> Option<GatewayState> {
         (Off | Stop, Approaching) => Approach,
         (Off | Stop, Landing) => Land,
         (Off | Stop, HoldConfirmed) => Hold,
+        (Off | Stop, DirectConfirmed) => Directed,
         (Off | Stop, PilotTook) => Manual,
         (Off | Stop, _) => return None,
 
@@ -141,8 +142,8 @@ mod tests {
     /// One line per state: the triggers that mean something and where they lead, in the order of
     /// [`TRIGGERS`]; `.` is nothing.
     const TABLE: &str = "
-    Off          Stop . TakeOff Nav Approach Land . Hold . Manual . . . . Terminate
-    Stop         . Off TakeOff Nav Approach Land . Hold . Manual . . . . Terminate
+    Off          Stop . TakeOff Nav Approach Land . Hold Directed Manual . . . . Terminate
+    Stop         . Off TakeOff Nav Approach Land . Hold Directed Manual . . . . Terminate
     TakeOff      . . . Nav Approach Land Stop Hold Directed Manual SafeHold . . . Terminate
     Nav          . . . . Approach Land Stop Hold Directed Manual SafeHold . . . Terminate
     Hold         . . TakeOff Nav Approach Land Stop . Directed Manual SafeHold . . . Terminate
