@@ -348,9 +348,8 @@ impl Window {
     /// Counts positions anew, so that what is left lies flat. What is on board has other numbers, and says nothing:
     /// until the new list is in use, nothing that is reported counts.
     fn renumber(&mut self) {
-        let length = self.end - self.chain.first();
+        self.end = 1 + self.end - self.chain.first();
         self.chain.renumber(1);
-        self.end = 1 + length;
         self.farthest = self.end;
         self.lists.clear();
         self.overrun = Some(1);
@@ -369,6 +368,10 @@ impl Window {
 
     fn install(&mut self) -> Option<Change> {
         self.chain.restart();
+        if self.ends_at(0) {
+            // no list begins with its landing: what that comes from stands before it
+            self.chain.renumber(1);
+        }
         self.lists.clear();
         self.sent_to = None;
         self.end = 0;
@@ -379,17 +382,15 @@ impl Window {
 
     fn upload(&mut self, jump: Option<u64>, new_from: u64) -> Option<Change> {
         let first = self.chain.first();
-        let ends = (first, self.end);
         let (passed, wanted) = (self.chain.before(first), |p| self.wanted(p));
         let items = match self.landing() {
             Some(landing) => ring::list_that_lands((first, landing), passed, wanted)?,
-            None => ring::list(ends, self.edition, passed, wanted)?,
+            None => ring::list((first, self.end), self.edition, passed, wanted)?,
         };
-        let current = jump.map(entry);
         // of a list that nobody knows, nothing can be overrun
         let new_from = if self.lists.is_empty() { u64::MAX } else { new_from };
         self.pending = Some(Pending::Upload { items: items.clone(), jump, new_from });
-        Some(Change::Upload { items, current })
+        Some(Change::Upload { items, current: jump.map(entry) })
     }
 
     fn set_current(&mut self, position: u64) -> Change {

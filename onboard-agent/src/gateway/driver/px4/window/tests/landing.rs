@@ -98,6 +98,24 @@ fn a_landing_that_is_fed_anew_is_come_to_from_where_the_old_one_was() {
     }
 }
 
+/// Its autopilot has started anew on final, and circles.
+#[test]
+fn a_list_that_is_lost_on_final_comes_again_with_what_its_landing_comes_from() {
+    let mut rig = launched(whole_flight(5));
+    for _ in 0..6 {
+        rig.reach();
+        rig.settle();
+    }
+    assert_eq!(rig.window.target(), Target::Waypoint(Serial(7)), "on final");
+    rig.window.invalidate();
+    rig.flying = false;
+    rig.settle();
+    let list = &rig.autopilot.list;
+    assert!(matches(&list[0], &Item::of(&waypoint(6, Action::Fly))), "{list:?}");
+    assert_eq!(list[1].kind, ItemKind::Land);
+    assert_eq!(rig.window.target(), Target::Waypoint(Serial(7)));
+}
+
 #[test]
 fn waypoints_behind_a_landing_wait_for_it() {
     let mut plan = whole_flight(5);
