@@ -81,6 +81,15 @@ pub enum Control {
     Wind(Wind),
     /// Another flight mode, as by the pilot's switch.
     Mode(Mode),
+    /// A fence of the autopilot's own, so many metres around home; `None`: no more.
+    Fence(Option<f64>),
+    /// Another ground station brings a list of its own aboard.
+    Visit {
+        /// It leads round this place.
+        around: LatLon,
+        /// It is to be flown from its first waypoint on.
+        starts: bool,
+    },
     /// The end.
     Stop,
 }
@@ -88,7 +97,8 @@ pub enum Control {
 impl FromStr for Control {
     type Err = String;
 
-    /// One line: `fault FAULT`, `clear NAME`, `wind DIRECTION,SPEED`, `mode NAME` or `stop`.
+    /// One line: `fault FAULT`, `clear NAME`, `wind DIRECTION,SPEED`, `mode NAME`, `fence METRES`, `upload LAT,LON`,
+    /// `upload-and-fly LAT,LON` or `stop`.
     fn from_str(line: &str) -> Result<Self, String> {
         let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
         match word {
@@ -96,9 +106,15 @@ impl FromStr for Control {
             "clear" => Ok(Control::Clear(rest.trim().to_owned())),
             "wind" => parse_wind(rest).map(Control::Wind),
             "mode" => rest.trim().parse().map(Control::Mode),
+            "fence" => parse_fence(rest).map(Control::Fence),
+            "upload" | "upload-and-fly" => {
+                let starts = word != "upload";
+                parse_place(rest).map(|around| Control::Visit { around, starts })
+            }
             "stop" | "quit" => Ok(Control::Stop),
             _ => Err(format!(
-                "{word:?} is no command; write: fault FAULT, clear NAME, wind DIRECTION,SPEED, mode NAME or stop"
+                "{word:?} is no command; write: fault FAULT, clear NAME, wind DIRECTION,SPEED, mode NAME, fence METRES, \
+                 upload LAT,LON, upload-and-fly LAT,LON or stop"
             )),
         }
     }
@@ -133,6 +149,19 @@ pub fn parse_wind(text: &str) -> Result<Wind, String> {
     }
 }
 
+fn parse_fence(text: &str) -> Result<Option<f64>, String> {
+    match numbers(text) {
+        Some([0.0]) => Ok(None),
+        Some([radius_m]) if radius_m > 0.0 => Ok(Some(radius_m)),
+        _ => Err(format!("{text:?} is no fence; write METRES around home, as 1000; 0 takes it away")),
+    }
+}
+
+fn parse_place(text: &str) -> Result<LatLon, String> {
+    let place = numbers(text).map(|[lat, lon]| LatLon::new(lat, lon)).filter(|place| place.is_valid());
+    place.ok_or_else(|| format!("{text:?} is no place; write LAT,LON, as 36.3190,-84.1730"))
+}
+
 /// `NAME=VALUE`: a parameter.
 ///
 /// # Errors
@@ -165,7 +194,15 @@ mod tests {
         assert_eq!("wind 270,5".parse(), Ok(Control::Wind(Wind::from_direction(270.0, 5.0))));
         assert_eq!("mode rtl".parse(), Ok(Control::Mode(Mode::ReturnToLaunch)));
         assert!(matches!(" fault engine-out@3 ".parse(), Ok(Control::Inject(_))));
-        for bad in ["", "fault", "fault x", "wind 1", "wind 270,NaN", "mode", "mode upside-down", "dance"] {
+        assert_eq!("fence 1000".parse(), Ok(Control::Fence(Some(1000.0))));
+        assert_eq!("fence 0".parse(), Ok(Control::Fence(None)));
+        let around = LatLon::new(36.5, -84.25);
+        assert_eq!("upload 36.5,-84.25".parse(), Ok(Control::Visit { around, starts: false }));
+        assert_eq!("upload-and-fly 36.5, -84.25".parse(), Ok(Control::Visit { around, starts: true }));
+        for bad in ["", "fault", "fault x", "wind 1", "wind 270,NaN", "mode", "mode upside-down", "dance"]
+            .into_iter()
+            .chain(["fence", "fence -1", "upload", "upload 91,0", "upload-and-fly here"])
+        {
             assert!(bad.parse::<Control>().is_err(), "{bad}");
         }
     }

@@ -5,7 +5,7 @@
 //! autopilots is in [`core::personality`].
 //!
 //! What it imitates: the autopilot's modes, arming, mission list and protocol, parameters, rates of telemetry and
-//! answers. What it leaves out: terrain, a geofence, rally points, a radio-control transmitter, log download, the time
+//! answers. What it leaves out: terrain, geofences but a circle around home, rally points, a radio-control transmitter, log download, the time
 //! an upload takes; its dead reckoning without satellites is perfect, and telemetry comes at 10 Hz at most. Of ArduPlane:
 //! automatic landing after RTL. Of PX4: its events (only texts say why), loitering items but the endless one, VTOL.
 

@@ -11,7 +11,9 @@ use std::process::ExitCode;
 /// A simulated fixed-wing autopilot that speaks MAVLink 2 as ArduPlane does, or PX4.
 ///
 /// While it runs, lines on standard input control it: fault FAULT, clear NAME, wind DIRECTION,SPEED,
-/// mode NAME (as by the pilot's switch: manual, circle, fbwa, auto, rtl, loiter or land), stop.
+/// mode NAME (as by the pilot's switch: manual, circle, fbwa, auto, rtl, loiter or land), fence METRES (of the autopilot's own
+/// around home, behind which it returns; 0: none), upload LAT,LON and upload-and-fly LAT,LON (another ground station's list, round
+/// a place), stop.
 #[derive(Debug, Parser)]
 #[command(name = "legwork-sim", version)]
 struct Options {

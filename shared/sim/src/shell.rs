@@ -436,6 +436,8 @@ impl Runner {
                 }
             }
             Some(Control::Wind(wind)) => self.simulator.autopilot.wind = wind,
+            Some(Control::Fence(radius_m)) => self.simulator.autopilot.fence.radius_m = radius_m,
+            Some(Control::Visit { around, starts }) => self.simulator.is_visited(around, starts),
             Some(Control::Mode(mode)) => {
                 if !self.simulator.autopilot.set_mode(mode) {
                     tracing::warn!("the autopilot does not take {mode:?} now");

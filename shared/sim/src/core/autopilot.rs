@@ -1,6 +1,7 @@
 //! The autopilot around the aircraft: modes, arming, (in `mission`) the mission being flown, and (in `manoeuvre`) what it
 //! flies in other modes. Knows no message.
 
+mod fence;
 mod manoeuvre;
 mod mission;
 
@@ -11,6 +12,7 @@ use super::personality::Rules;
 use super::run::{Phase, Run};
 use aircraft::power::{demanded_power_w, glide_sink_mps};
 use aircraft::{Aircraft, Demand, Guidance, Guided, Profile, Target, Wind};
+pub use fence::Fence;
 use geometry::LatLon;
 
 /// Home: where it was switched on.
@@ -67,6 +69,8 @@ pub struct Autopilot {
     pub iced: bool,
     /// The aircraft lies where it came down, and its autopilot does not know.
     pub is_down: bool,
+    /// Its own fence.
+    pub fence: Fence,
     rules: &'static Rules,
     mode: Mode,
     armed: bool,
@@ -96,6 +100,7 @@ impl Autopilot {
             gps_ok: true,
             iced: false,
             is_down: false,
+            fence: Fence::default(),
             rules,
             mode: rules.first_mode,
             armed: false,
@@ -293,6 +298,7 @@ impl Autopilot {
 
     /// Flies for `dt_s` seconds.
     pub fn step(&mut self, dt_s: f64) {
+        self.watch_fence();
         let mut demand = if self.armed { self.demand() } else { self.unarmed_demand() };
         // without power it comes down, and the only ground known is home's
         if self.powerless() || !self.armed {

@@ -13,6 +13,7 @@ mod replies;
 pub mod run;
 pub mod streams;
 pub mod telemetry;
+pub mod visitor;
 
 use crate::frame::{self, Body, Frame};
 use autopilot::{Autopilot, Home, Severity};

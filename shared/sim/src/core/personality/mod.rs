@@ -105,6 +105,8 @@ pub struct Rules {
     pub armed_texts: [&'static str; 2],
     /// How it begins when it says why it does not arm.
     pub refusal_text: &'static str,
+    /// What it says when its own fence is crossed.
+    pub fence_text: &'static str,
     /// It touches down before the place of its landing item, so many seconds of its airspeed: it flares early.
     pub lands_short_s: f64,
     /// Its parameters for an aircraft.

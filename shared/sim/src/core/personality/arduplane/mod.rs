@@ -32,6 +32,7 @@ pub(super) static RULES: Rules = Rules {
     tells_items: true,
     armed_texts: ["Throttle armed", "Throttle disarmed"],
     refusal_text: "PreArm",
+    fence_text: "Circle fence breached",
     // 31 to 50 m in nine landings at 25 m/s
     lands_short_s: 1.6,
     params: params::params,

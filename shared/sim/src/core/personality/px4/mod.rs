@@ -49,6 +49,7 @@ const FIXED_WING: Rules = Rules {
     tells_items: false,
     armed_texts: ["Armed", "Disarmed"],
     refusal_text: "Preflight check",
+    fence_text: "Maximum distance from home exceeded",
     lands_short_s: 0.0,
     params: params::fixed_wing,
     habits: |_| Habits::CLOSE,
