@@ -102,8 +102,22 @@ impl Program {
 
     /// SIGTERM.
     pub fn ask_to_end(&self) -> anyhow::Result<()> {
-        let asked = Command::new("kill").args(["-TERM", &self.id().to_string()]).status().context("kill")?;
-        anyhow::ensure!(asked.success(), "{} can't be asked to end", self.name);
+        self.signal("-TERM")
+    }
+
+    /// SIGSTOP: it does nothing, and nothing of it is gone.
+    pub fn freeze(&self) -> anyhow::Result<()> {
+        self.signal("-STOP")
+    }
+
+    /// SIGCONT.
+    pub fn thaw(&self) -> anyhow::Result<()> {
+        self.signal("-CONT")
+    }
+
+    fn signal(&self, signal: &str) -> anyhow::Result<()> {
+        let sent = Command::new("kill").args([signal, &self.id().to_string()]).status().context("kill")?;
+        anyhow::ensure!(sent.success(), "{} can't be sent {signal}", self.name);
         Ok(())
     }
 

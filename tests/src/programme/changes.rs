@@ -1,6 +1,6 @@
 //! What an operator, or a service above the plan, changes in flight.
 
-use super::{FLIGHT_S, Scenario, expect_whole_mission, land_by_plan, on_leg};
+use super::{FLIGHT_S, Scenario, expect_whole_mission, land_by_plan, of_field, on_leg};
 use crate::rig::{Rig, id, number};
 use anyhow::{Context, ensure};
 use usal::contract::{Command, PlanEvent, VariableValue};
@@ -10,6 +10,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "variable_moves_the_sweep",
         happens: "the place and the size of the scan change while it is flown; a size out of bounds",
         expected: "it sweeps there; the bad value is refused; the loop ends when its condition holds",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(variable_moves_the_sweep(rig)),
     },
@@ -17,6 +18,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "plan_update_in_flight",
         happens: "a broken plan, then one with a leg ahead moved",
         expected: "the broken one is refused; the other is flown from the present place on",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(plan_update_in_flight(rig)),
     },
@@ -24,6 +26,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "decision_by_default",
         happens: "nobody decides at an intersection",
         expected: "it is asked, and its default is flown at the deadline",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(decision_by_default(rig)),
     },
@@ -31,6 +34,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "decision_by_operator",
         happens: "the operator decides before the intersection",
         expected: "the branch is flown",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(decision_by_operator(rig)),
     },
@@ -38,6 +42,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "hold_and_resume",
         happens: "the operator holds on a leg, and goes on after a minute",
         expected: "it circles, and goes on from the same place",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(hold_and_resume(rig)),
     },

@@ -1,6 +1,6 @@
 //! Emergency plans, by order and by cause.
 
-use super::{FLIGHT_S, Scenario, alarmed, land_by_plan, on_leg};
+use super::{FLIGHT_S, Scenario, alarmed, land_by_plan, of_field, on_leg};
 use crate::rig::Rig;
 use anyhow::ensure;
 use usal::contract::{Cause, Command, PlanEvent};
@@ -10,6 +10,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "emergency_at_leg_level",
         happens: "an emergency on a leg that has a plan of its own",
         expected: "that plan is flown, to its landing",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(ordered(rig, "far", Cause::Link, "near-home-df")),
     },
@@ -17,6 +18,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "emergency_at_stage_level",
         happens: "an emergency on a stage that has a plan of its own",
         expected: "that plan is flown, to its landing",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(ordered(rig, "sweep", Cause::Energy, "field-df")),
     },
@@ -24,6 +26,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "emergency_at_plan_level",
         happens: "an emergency where neither leg nor stage has a plan",
         expected: "the plan of the whole flight plan is flown, to its landing",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(ordered(rig, "round", Cause::Operator, "home-df")),
     },
@@ -31,6 +34,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "engine_lost",
         happens: "the engine stops",
         expected: "alarm, and at once the plan for the cause engine",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(engine_lost(rig, &["engine-out", "engine-suspected"])),
     },
@@ -38,6 +42,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "engine_lost_unreported",
         happens: "the engine stops, and nothing tells its speed",
         expected: "it is suspected by its sinking; the plan for the cause engine",
+        plan: of_field,
         simulator: &["--fault", "no-rpm"],
         fly: |rig| Box::pin(engine_lost(rig, &["engine-suspected"])),
     },
@@ -45,6 +50,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "battery_low",
         happens: "the battery falls below its reserve",
         expected: "alarm, and the plan for the cause energy, to its landing",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(battery_low(rig)),
     },
@@ -52,6 +58,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "gps_lost",
         happens: "no GPS for half a minute",
         expected: "alarm while it lasts, and a landing",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(gps_lost(rig)),
     },

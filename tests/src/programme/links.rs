@@ -1,6 +1,6 @@
 //! The link between gateway and autopilot is cut.
 
-use super::{Scenario, alarmed, land, on_leg};
+use super::{Scenario, alarmed, land, of_field, on_leg};
 use crate::rig::Rig;
 use anyhow::ensure;
 
@@ -9,6 +9,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "link_cut_1_s",
         happens: "the autopilot is not heard for 1 s",
         expected: "the mission is flown as if nothing had been",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(unnoticed(rig, 1.0)),
     },
@@ -16,6 +17,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "link_cut_5_s",
         happens: "the autopilot is not heard for 5 s",
         expected: "alarm; the mission goes on by the list aboard",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(gone_on_with(rig, 5.0)),
     },
@@ -23,6 +25,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "link_cut_30_s",
         happens: "the autopilot is not heard for 30 s",
         expected: "alarm; the mission goes on by the list aboard",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(gone_on_with(rig, 30.0)),
     },
@@ -30,6 +33,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "link_cut_300_s",
         happens: "the autopilot is not heard for 5 min, longer than its list lasts",
         expected: "alarm; it waits by its own means, then lands on the runway",
+        plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(come_home(rig, 300.0)),
     },

@@ -1,6 +1,6 @@
 //! The mission as it is planned, in all weathers.
 
-use super::{Scenario, expect_whole_mission, land_by_plan};
+use super::{Scenario, expect_whole_mission, land_by_plan, of_field};
 use crate::rig::Rig;
 
 pub const SCENARIOS: &[Scenario] = &[
@@ -8,6 +8,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "nominal",
         happens: "nothing, at 5 m/s of wind",
         expected: "three sweeps of the loop, landing on the runway",
+        plan: of_field,
         simulator: &["--wind", "270,5"],
         fly: |rig| Box::pin(whole(rig)),
     },
@@ -15,6 +16,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "strong_wind",
         happens: "12 m/s of wind",
         expected: "three sweeps of the loop, landing on the runway",
+        plan: of_field,
         simulator: &["--wind", "250,12"],
         fly: |rig| Box::pin(whole(rig)),
     },
@@ -22,6 +24,7 @@ pub const SCENARIOS: &[Scenario] = &[
         name: "bad_radio",
         happens: "a fifth of all packets is lost, some come twice or late",
         expected: "three sweeps of the loop, landing on the runway",
+        plan: of_field,
         simulator: &[
             "--fault",
             "packet-loss=0.2",

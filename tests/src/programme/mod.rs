@@ -3,19 +3,22 @@
 
 mod changes;
 mod emergencies;
+mod examples;
 mod links;
 mod missions;
 mod pilots;
 mod processes;
 pub mod table;
 
+use crate::plans::Field;
 use crate::rig::Rig;
 use anyhow::{Context, ensure};
+pub use examples::EXAMPLES;
 use std::pin::Pin;
 use usal::contract::GatewayState;
 
-/// Longest flight of the mission, seconds of the autopilot's time.
-const FLIGHT_S: f64 = 3000.0;
+/// Longest flight, seconds of the autopilot's time.
+const FLIGHT_S: f64 = 5000.0;
 
 /// The rest of a flight.
 type Rest<'a> = Pin<Box<dyn Future<Output = anyhow::Result<()>> + 'a>>;
@@ -28,6 +31,8 @@ pub struct Scenario {
     pub happens: &'static str,
     /// What must come of it.
     pub expected: &'static str,
+    /// The plan that is flown around a field.
+    pub plan: fn(Field) -> anyhow::Result<String>,
     /// The conditions, as arguments of our simulator.
     pub simulator: &'static [&'static str],
     fly: for<'a> fn(&'a mut Rig) -> Rest<'a>,
@@ -53,7 +58,7 @@ impl Scenario {
     /// Something comes otherwise than expected.
     pub async fn fly(&self, rig: &mut Rig) -> anyhow::Result<()> {
         let flown = async {
-            rig.fly_mission().await?;
+            rig.fly(&(self.plan)(rig.field)?).await?;
             (self.fly)(rig).await
         };
         let flown = flown.await;
@@ -66,6 +71,7 @@ impl Scenario {
 /// All of them, in the order of the table.
 pub const SCENARIOS: &[&[Scenario]] = &[
     missions::SCENARIOS,
+    examples::SCENARIOS,
     changes::SCENARIOS,
     emergencies::SCENARIOS,
     processes::SCENARIOS,
@@ -84,6 +90,11 @@ pub fn scenarios() -> impl Iterator<Item = &'static Scenario> {
 /// There is none.
 pub fn scenario(name: &str) -> anyhow::Result<&'static Scenario> {
     scenarios().find(|scenario| scenario.name == name).with_context(|| format!("no scenario {name}"))
+}
+
+/// The mission that most of them fly.
+fn of_field(field: Field) -> anyhow::Result<String> {
+    Ok(field.mission(1800.0))
 }
 
 async fn on_leg(rig: &mut Rig, leg: &str) -> anyhow::Result<()> {

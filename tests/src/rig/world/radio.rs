@@ -183,7 +183,9 @@ impl Relay {
     /// told it is in no simulation, and hears nothing more.
     fn begin(&mut self, conditions: Vec<Control>) {
         let calm = Wish::Wind { east_mps: 0.0, north_mps: 0.0 };
-        for wish in [calm, Wish::Gps(true), Wish::Engine(true), Wish::Battery(FULL_PERCENT)] {
+        for wish in
+            [calm, Wish::Gps(true), Wish::Engine(true), Wish::Battery(FULL_PERCENT), Wish::Fence(None)]
+        {
             self.voice.wish(wish);
         }
         conditions.into_iter().for_each(|control| self.on_control(control));
@@ -250,6 +252,13 @@ impl Relay {
                 self.voice.wish(Wish::Wind { east_mps: wind.east_mps, north_mps: wind.north_mps });
             }
             Control::Mode(mode) => self.voice.wish(Wish::Mode(mode)),
+            Control::Fence(radius_m) => self.voice.wish(Wish::Fence(radius_m)),
+            Control::Visit { around, starts } => {
+                self.voice.wish(Wish::List(around));
+                if starts {
+                    self.voice.wish(Wish::FlyList);
+                }
+            }
             Control::Stop => self.complain("nobody can stop it".into()),
         }
         self.on_beat();

@@ -1,5 +1,6 @@
 //! How each autopilot's simulation is told what goes wrong in its world: by its parameters and by commands.
 
+use geometry::LatLon;
 use mavlink::dialects::ardupilotmega::*;
 use sim::Mode;
 
@@ -21,6 +22,12 @@ pub enum Wish {
     Engine(bool),
     /// How much the battery has left, percent.
     Battery(f32),
+    /// A fence of the autopilot's own, so many metres around home, behind which it returns; `None`: no more.
+    Fence(Option<f64>),
+    /// A list that leads round a place takes the place of the one aboard.
+    List(LatLon),
+    /// That list is flown from its first waypoint on.
+    FlyList,
 }
 
 /// What it is told for that.
@@ -30,6 +37,8 @@ pub enum Order {
     Set(&'static str, f32, MavParamType),
     /// A command, and its first parameters.
     Do(MavCmd, [f32; 3]),
+    /// A list around a place; whether its first item stands for home.
+    Upload(LatLon, bool),
 }
 
 /// Autopilots whose simulations are known.
@@ -90,6 +99,16 @@ fn arduplane(wish: Wish) -> Option<Vec<Order>> {
         Wish::Engine(works) => vec![real("SIM_ENGINE_FAIL", if works { 0.0 } else { 4.0 })],
         // the first battery
         Wish::Battery(percent) => vec![Order::Do(MavCmd::MAV_CMD_BATTERY_RESET, [1.0, percent, 0.0])],
+        // a circle, and a return; the radius is not taken away with it
+        Wish::Fence(Some(radius_m)) => vec![
+            real("FENCE_TYPE", 2.0),
+            real("FENCE_ACTION", 1.0),
+            real("FENCE_RADIUS", radius_m),
+            real("FENCE_ENABLE", 1.0),
+        ],
+        Wish::Fence(None) => vec![real("FENCE_ENABLE", 0.0)],
+        Wish::List(around) => vec![Order::Upload(around, true)],
+        Wish::FlyList => vec![Order::Do(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, [1.0, 0.0, 0.0])],
     })
 }
 
@@ -109,6 +128,11 @@ fn px4(wish: Wish) -> Option<Vec<Order>> {
         Wish::Engine(false) => vec![real("SIH_F_T_MAX", 0.0)],
         // it runs down to this within the first minute of the flight
         Wish::Battery(percent) => vec![real("SIM_BAT_MIN_PCT", percent.into())],
+        // 3: it returns
+        Wish::Fence(Some(radius_m)) => vec![bits("GF_ACTION", 3), real("GF_MAX_HOR_DIST", radius_m)],
+        Wish::Fence(None) => vec![real("GF_MAX_HOR_DIST", 0.0)],
+        Wish::List(around) => vec![Order::Upload(around, false)],
+        Wish::FlyList => vec![Order::Do(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, [0.0; 3])],
     })
 }
 
@@ -122,7 +146,7 @@ mod tests {
             .into_iter()
             .map(|order| match order {
                 Order::Set(name, value, _) => (name, value),
-                Order::Do(..) => panic!("{order:?}"),
+                Order::Do(..) | Order::Upload(..) => panic!("{order:?}"),
             })
             .collect()
     }

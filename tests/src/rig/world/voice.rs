@@ -2,7 +2,9 @@
 
 use super::told::{Order, Simulation, Wish};
 use autopilot_link::frame::{Sender, encode};
+use geometry::LatLon;
 use mavlink::dialects::ardupilotmega::*;
+use sim::core::visitor::visitors_list;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -23,6 +25,8 @@ pub struct Voice {
     /// When the present order was said first, and when last.
     said: Option<(Duration, Duration)>,
     sequence: u8,
+    /// The item of its list that the autopilot wants.
+    wanted: Option<u16>,
     trouble: Option<String>,
 }
 
@@ -67,11 +71,35 @@ impl Voice {
                     self.answered();
                 }
             }
+            _ => self.hear_of_list(message),
+        }
+    }
+
+    /// What is answered to others is none of ours. A transfer that somebody else's is in the way of is begun again.
+    #[expect(deprecated, reason = "ArduPilot asks by the deprecated message")]
+    fn hear_of_list(&mut self, message: &MavMessage) {
+        if !matches!(self.orders.front(), Some(Order::Upload(..))) {
+            return;
+        }
+        let is_ours = |system, component| (system, component) == (OWN.system, OWN.component);
+        match message {
+            MavMessage::MISSION_REQUEST(r) if is_ours(r.target_system, r.target_component) => {
+                self.wanted = Some(r.seq);
+            }
+            MavMessage::MISSION_REQUEST_INT(r) if is_ours(r.target_system, r.target_component) => {
+                self.wanted = Some(r.seq);
+            }
+            MavMessage::MISSION_ACK(ack) if is_ours(ack.target_system, ack.target_component) => {
+                if ack.mavtype == MavMissionResult::MAV_MISSION_ACCEPTED {
+                    self.answered();
+                }
+            }
             _ => {}
         }
     }
 
     fn answered(&mut self) {
+        self.wanted = None;
         self.orders.pop_front();
         self.said = None;
     }
@@ -91,7 +119,8 @@ impl Voice {
         }
         let order = *self.orders.front()?;
         let (first, last) = self.said.unwrap_or((now, now));
-        if self.said.is_some() && now < last + AGAIN {
+        let wanted = self.wanted.take();
+        if self.said.is_some() && wanted.is_none() && now < last + AGAIN {
             return None;
         }
         if now > first + PATIENCE {
@@ -101,8 +130,19 @@ impl Voice {
         }
         self.said = Some((first, now));
         self.sequence = self.sequence.wrapping_add(1);
-        Some(encode(OWN, self.sequence, &message(autopilot, order)))
+        let said = match (order, wanted) {
+            (Order::Upload(around, has_home), Some(seq)) => item(autopilot, around, has_home, seq)?,
+            _ => message(autopilot, order),
+        };
+        Some(encode(OWN, self.sequence, &said))
     }
+}
+
+/// An item of the list; `None`: there is none.
+fn item(to: Sender, around: LatLon, has_home: bool, seq: u16) -> Option<MavMessage> {
+    let item = visitors_list(around, has_home).into_iter().nth(seq.into())?;
+    let (target_system, target_component) = (to.system, to.component);
+    Some(MavMessage::MISSION_ITEM_INT(MISSION_ITEM_INT_DATA { target_system, target_component, ..item }))
 }
 
 /// Real numbers may come back rounded; of a whole one these are its bits.
@@ -127,6 +167,12 @@ fn message(to: Sender, order: Order) -> MavMessage {
             param2,
             param3,
             command,
+            target_system: to.system,
+            target_component: to.component,
+            ..Default::default()
+        }),
+        Order::Upload(around, has_home) => MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
+            count: visitors_list(around, has_home).len() as u16,
             target_system: to.system,
             target_component: to.component,
             ..Default::default()
@@ -213,6 +259,32 @@ mod tests {
             );
             assert_eq!(voice.is_done(), is_ours, "{target_system}");
         }
+    }
+
+    #[test]
+    fn a_list_is_given_item_by_item_to_who_asks_us_for_it() {
+        let around = LatLon::new(36.5, -84.2);
+        let mut voice = met(&[Wish::List(around), Wish::FlyList]);
+        let count = said(&mut voice, 0);
+        assert!(matches!(count, Some(MavMessage::MISSION_COUNT(count)) if count.count == 5));
+        let asks = |seq, target: Sender| {
+            MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA {
+                seq,
+                target_system: target.system,
+                target_component: target.component,
+                ..Default::default()
+            })
+        };
+        voice.hear(AUTOPILOT, &asks(0, Sender { system: 1, component: 191 }));
+        assert_eq!(said(&mut voice, 50), None, "another was asked");
+        for seq in 0..5 {
+            voice.hear(AUTOPILOT, &asks(seq, OWN));
+            let item = said(&mut voice, 100);
+            assert!(matches!(item, Some(MavMessage::MISSION_ITEM_INT(item)) if item.seq == seq));
+        }
+        let ack = MISSION_ACK_DATA { target_system: 255, target_component: 190, ..Default::default() };
+        voice.hear(AUTOPILOT, &MavMessage::MISSION_ACK(ack));
+        assert!(matches!(said(&mut voice, 150), Some(MavMessage::COMMAND_LONG(long)) if long.param1 == 1.0));
     }
 
     #[test]
