@@ -41,6 +41,8 @@ pub struct Flight {
     second: Option<sim::frame::Decoder>,
     /// Links over which nothing comes and goes.
     cut: Vec<usize>,
+    /// The radio, to us and to the autopilot, if it carries no more than so much.
+    narrow: Option<[narrow::Radio; 2]>,
     outbox: Outbox,
     sim_decoder: sim::frame::Decoder,
     /// Number of the next waypoint.
@@ -89,6 +91,7 @@ impl Flight {
             slower: None,
             second: None,
             cut: vec![],
+            narrow: None,
             outbox: Outbox::default(),
             sim_decoder: sim::frame::Decoder::default(),
             next: 1,
@@ -101,16 +104,12 @@ impl Flight {
         self.sim.ask_time();
         self.now = Duration::from_nanos(self.sim.now_ns());
         let mut step = None;
-        for outgoing in self.sim.take_outgoing() {
-            let link = usize::from(outgoing.to == PEERS[1]);
-            if self.cut.contains(&link) {
-                continue;
-            }
-            self.station.receive(link, FromLink::Stream(&outgoing.bytes));
+        for (link, bytes) in self.arriving() {
+            self.station.receive(link, FromLink::Stream(&bytes));
             while let Some(asked) = self.station.process(self.now) {
                 step = Some(asked);
             }
-            self.slower.iter_mut().for_each(|slower| slower.hear(self.now, &outgoing.bytes));
+            self.slower.iter_mut().for_each(|slower| slower.hear(self.now, &bytes));
         }
         while let Some(bytes) = self.slower.as_mut().and_then(|slower| slower.next(self.now)) {
             self.station.receive(1, FromLink::Stream(&bytes));
@@ -130,14 +129,30 @@ impl Flight {
         self.watch_target();
     }
 
+    /// What comes in this step, and over which link.
+    fn arriving(&mut self) -> Vec<(usize, Vec<u8>)> {
+        let sent = self.sim.take_outgoing().into_iter();
+        let over = sent.map(|outgoing| (usize::from(outgoing.to == PEERS[1]), outgoing.bytes));
+        let over = over.filter(|(link, _)| !self.cut.contains(link)).collect();
+        match &mut self.narrow {
+            Some([to_us, _]) => to_us.pass(over),
+            None => over,
+        }
+    }
+
     fn pass_on(&mut self) {
         self.outbox.clear();
         self.station.send(&mut self.outbox);
         let decoders = [Some(&mut self.sim_decoder), self.second.as_mut()];
         for (link, (peer, decoder)) in PEERS.into_iter().zip(decoders).enumerate() {
             let Some(decoder) = decoder.filter(|_| !self.cut.contains(&link)) else { continue };
-            for bytes in self.outbox.frames_over(link) {
-                decoder.push(bytes);
+            let sent = self.outbox.frames_over(link).map(|bytes| (link, bytes.to_vec())).collect();
+            let arriving = match &mut self.narrow {
+                Some([_, to_it]) => to_it.pass(sent),
+                None => sent,
+            };
+            for (_, bytes) in arriving {
+                decoder.push(&bytes);
                 for frame in sim::frame::take_frames(decoder) {
                     self.sim.receive(peer, frame);
                 }
@@ -265,13 +280,19 @@ impl Flight {
 
     /// The same on either autopilot.
     pub fn in_flight(personality: Personality, seed: u64) -> Self {
-        let mut flight = Self::of(personality, seed, &[]);
+        let mut flight = Self::on_ground(personality, seed, &[]);
+        flight.launch(std::iter::once(take_off()).chain(zigzag(0, 30, 300.0)).collect());
+        flight.run(20.0);
+        flight
+    }
+
+    /// Either autopilot before a launch, able to fly a list without a landing.
+    pub fn on_ground(personality: Personality, seed: u64, faults: &[&str]) -> Self {
+        let mut flight = Self::of(personality, seed, faults);
         let is_px4 = personality != Personality::ArduPlane;
         assert!(!is_px4 || flight.sim.autopilot.params.set("MIS_TKO_LAND_REQ", 0.0));
         // it is asked for that parameter first
         flight.run(5.0);
-        flight.launch(std::iter::once(take_off()).chain(zigzag(0, 30, 300.0)).collect());
-        flight.run(20.0);
         flight
     }
 
@@ -285,13 +306,18 @@ impl Flight {
         self.progress().iter().flatten().any(|t| *t >= token)
     }
 
-    /// On the ground with a plan aboard, then in the air on its way to waypoint 2.
-    pub fn launch(&mut self, waypoints: Vec<Waypoint>) {
+    /// On the ground, with the first waypoints of a plan.
+    pub fn load(&mut self, waypoints: Vec<Waypoint>) {
         self.run_until(20.0, "heard", |f| {
             f.state() == GatewayState::Stop && f.station.gateway().telemetry().gps.is_some()
         });
         assert!(self.join("plan").accepted);
         assert_eq!(self.feed(None, waypoints), FeedAnswer::Accepted);
+    }
+
+    /// On the ground with a plan aboard, then in the air on its way to waypoint 2.
+    pub fn launch(&mut self, waypoints: Vec<Waypoint>) {
+        self.load(waypoints);
         self.ask(GatewayRequest::Launch).unwrap();
         self.run_until(120.0, "launch", |f| f.state() == GatewayState::Nav);
     }
@@ -351,9 +377,12 @@ pub fn landing() -> Vec<Waypoint> {
 }
 
 mod corners;
+mod faulted;
 mod faults;
 mod gliding;
 mod met_in_flight;
+mod million;
+mod narrow;
 mod px4;
 mod refused;
 mod replaced;
@@ -363,3 +392,4 @@ mod taken_over;
 mod tests;
 mod two_links;
 mod uploaded;
+mod whole;
