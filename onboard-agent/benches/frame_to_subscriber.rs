@@ -1,6 +1,6 @@
 //! From a MAVLink frame on the autopilot's link to the gateway's `position` at a subscriber, over
 //! loopback, beside a bare Zenoh hop between the same two kinds of session in the same run. Prints
-//! percentiles and the ratio (goal: p50 below 1.5 times the bare hop's).
+//! percentiles and the ratio (goal: p50 at most 1.1 times the bare hop's).
 #![expect(clippy::unwrap_used, clippy::expect_used, reason = "a bench ends where it can't go on")]
 
 use mavlink::MavHeader;
