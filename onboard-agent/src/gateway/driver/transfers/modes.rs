@@ -26,7 +26,7 @@ enum What {
     /// So often.
     Lost(u32),
     Doubled,
-    /// All by the same, some tenths of a second up to 1.5 s.
+    /// All by the same, 0.3 to 0.9 s.
     Late,
     /// With the one after it.
     Swapped,
@@ -65,7 +65,7 @@ impl Faulty {
         Self {
             kind,
             what,
-            late: Duration::from_millis(300 + 100 * (seed % 13)),
+            late: Duration::from_millis(300 + 100 * (seed % 7)),
             skip,
             left,
             hits: 0,
