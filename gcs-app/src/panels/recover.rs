@@ -1,6 +1,6 @@
 //! The question after a crash: the work that was not saved, or a clean start.
 
-use super::primary_button;
+use super::{field, primary_button};
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::recovery::LeftBehind;
 use crate::{theme, units};
@@ -32,7 +32,8 @@ pub fn show(ui: &mut Ui, found: &LeftBehind, (may_close, is_calm): (bool, bool),
         if recover.clicked() {
             queue.document(DocumentCommand::Recover);
         }
-        if ui.button("Delete them").clicked() {
+        // no undo brings them back
+        if field::hold_button(ui, "Delete them", theme::of(ui).caution, 0.0) {
             queue.document(DocumentCommand::ForgetLeftBehind);
         }
         let later = ui.button("Later").on_hover_text("Asked again from the menu, and by the next window");

@@ -44,7 +44,9 @@ fn what_is_not_wanted_is_not_offered_again() {
     let folder = tempfile::tempdir().unwrap();
     edit_and_kill(folder.path());
     let mut window = window_in(folder.path(), SQUARE);
-    window.click("Delete them");
+    window.click("Delete them (hold)");
+    assert!(window.shows("ended without saving"), "a click is not enough for what no undo brings back");
+    window.hold("Delete them (hold)", 90);
     assert!(!window.app().document().is_dirty());
     drop(window);
     assert!(!window_in(folder.path(), "").shows("ended without saving"));
