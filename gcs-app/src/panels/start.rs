@@ -4,6 +4,7 @@ mod airfield;
 mod place;
 
 use super::{Scene, field, primary_button};
+use crate::airfields::Ground;
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
 use crate::guide::{Answer, Drawing, Guide, MissionFigure};
 use crate::map::furniture::NARROW;
@@ -156,8 +157,32 @@ fn answers(ui: &mut Ui, threshold: LatLon, guide: &mut Guide, scene: &Scene<'_>,
         mission(ui, figure, guide, u, queue);
     }
     number(ui, "Height", &mut guide.height_m, u.altitude(), 30.0..=4000.0);
-    ui.label(RichText::new("above the runway; more where the ground asks for it").color(theme::of(ui).weak));
+    height_remark(ui, guide, scene);
     aircraft(ui, guide);
+}
+
+/// What the height counts from, and what the ground around makes of it.
+fn height_remark(ui: &mut Ui, guide: &Guide, scene: &Scene<'_>) {
+    let p = theme::of(ui);
+    let flown_m = guide.outline().map_or(guide.height_m, |outline| flown_height_m(outline, scene));
+    // heights are made round
+    const ROUND_M: f64 = 10.0;
+    let text = match flown_m - guide.height_m > ROUND_M {
+        true => {
+            let flown = scene.units().altitude().show(flown_m);
+            RichText::new(format!("⚠ {flown} above the runway: the ground around asks for that"))
+                .color(p.caution)
+        }
+        false => RichText::new("above the runway; more where the ground asks for it").color(p.weak),
+    };
+    ui.label(text);
+}
+
+fn flown_height_m(mut outline: Outline, scene: &Scene<'_>) -> f64 {
+    let ground = scene.layers.ground().as_ref();
+    outline.runway.elevation_amsl_m = Ground::of(ground, outline.runway.threshold).amsl_m().round();
+    let profile = Profile::by_name(&outline.aircraft).unwrap_or_default();
+    outline.mission_height_m(&profile, ground)
 }
 
 /// Where the mission is: drawn, or around a place.

@@ -5,7 +5,7 @@ use egui::accesskit::Role;
 use egui::{Key, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_plan::template::Template;
-use flight_plan::{LegKind, Pattern};
+use flight_plan::{LegKind, Pattern, StageKind, Value};
 
 pub const EMPTY: &str = "<flightPlan xmlns='urn:legwork:flight-plan:1' name='New plan' aircraft='trainer'/>";
 
@@ -56,6 +56,20 @@ fn each_template_gives_a_plan_that_can_be_flown_and_undone() {
         window.until_analysed();
         assert!(window.app().analysis().forecast.length_m() > 5000.0);
     }
+}
+
+/// More than was asked for, because of hills beside the way.
+#[test]
+fn the_height_that_the_ground_asks_for_is_told_before_the_plan_is_made() {
+    let mut window = begun(SIZE);
+    window.click(Template::Survey.name());
+    assert!(window.shows(" m above the runway: the ground around asks for that"));
+    let said = window.harness.query_all_by_label_contains("the ground around asks").next().unwrap();
+    let said = said.accesskit_node().value().or(said.accesskit_node().label()).unwrap();
+    window.click("Create");
+    let mission = window.plan().stages.iter().find(|s| s.kind == StageKind::Mission).cloned().unwrap();
+    let Some(Value::Constant(height_m)) = mission.altitude.map(|altitude| altitude.metres) else { panic!() };
+    assert!(height_m > 160.0 && said.contains(&format!("{height_m:.0} m above the runway")), "{said}");
 }
 
 #[test]

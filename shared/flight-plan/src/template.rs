@@ -89,6 +89,12 @@ pub struct Outline {
 }
 
 impl Outline {
+    /// The height at which the mission is flown, metres above the runway: as asked for, or as the highest known ground around runway
+    /// and mission asks for.
+    pub fn mission_height_m(&self, profile: &Profile, terrain: &dyn Terrain) -> f64 {
+        Frame::new(self, profile, terrain).height_m
+    }
+
     /// The plan.
     pub fn plan(&self, profile: &Profile, terrain: &dyn Terrain) -> FlightPlan {
         let frame = Frame::new(self, profile, terrain);
