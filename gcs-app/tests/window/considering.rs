@@ -65,10 +65,11 @@ fn skip_shows_what_follows_and_is_given_by_a_button_named_by_its_effect() {
 #[test]
 fn what_was_looked_at_long_ago_says_so_and_has_to_be_held() {
     let (mut window, ticket) = considered();
+    window.receive(position(2.0, 500.0, false));
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     assert!(!window.shows("Looked at"));
-    window.receive(position(46.0, 500.0, false));
-    assert!(window.shows("⚠ Looked at 0:45 ago: look again"));
+    window.receive(position(47.0, 500.0, false));
+    assert!(window.shows("⚠ Looked at 45 s ago: look again"));
     assert!(window.shows("Skip side2, fly side3 next (hold)"));
 }
 
