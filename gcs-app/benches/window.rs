@@ -27,32 +27,52 @@ const SIZE: Vec2 = vec2(1280.0, 800.0);
 const FRAMES: usize = 60;
 /// Of the largest plan.
 const LEGS: usize = 10_000;
+/// Legs of a flight.
+const TRACKS: usize = 400;
+/// Spirals of a flight.
+const SPIRALS: usize = 16;
 
 fn main() {
     let heads = ["mean", "longest", "promised"];
     let [mean, longest, promised] = heads.map(|head| format!("{head:>9}"));
     println!("{:<40} {mean} {longest} {promised} {:>12}", "processor time of a frame", "naive/ours");
-    plan_of(500, 500, [8.0, 4.0, 4.0]);
-    plan_of(LEGS, 1, [16.0; 3]);
-    million_points();
-    at_work();
-    idle();
+    let parts: [(&str, fn()); 5] = [
+        ("legs", || plan_of(500, 500, 100_000, [8.0, 4.0, 4.0])),
+        ("many", || plan_of(LEGS, 0, LEGS, [16.0; 3])),
+        ("million", million_points),
+        ("work", at_work),
+        ("idle", idle),
+    ];
+    // `-- NAME`: only that part
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|arg| !arg.starts_with('-')).collect();
+    for (name, part) in parts {
+        if wanted.is_empty() || wanted.iter().any(|wanted| wanted == name) {
+            part();
+        }
+    }
 }
 
-/// A window with so many track legs and dense scans: what is done to it is timed frame by frame. What is promised of a drag,
-/// of panning and of looking, milliseconds.
-fn plan_of(tracks: usize, scans: usize, promised_ms: [f64; 3]) {
-    let mut window = open(&plan(tracks, scans));
+/// A window with so many track legs and spirals, that lay out at least so many waypoints: what is done to it is timed frame by
+/// frame. What is promised of a drag, of panning and of looking, milliseconds.
+fn plan_of(tracks: usize, spirals: usize, least: usize, promised_ms: [f64; 3]) {
+    let mut window = open(&plan(tracks, spirals));
     let forecast = &window.state().analysis().forecast;
     let (points, waypoints) = (forecast.points.len(), forecast.waypoints.len());
+    assert!(waypoints >= least && forecast.cut_short.is_none(), "{waypoints}: {:?}", forecast.cut_short);
     let path: Vec<LatLon> = forecast.points.iter().map(|point| point.position).collect();
-    println!("{} legs, {waypoints} waypoints, a path of {points} points", tracks + scans);
+    println!("{} legs, {waypoints} waypoints, a path of {points} points", tracks + spirals);
     for (gesture, promised_ms) in ["drag a waypoint", "pan", "look"].into_iter().zip(promised_ms) {
+        let before = window.state().document().version();
         let times: Vec<Duration> = match gesture {
-            "drag a waypoint" => drag(&mut window, "Waypoint leg2"),
-            "pan" => drag(&mut window, "Map"),
+            "drag a waypoint" => {
+                let waypoint = centre(&window, "Waypoint leg2");
+                drag(&mut window, waypoint)
+            }
+            "pan" => pan(&mut window),
             _ => (0..FRAMES).map(|_| frame(&mut window)).collect(),
         };
+        let is_changed = window.state().document().version() != before;
+        assert_eq!(is_changed, gesture == "drag a waypoint", "{gesture}");
         report(gesture, times.into_iter(), naive(&window, &path), promised_ms);
     }
 }
@@ -80,7 +100,7 @@ fn clipped(shape: Shape, view: &View) -> ClippedShape {
 /// A path that is longer than any preview, in the window; its legs are those of a plan.
 fn million_points() {
     const POINTS: usize = 1_000_000;
-    let mut window = open(&plan(LEGS, 1));
+    let mut window = open(&plan(LEGS, 0));
     // nothing more comes that would take its place
     until(&mut window, |app| app.analysis().reviewed);
     let at = |n: usize| LatLon::new(36.3 + 1e-5 * (n % 1000) as f64, -84.2 + 1e-6 * (n / 10) as f64);
@@ -109,7 +129,7 @@ fn million_points() {
     });
     window.run_steps(5);
     let path: Vec<LatLon> = (0..POINTS).map(at).collect();
-    let times = drag(&mut window, "Map");
+    let times = pan(&mut window);
     report("pan over a path of a million points", times.into_iter(), naive(&window, &path), 16.0);
 }
 
@@ -164,12 +184,12 @@ impl egui::DroppedFile for Dropped {
 /// While everything else is slow and at work, no frame waits for it: here the time on the wall counts.
 fn at_work() {
     let ground = SlowGround(std::thread::current().id());
-    let mut window = begin(&plan(LEGS, 1), Arc::new(ground));
+    let mut window = begin(&plan(LEGS, 0), Arc::new(ground));
     window.state_mut().read_from(Arc::new(SlowDisk));
     let file = std::env::temp_dir().join("slow.xml");
     window.input_mut().dropped_files.push(Arc::new(Dropped(file)));
     window.run_steps(10);
-    let from = window.get_all_by_label("Map").next().expect("the map").rect().center();
+    let from = beside_the_plan(&window);
     window.hover_at(from);
     window.drag_at(from);
     window.step();
@@ -177,7 +197,8 @@ fn at_work() {
         .map(|i| {
             window.hover_at(from + 20.0 * Vec2::angled(i as f32 * 0.2));
             let begun = Instant::now();
-            draw(&mut window);
+            window.step();
+            tessellated(&window);
             begun.elapsed()
         })
         .collect();
@@ -188,7 +209,9 @@ fn at_work() {
 
 /// An idle window draws nothing: nobody asks for another frame, but the clock for one at each full minute.
 fn idle() {
-    let mut window = open(&plan(1_000, 1));
+    let mut window = open(&plan(1_000, 0));
+    // until then it is at work, and shows that
+    until(&mut window, |app| app.analysis().reviewed);
     window.run_steps(30);
     let asked = (0..120)
         .filter(|_| {
@@ -229,9 +252,22 @@ fn begin(text: &str, ground: Arc<dyn Terrain>) -> Harness<'static, App> {
         .build_eframe(move |creation| App::new(creation, document, links, ground).expect("no threads"))
 }
 
-/// Presses what has this name, and moves it a little in every frame.
-fn drag(window: &mut Harness<'_, App>, name: &str) -> Vec<Duration> {
-    let from = window.get_all_by_label(name).next().expect(name).rect().center();
+fn centre(window: &Harness<'_, App>, name: &str) -> Pos2 {
+    window.get_all_by_label(name).next().expect(name).rect().center()
+}
+
+/// A place of the map with nothing to be grabbed: the plan is higher than wide.
+fn beside_the_plan(window: &Harness<'_, App>) -> Pos2 {
+    window.get_all_by_label("Map").next().expect("the map").rect().right_center() - vec2(40.0, 0.0)
+}
+
+fn pan(window: &mut Harness<'_, App>) -> Vec<Duration> {
+    let from = beside_the_plan(window);
+    drag(window, from)
+}
+
+/// Presses what is there, and moves it a little in every frame.
+fn drag(window: &mut Harness<'_, App>, from: Pos2) -> Vec<Duration> {
     window.hover_at(from);
     window.drag_at(from);
     window.step();
@@ -247,13 +283,15 @@ fn drag(window: &mut Harness<'_, App>, name: &str) -> Vec<Duration> {
 }
 
 fn frame(window: &mut Harness<'_, App>) -> Duration {
-    processor_time(|| draw(window))
+    let laid_out = processor_time(|| window.step());
+    laid_out + tessellated(window)
 }
 
-fn draw(window: &mut Harness<'_, App>) {
-    window.step();
+/// A window hands its shapes over; only the harness keeps them, so they are copied outside the measured time.
+fn tessellated(window: &Harness<'_, App>) -> Duration {
     let output = window.output();
-    std::hint::black_box(window.ctx.tessellate(output.shapes.clone(), output.pixels_per_point));
+    let (shapes, scale) = (output.shapes.clone(), output.pixels_per_point);
+    processor_time(|| drop(std::hint::black_box(window.ctx.tessellate(shapes, scale))))
 }
 
 fn report(what: &str, times: impl Iterator<Item = Duration>, naive: Duration, promised_ms: f64) {
@@ -293,24 +331,38 @@ fn view(zoom: f64) -> View {
     View::of(&Projector::new(rect, &MercatorProjection, &memory, lat_lon(36.305, -84.15)))
 }
 
-/// Track legs forth and back, and dense scans of some two hundred waypoints: what one can draw in a long day.
-fn plan(tracks: usize, scans: usize) -> String {
+/// Track legs forth and back, and spirals of some two hundred waypoints each: as much as somebody draws for a season, in flights
+/// that a battery lasts for.
+fn plan(tracks: usize, spirals: usize) -> String {
     let mut text = String::from(
         r#"<flightPlan xmlns="urn:legwork:flight-plan:1" name="bench" aircraft="trainer">
         <runways><runway id="R" lat="36.3" lon="-84.2" elevation="300" heading="90" length="600" priority="1"/></runways>
-        <mainPlan><stage id="to" type="take-off" runway="R" altitude="100" altitudeReference="agl"/>
-        <stage id="m" type="mission" altitude="250" altitudeReference="agl">"#,
+        <mainPlan>"#,
     );
-    for leg in 1..=tracks {
-        let (row, column) = (leg / 40, leg % 40);
-        let column = if row % 2 == 0 { column } else { 39 - column };
-        let (lat, lon) = (36.31 + 0.004 * row as f64 / 4.0, -84.19 + 0.003 * column as f64);
-        let _ = write!(text, r#"<TF id="leg{leg}" lat="{lat:.5}" lon="{lon:.5}"/>"#);
+    let tracks: Vec<String> = (1..=tracks).map(track).collect();
+    let spirals: Vec<String> = (1..=spirals).map(spiral).collect();
+    for (flight, legs) in tracks.chunks(TRACKS).chain(spirals.chunks(SPIRALS)).enumerate() {
+        let legs = legs.concat();
+        let _ = write!(
+            text,
+            r#"<stage id="to{flight}" type="take-off" runway="R" altitude="100" altitudeReference="agl"/>
+            <stage id="m{flight}" type="mission" altitude="250" altitudeReference="agl">{legs}</stage>
+            <stage id="land{flight}" type="land" runway="R" turnaroundEnergy="1" turnaroundTime="1800"/>"#
+        );
     }
-    for scan in 1..=scans {
-        let (lat, lon) = (36.25 - 0.02 * (scan / 25) as f64, -84.40 + 0.02 * (scan % 25) as f64);
-        let area = format!(r#"<area lat="{lat:.5}" lon="{lon:.5}" radius="1000"/>"#);
-        let _ = write!(text, r#"<scan id="s{scan}" spacing="20" heading="0">{area}</scan>"#);
-    }
-    text + r#"</stage><stage id="land" type="land" runway="R"/></mainPlan></flightPlan>"#
+    text + "</mainPlan></flightPlan>"
+}
+
+fn track(leg: usize) -> String {
+    let (row, column) = (leg / 40, leg % 40);
+    let column = if row % 2 == 0 { column } else { 39 - column };
+    let (lat, lon) = (36.31 + 0.001 * row as f64, -84.19 + 0.003 * column as f64);
+    format!(r#"<TF id="leg{leg}" lat="{lat:.5}" lon="{lon:.5}"/>"#)
+}
+
+fn spiral(leg: usize) -> String {
+    let (row, column) = (leg / 25, leg % 25);
+    let (lat, lon) = (36.28 - 0.012 * row as f64, -84.35 + 0.012 * column as f64);
+    let size = r#"innerRadius="180" outerRadius="250" spacing="20""#;
+    format!(r#"<spiral id="s{leg}" {size}><centre lat="{lat:.5}" lon="{lon:.5}"/></spiral>"#)
 }
