@@ -4,6 +4,7 @@ use crate::actions;
 use crate::command::Selection;
 use crate::panels::Scene;
 use flight_plan::Id;
+use std::sync::LazyLock;
 
 /// The documents, the first to be read first.
 const DOCUMENTS: &[(&str, &str)] = &[
@@ -49,8 +50,13 @@ pub struct Topic {
     pub text: String,
 }
 
-/// All topics, in reading order.
-pub fn topics() -> Vec<Topic> {
+/// All topics, in reading order. They are cut out once: actions ask for them in every frame.
+pub fn topics() -> &'static [Topic] {
+    static TOPICS: LazyLock<Vec<Topic>> = LazyLock::new(cut);
+    &TOPICS
+}
+
+fn cut() -> Vec<Topic> {
     let mut topics: Vec<Topic> = DOCUMENTS.iter().flat_map(|(file, text)| split(file, text)).collect();
     let keys: Vec<String> = topics.iter().map(|topic| topic.key.clone()).collect();
     for topic in &mut topics {
@@ -164,8 +170,8 @@ pub fn topic_of(scene: &Scene<'_>) -> String {
 fn topic_of_leg(scene: &Scene<'_>, id: &Id) -> String {
     let kind = scene.document.plan().leg(id).map_or("", |context| context.leg.kind_name());
     let quoted = format!("### `{kind}`");
-    let headed = topics().into_iter().find(|topic| topic.text.starts_with(&quoted));
-    headed.map_or_else(|| "plan-language.md#legs".into(), |topic| topic.key)
+    let headed = topics().iter().find(|topic| topic.text.starts_with(&quoted));
+    headed.map_or_else(|| "plan-language.md#legs".into(), |topic| topic.key.clone())
 }
 
 #[cfg(test)]
@@ -178,7 +184,7 @@ mod tests {
         let topics = topics();
         let keys: BTreeSet<&str> = topics.iter().map(|t| t.key.as_str()).collect();
         assert!(topics.len() == keys.len() && keys.len() > 80, "{} {}", topics.len(), keys.len());
-        for topic in &topics {
+        for topic in topics {
             let mut rest = topic.text.as_str();
             while let Some((before, _, target, after)) = next_link(rest) {
                 let known = if before.ends_with('!') {

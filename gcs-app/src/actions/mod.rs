@@ -161,6 +161,11 @@ pub fn all(scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     actions
 }
 
+/// One action of [`table`], by its identifier.
+pub fn written(scene: &Scene<'_>, id: &str) -> Option<Action> {
+    table::ENTRIES.iter().find(|entry| entry.id == id).map(|entry| entry.action(scene))
+}
+
 /// What has a key, with all of its keys: `Undo`, `Ctrl+Z`.
 pub fn keys() -> impl Iterator<Item = (&'static str, String)> {
     let written = |key: &KeyboardShortcut| key.format(&ModifierNames::NAMES, cfg!(target_os = "macos"));

@@ -313,7 +313,7 @@ fn new_way(scene: &Scene<'_>) -> Asked {
 
 /// Which variable and what of the leg is chosen in the palette.
 fn bind(scene: &Scene<'_>) -> Asked {
-    if create::bindings(scene.document.plan(), one_leg(scene)?).is_empty() {
+    if !create::has_bindings(scene.document.plan(), one_leg(scene)?) {
         return Err("The selected leg has no place and no number");
     }
     view(ViewCommand::Palette(Some(bindings::QUERY)))

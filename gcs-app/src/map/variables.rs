@@ -11,7 +11,7 @@ use crate::panels::binding::DraggedVariable;
 use crate::theme::{self, Palette};
 use egui::{Align2, DragAndDrop, Painter, Pos2, Shape, Stroke, Ui, vec2};
 use flight_plan::Id;
-use flight_plan::create::bindings;
+use flight_plan::create::place_binding;
 
 const NOWHERE: &str =
     "Drop a place or an area on a leg that goes there, and a number on its field in the inspector.";
@@ -57,7 +57,7 @@ pub fn take_dropped(ui: &Ui, canvas: &Canvas<'_>, queue: &mut Queue) {
     let plan = canvas.scene.document.plan();
     let binds = |thing: Selection| match thing {
         Selection::Leg(leg) => {
-            let place = bindings(plan, &leg).into_iter().find(|binding| binding.number.is_none())?;
+            let place = place_binding(plan, &leg)?;
             let edit =
                 place.choices.into_iter().find(|(name, _)| *name == dragged.0).map(|(_, edit)| edit)?;
             Some((leg, edit))

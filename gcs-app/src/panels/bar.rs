@@ -1,7 +1,7 @@
 //! The bar: menus, vehicle and link, mode and state, plan badge, clock, push.
 
 use super::{Scene, tour};
-use crate::actions::{Action, Fittings, Group, Kind, all};
+use crate::actions::{Action, Fittings, Group, Kind, all, written};
 use crate::command::{DocumentCommand, FlyCommand, Queue, Replacement};
 use crate::link::LinkState;
 use crate::state::log::short_hash;
@@ -59,8 +59,8 @@ fn title(ui: &mut Ui, scene: &Scene<'_>) {
 }
 
 fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
-    let actions = all(scene, fittings);
     let menu = ui.menu_button(RichText::new("Legwork").strong(), |ui| {
+        let actions = all(scene, fittings);
         // a small window has no room for all of it
         let most = ui.ctx().content_rect().height() - 60.0;
         egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
@@ -84,8 +84,8 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue)
     });
     tour::mark(ui.ctx(), tour::MENU, menu.response.rect);
     for (id, symbol) in [("undo", "↶"), ("redo", "↷")] {
-        if let Some(action) = actions.iter().find(|action| action.id == id) {
-            symbol_button(ui, action, symbol, queue);
+        if let Some(action) = written(scene, id) {
+            symbol_button(ui, &action, symbol, queue);
         }
     }
 }

@@ -10,8 +10,8 @@ use egui_commonmark::{CommonMarkCache, CommonMarkViewer};
 /// The window with the documents.
 #[derive(Default)]
 pub struct Help {
-    /// Read when it is first opened.
-    topics: Vec<Topic>,
+    /// Empty until it is first opened.
+    topics: &'static [Topic],
     words: String,
     cache: CommonMarkCache,
     /// The topic that was drawn last.
@@ -43,7 +43,7 @@ impl Help {
 
     fn open(&mut self, ui: &Ui) {
         self.topics = topics();
-        for topic in &self.topics {
+        for topic in self.topics {
             self.cache.add_link_hook(&topic.key);
         }
         for (name, bytes) in PICTURES {

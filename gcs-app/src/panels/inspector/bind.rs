@@ -4,7 +4,7 @@ use super::page::Page;
 use crate::panels::binding;
 use crate::theme;
 use egui::{Popup, Pos2, Rect, RichText, Role, Ui, WidgetInfo, pos2};
-use flight_plan::create::{Binding, bindings};
+use flight_plan::create::{Binding, place_binding};
 use flight_plan::describe::{Kind, OneOf, Property, Row, Subject};
 use flight_plan::{Id, Use};
 
@@ -69,7 +69,7 @@ pub fn place_of(page: &Page<'_, '_>, one: &OneOf) -> Option<Binding> {
         Subject::Leg(leg) if is_it && is_own && !page.is_several() => leg,
         _ => return None,
     };
-    bindings(page.plan(), leg).into_iter().find(|binding| binding.number.is_none())
+    place_binding(page.plan(), leg)
 }
 
 /// Beside where a leg goes.

@@ -20,6 +20,17 @@ pub struct Binding {
     pub free: Option<Edit>,
 }
 
+/// A variable can give something of the leg: what [`bindings`] would not be empty for.
+pub fn has_bindings(plan: &FlightPlan, leg: &Id) -> bool {
+    let Some(leg) = plan.leg(leg).map(|context| context.leg) else { return false };
+    !Numeric::of(leg).is_empty() || place(plan, leg).is_some()
+}
+
+/// The place or area of a leg.
+pub fn place_binding(plan: &FlightPlan, leg: &Id) -> Option<Binding> {
+    place(plan, plan.leg(leg)?.leg)
+}
+
 /// All of a leg, its place or area first.
 pub fn bindings(plan: &FlightPlan, leg: &Id) -> Vec<Binding> {
     let Some(leg) = plan.leg(leg).map(|context| context.leg) else { return Vec::new() };
@@ -116,5 +127,14 @@ mod tests {
         let (made, edit) = orbit[0].new.clone().unwrap();
         assert!(edit.apply(&plan).unwrap().variable(&made).is_some());
         assert!(of(&plan, "nothing").is_empty());
+        for leg in ["o", "t", "nothing"] {
+            let all = of(&plan, leg);
+            assert_eq!(has_bindings(&plan, &leg.into()), !all.is_empty(), "{leg}");
+            assert_eq!(
+                place_binding(&plan, &leg.into()),
+                all.into_iter().find(|b| b.number.is_none()),
+                "{leg}"
+            );
+        }
     }
 }

@@ -18,7 +18,7 @@ pub use arrange::{
     delete_legs, delete_set, duplicate, fork_around, loop_around, procedure_of, shift, unloop,
 };
 pub use bind::{Numeric, bind, bound_to, named_variable, put_at, unbind, variable_of_fix, variable_of_leg};
-pub use binding::{Binding, bindings};
+pub use binding::{Binding, bindings, has_bindings, place_binding};
 pub use branch::{Way, begin_way, delete_leg, insert};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
