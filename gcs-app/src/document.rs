@@ -2,7 +2,7 @@
 
 use crate::command::Selection;
 use crate::files::Stamp;
-use flight_plan::{Edit, FlightPlan, History, Id, Problem};
+use flight_plan::{Edit, FlightPlan, History, Id, Problem, in_names};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -176,6 +176,11 @@ impl Document {
     /// What people call a part of the plan: its name, else its identifier.
     pub fn label<'a>(&'a self, id: &'a Id) -> &'a str {
         self.names.get(id).map_or(id.as_str(), String::as_str)
+    }
+
+    /// A sentence about the plan, with names in the place of the identifiers that stand in it as `` `id` ``.
+    pub fn in_names(&self, sentence: &str) -> String {
+        in_names(sentence, |id| self.names.get(id).map(String::as_str))
     }
 
     /// The leg of the document that a flown one stands for: that of the procedure, where it was made by a call.

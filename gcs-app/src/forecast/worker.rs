@@ -11,6 +11,7 @@ use flight_exec::rehearse::{Diversion, WhatIf};
 use flight_exec::review::put_remedies;
 use flight_plan::{FlightPlan, Problem};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use terrain::Terrain;
 
@@ -46,6 +47,8 @@ pub struct Analysis {
     pub document: u64,
     /// The document's version it belongs to.
     pub version: u64,
+    /// Differs whenever anything of it does, and is never used twice in a run; 0: nothing was found out.
+    pub found: u64,
     /// The plan's hash; empty until it is known.
     pub hash: String,
     /// What the checks found, and the review of the path if it was made. The review is made in calm air, whatever the forecast is.
@@ -195,8 +198,16 @@ impl Worker {
             changed = true;
             self.known.take(found);
         }
-        changed.then(|| self.known.clone())
+        changed.then(|| {
+            self.known.found = next_found();
+            self.known.clone()
+        })
     }
+}
+
+fn next_found() -> u64 {
+    static LAST: AtomicU64 = AtomicU64::new(0);
+    LAST.fetch_add(1, Ordering::Relaxed) + 1
 }
 
 /// Where answers go.

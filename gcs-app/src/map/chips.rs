@@ -39,7 +39,7 @@ fn standing(ui: &mut Ui, scene: &Scene<'_>, p: &Palette, queue: &mut Queue) {
     let Some(why) = scene.out_of_date() else { return };
     let error = marks::first_error(scene);
     row(ui, |ui| {
-        let place = error.and_then(|e| problems::find(scene.document.plan(), e.subject.as_ref()?));
+        let place = error.and_then(|e| problems::find(scene.document, e.subject.as_ref()?));
         if let Some(place) = place
             && ui.small_button("Show the error").clicked()
         {

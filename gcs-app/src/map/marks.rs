@@ -28,9 +28,12 @@ const MOST: usize = 50;
 /// The errors of what the path, as it is drawn, does not come to: where it does, it is red itself.
 pub fn off_path<'a>(scene: &Scene<'a>) -> impl Iterator<Item = &'a Problem> {
     let (forecast, mut seen) = (scene.forecast(), HashSet::new());
-    let is_flown =
-        |id: &Id| forecast.passages.iter().any(|passage| passage.leg == *id || passage.stage == *id);
     let errors = scene.problems().filter(|problem| problem.is_error());
+    // gone through once, and only where something is wrong
+    let passages =
+        scene.problems().any(Problem::is_error).then_some(&forecast.passages).into_iter().flatten();
+    let flown: HashSet<&Id> = passages.flat_map(|passage| [&passage.leg, &passage.stage]).collect();
+    let is_flown = move |id: &Id| flown.contains(id);
     errors.filter(move |p| p.subject.as_ref().is_some_and(|id| seen.insert(id) && !is_flown(id))).take(MOST)
 }
 
@@ -57,7 +60,7 @@ pub fn draw_failures(
 
 /// Where a problem is, as something that can be found on the map.
 pub fn selection_of(problem: &Problem, scene: &Scene<'_>) -> Option<crate::command::Selection> {
-    problems::find(scene.document.plan(), problem.subject.as_ref()?)
+    problems::find(scene.document, problem.subject.as_ref()?)
 }
 
 fn failure(painter: &Painter, at: Pos2, why: &str, p: &Palette) {

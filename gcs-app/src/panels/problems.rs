@@ -2,9 +2,10 @@
 
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
+use crate::document::Document;
 use crate::theme;
 use egui::text::{LayoutJob, TextWrapping};
-use egui::{FontId, Response, RichText, ScrollArea, Sense, Shape, TextFormat, Ui, UiBuilder, vec2};
+use egui::{FontId, Rect, Response, RichText, ScrollArea, Sense, Shape, TextFormat, Ui, UiBuilder, vec2};
 use flight_plan::{Edit, FlightPlan, Id, Problem, Verdict, diff};
 
 /// The panel.
@@ -14,6 +15,34 @@ pub struct Problems {
     open: Option<String>,
     /// What was selected when it was last drawn.
     selected: Option<Selection>,
+    listed: Listed,
+}
+
+/// What a frame needs to know of all problems, made anew when they change: only rows in view are drawn.
+#[derive(Debug, Default)]
+struct Listed {
+    /// The document's version, and what was found out of it.
+    of: (u64, u64),
+    /// The gravest first: numbers among the scene's problems.
+    order: Vec<usize>,
+    verdict: Verdict,
+    /// Of the rows as they were last drawn, screen points.
+    heights: Vec<f32>,
+}
+
+impl Listed {
+    fn refresh(&mut self, scene: &Scene<'_>, problems: &[&Problem]) {
+        let of = (scene.document.version(), scene.analysis.found);
+        if self.of == of {
+            return;
+        }
+        let mut order: Vec<usize> = (0..problems.len()).collect();
+        order.sort_by_key(|index| problems.get(*index).map(|problem| problem.rank()));
+        self.of = of;
+        self.order = order;
+        self.verdict = Verdict::of(problems.iter().copied());
+        self.heights.resize(self.order.len().min(MOST), USUAL);
+    }
 }
 
 impl Panel for Problems {
@@ -37,7 +66,53 @@ impl Panel for Problems {
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let is_news = self.selected != scene.view.selection;
         self.selected.clone_from(&scene.view.selection);
-        list(ui, scene, &mut self.open, is_news, queue);
+        let problems: Vec<&Problem> = scene.problems().collect();
+        self.listed.refresh(scene, &problems);
+        verdict(ui, scene, self.listed.verdict);
+        let pointed = ScrollArea::vertical().id_salt("problems").auto_shrink(false);
+        let pointed = pointed.show(ui, |ui| self.rows(ui, scene, &problems, is_news, queue)).inner;
+        if scene.view.pointed != pointed {
+            queue.view(ViewCommand::PointOut(pointed));
+        }
+    }
+}
+
+impl Problems {
+    /// `is_news`: something else was selected than in the last frame; the first problem with it comes into view. Gives whose problem
+    /// the pointer is on.
+    fn rows(
+        &mut self,
+        ui: &mut Ui,
+        scene: &Scene<'_>,
+        problems: &[&Problem],
+        mut is_news: bool,
+        queue: &mut Queue,
+    ) -> Option<Id> {
+        let mut pointed = None;
+        let near = ui.clip_rect().expand(BEYOND);
+        let listed = self.listed.order.iter().filter_map(|index| problems.get(*index));
+        for ((number, problem), height) in listed.enumerate().zip(&mut self.listed.heights) {
+            let rect = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), *height));
+            let rect = if near.intersects(rect) {
+                let response = row(ui, scene, (number, problem), &mut self.open, queue);
+                if response.hovered() {
+                    pointed.clone_from(&problem.subject);
+                }
+                response.rect
+            } else {
+                ui.allocate_space(rect.size()).1
+            };
+            *height = rect.height();
+            let is_selected = || subject(scene, problem).is_some_and(|of| scene.is_selected(&of));
+            if is_news && is_selected() {
+                ui.scroll_to_rect(rect, None);
+                is_news = false;
+            }
+        }
+        if let Some(more) = problems.len().checked_sub(MOST).filter(|more| *more > 0) {
+            ui.label(RichText::new(format!("and {more} more")).color(theme::of(ui).weak));
+        }
+        pointed
     }
 }
 
@@ -49,31 +124,10 @@ const ROWS: usize = 2;
 /// So many changes of a remedy are told before it is made.
 const MOST_CHANGES: usize = 8;
 
-/// `is_news`: something else was selected than in the last frame; the first problem with it comes into view.
-fn list(ui: &mut Ui, scene: &Scene<'_>, open: &mut Option<String>, mut is_news: bool, queue: &mut Queue) {
-    let problems = ranked(scene);
-    verdict(ui, scene, &problems);
-    let mut pointed = None;
-    ScrollArea::vertical().id_salt("problems").auto_shrink(false).show(ui, |ui| {
-        for (number, problem) in problems.iter().take(MOST).enumerate() {
-            let response = row(ui, scene, (number, problem), open, queue);
-            if response.hovered() {
-                pointed.clone_from(&problem.subject);
-            }
-            let is_selected = || subject(scene, problem).is_some_and(|of| scene.is_selected(&of));
-            if is_news && is_selected() {
-                response.scroll_to_me(None);
-                is_news = false;
-            }
-        }
-        if let Some(more) = problems.len().checked_sub(MOST).filter(|more| *more > 0) {
-            ui.label(RichText::new(format!("and {more} more")).color(theme::of(ui).weak));
-        }
-    });
-    if scene.view.pointed != pointed {
-        queue.view(ViewCommand::PointOut(pointed));
-    }
-}
+/// Rows so far out of view are drawn, too, for those who go on by keyboard or screen reader; screen points.
+const BEYOND: f32 = 600.0;
+/// Height of a row that was not drawn yet, screen points.
+const USUAL: f32 = 36.0;
 
 /// The problems of the plan, the gravest first.
 fn ranked<'a>(scene: &Scene<'a>) -> Vec<&'a Problem> {
@@ -89,13 +143,12 @@ pub fn first_in_error(scene: &Scene<'_>) -> Option<Selection> {
 
 /// What a problem is with.
 fn subject(scene: &Scene<'_>, problem: &Problem) -> Option<Selection> {
-    find(scene.document.plan(), problem.subject.as_ref()?)
+    find(scene.document, problem.subject.as_ref()?)
 }
 
 /// Whether the plan can be flown: green only if nothing at all is to be considered first.
-fn verdict(ui: &mut Ui, scene: &Scene<'_>, problems: &[&Problem]) {
+fn verdict(ui: &mut Ui, scene: &Scene<'_>, found: Verdict) {
     let p = theme::of(ui);
-    let found = Verdict::of(problems.iter().copied());
     let (text, colour) = match found {
         Verdict { errors: 0, warnings: 0 } if !is_reviewed(scene) => {
             ("Is being reviewed…".to_owned(), p.weak)
@@ -120,14 +173,13 @@ fn row(
     queue: &mut Queue,
 ) -> Response {
     let p = theme::of(ui);
-    let plan = scene.document.plan();
-    let message = told(plan, problem);
+    let message = told(scene.document, problem);
     let selection = subject(scene, problem);
     let is_selected = selection.as_ref().is_some_and(|selection| scene.is_selected(selection));
     let whole = UiBuilder::new().id_salt(("problem", number)).sense(Sense::click());
     let shown = ui.scope_builder(whole, |ui| {
         let background = ui.painter().add(Shape::Noop);
-        let asked = inside(ui, plan, problem, &message, open);
+        let asked = inside(ui, scene.document, problem, &message, open);
         if let Some(fix) = problem.fix.as_ref().filter(|_| asked) {
             queue.edit((**fix).clone());
         }
@@ -152,7 +204,7 @@ fn row(
 /// Its symbol, its headline or all of its text, and below that its remedy. True: that is asked for.
 fn inside(
     ui: &mut Ui,
-    plan: &FlightPlan,
+    document: &Document,
     problem: &Problem,
     message: &str,
     open: &mut Option<String>,
@@ -160,7 +212,7 @@ fn inside(
     let p = theme::of(ui);
     let (symbol, colour) = if problem.is_error() { ("✖", p.warning) } else { ("⚠", p.caution) };
     let is_open = open.as_deref() == Some(message);
-    let text = if is_open { at_its_place(problem, message) } else { headline(plan, problem) };
+    let text = if is_open { at_its_place(problem, message) } else { headline(document, problem) };
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.add_space(2.0);
@@ -187,7 +239,7 @@ fn inside(
         ui.horizontal(|ui| {
             ui.add_space(20.0);
             let button = ui.small_button("Fix");
-            button.on_hover_ui(|ui| remedy(ui, plan, fix)).clicked()
+            button.on_hover_ui(|ui| remedy(ui, document.plan(), fix)).clicked()
         })
         .inner
     })
@@ -223,27 +275,27 @@ fn at_its_place(problem: &Problem, message: &str) -> String {
 }
 
 /// Whose problem it is, and the first sentence about it.
-fn headline(plan: &FlightPlan, problem: &Problem) -> String {
-    let said = plan.in_names(problem.headline());
-    problem
-        .subject
-        .as_ref()
-        .map_or_else(|| said.clone(), |subject| format!("{}: {said}", plan.label(subject)))
+fn headline(document: &Document, problem: &Problem) -> String {
+    whose(document, problem, problem.headline())
 }
 
 /// Whose problem it is, and what; by names, where the plan has names.
-pub fn told(plan: &FlightPlan, problem: &Problem) -> String {
-    let message = plan.in_names(&problem.message);
+pub fn told(document: &Document, problem: &Problem) -> String {
+    whose(document, problem, &problem.message)
+}
+
+fn whose(document: &Document, problem: &Problem, said: &str) -> String {
+    let said = document.in_names(said);
     match &problem.subject {
-        Some(subject) => format!("{}: {message}", plan.label(subject)),
-        None => message,
+        Some(subject) => format!("{}: {said}", document.label(subject)),
+        None => said,
     }
 }
 
 /// What an identifier of the document stands for.
-pub fn find(plan: &FlightPlan, id: &Id) -> Option<Selection> {
-    let id_ = || id.clone();
-    if plan.leg(id).is_some() {
+pub fn find(document: &Document, id: &Id) -> Option<Selection> {
+    let (plan, id_) = (document.plan(), || id.clone());
+    if !document.kind_name(id).is_empty() {
         return Some(Selection::Leg(id_()));
     }
     if plan.stage(id).is_some() {

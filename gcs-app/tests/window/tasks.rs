@@ -250,7 +250,7 @@ fn three_faults_are_found_and_mended() {
         window.until_analysed();
         let problems = window.app().analysis().problems.clone();
         let error = problems.iter().find(|problem| problem.is_error()).unwrap();
-        let told = gcs_app::panels::problems::told(&window.plan(), error);
+        let told = gcs_app::panels::problems::told(window.app().document(), error);
         window.click_role(Role::Button, &format!("Problem: {told}"));
         match window.selected().as_str() {
             "side2" => window.choose_option("Fix", "B"),

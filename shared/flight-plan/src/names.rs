@@ -43,19 +43,24 @@ impl FlightPlan {
 
     /// A sentence about the plan, with names in the place of the identifiers that stand in it as `` `id` ``.
     pub fn in_names(&self, sentence: &str) -> String {
-        let mut told = String::with_capacity(sentence.len());
-        let mut rest = sentence;
-        while let Some((before, id, after)) = quoted(rest) {
-            told.push_str(before);
-            match self.name_of(&Id::new(id)) {
-                Some(name) => told.extend(["“", name, "”"]),
-                None => told.extend(["`", id, "`"]),
-            }
-            rest = after;
-        }
-        told.push_str(rest);
-        told
+        in_names(sentence, |id| self.name_of(id))
     }
+}
+
+/// As [`FlightPlan::in_names`], for who keeps the names at hand.
+pub fn in_names<'a>(sentence: &str, name_of: impl Fn(&Id) -> Option<&'a str>) -> String {
+    let mut told = String::with_capacity(sentence.len());
+    let mut rest = sentence;
+    while let Some((before, id, after)) = quoted(rest) {
+        told.push_str(before);
+        match name_of(&Id::new(id)) {
+            Some(name) => told.extend(["“", name, "”"]),
+            None => told.extend(["`", id, "`"]),
+        }
+        rest = after;
+    }
+    told.push_str(rest);
+    told
 }
 
 /// What stands before, between and after the first two backticks.

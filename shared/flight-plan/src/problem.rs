@@ -27,7 +27,7 @@ const GRAVE: [&str; 6] = [
 ];
 
 /// What the problems of a plan come to, in the same words everywhere.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Verdict {
     /// Problems that forbid flying.
     pub errors: usize,

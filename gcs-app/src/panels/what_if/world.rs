@@ -118,9 +118,8 @@ fn problems(ui: &mut Ui, scene: &Scene<'_>) {
     for problem in new {
         let colour = if problem.is_error() { p.warning } else { p.caution };
         let symbol = if problem.is_error() { "✖" } else { "⚠" };
-        let text = RichText::new(format!("{symbol} {}", told(scene.document.plan(), problem)))
-            .size(11.5)
-            .color(colour);
+        let text =
+            RichText::new(format!("{symbol} {}", told(scene.document, problem))).size(11.5).color(colour);
         ui.add(egui::Label::new(text).wrap());
     }
 }
