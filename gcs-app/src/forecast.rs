@@ -8,6 +8,7 @@ mod beginning;
 mod bench;
 mod coverage;
 mod left_out;
+mod outline;
 mod preview;
 mod reviewer;
 mod told;
@@ -16,6 +17,7 @@ mod worker;
 pub use aboard::Aboard;
 pub use coverage::Coverage;
 pub use left_out::LeftOut;
+pub use outline::{Heights, Line, Outline, Places};
 pub use told::{Clearance, clearance, told};
 pub use worker::{Analysis, Question, Worker};
 
@@ -102,9 +104,50 @@ pub struct Forecast {
     pub cut_short: Option<String>,
     /// It is the beginning of a plan with errors: as far as that can be flown.
     pub is_beginning: bool,
+    /// What is drawn of points and waypoints; whoever changes those begins with a new one.
+    pub outline: Outline,
 }
 
 impl Forecast {
+    /// Where the points are on the map.
+    pub fn places(&self) -> &Places {
+        self.outline.places(&self.points)
+    }
+    /// Where the waypoints are on the map.
+    pub fn waypoint_places(&self) -> &Places {
+        self.outline.waypoints(self.waypoints.iter().map(|waypoint| waypoint.position.into()))
+    }
+    /// The path as it is drawn in views of an octave; `None`: no map has that.
+    pub fn line(&self, octave: i32) -> Option<&Line> {
+        self.outline.line(&self.points, octave)
+    }
+    /// Between which heights path and ground are from a time on.
+    pub fn heights_from(&self, from_s: f64) -> Heights {
+        let first = self.points.partition_point(|point| point.time_s < from_s);
+        let block = first / outline::BLOCK + 1;
+        let rest = (block * outline::BLOCK).min(self.points.len());
+        let rest = Heights::of(self.points.get(first..rest).unwrap_or_default());
+        let blocks = self.outline.heights(&self.points).iter().skip(block);
+        blocks.fold(rest, |found, heights| found.with(*heights))
+    }
+    /// The first point behind another one that is not before a time.
+    pub fn next_at(&self, behind: usize, time_s: f64) -> usize {
+        let is_before = |index: usize| self.points.get(index).is_some_and(|point| point.time_s < time_s);
+        // it is near: farther and farther steps find it soon
+        let mut step = 1;
+        while is_before(behind + step) {
+            step *= 2;
+        }
+        let from = behind + step / 2 + 1;
+        let rest = self.points.get(from..(behind + step).min(self.points.len())).unwrap_or_default();
+        from + rest.partition_point(|point| point.time_s < time_s)
+    }
+    /// Works out what was drawn of the former forecast, so that no frame has to wait for it.
+    fn prepare(&self, former: &Self) {
+        if self.outline.prepare(&self.points, &former.outline) {
+            self.waypoint_places();
+        }
+    }
     /// Seconds from start to end.
     pub fn duration_s(&self) -> f64 {
         self.points.last().map_or(0.0, |p| p.time_s)
@@ -219,5 +262,30 @@ mod tests {
         assert_eq!(at("c", 1), None);
         assert_eq!(f.passages_of(&"a".into()).map(<[Point]>::len).collect::<Vec<_>>(), [3, 2]);
         assert_eq!(Forecast::default().at(1.0), None);
+    }
+
+    #[test]
+    fn the_next_point_and_the_heights_are_found_without_looking_at_all() {
+        let point = |i: u32| Point {
+            time_s: f64::from(i),
+            distance_m: f64::from(i),
+            position: LatLon::new(0.0, 0.0),
+            altitude_amsl_m: 500.0 + f64::from(i),
+            ground_amsl_m: Some(f64::from(i % 7)),
+            passage: 0,
+        };
+        let f = Forecast { points: (0..1000).map(point).collect(), ..Forecast::default() };
+        for (behind, time_s) in
+            [(0, 0.5), (0, 1.0), (0, 2.5), (10, 3.0), (10, 700.2), (998, 999.0), (5, 5000.0)]
+        {
+            let after = f.points.iter().enumerate().skip(behind + 1);
+            let expected =
+                after.map(|(i, p)| (i, p.time_s)).find(|(_, t)| *t >= time_s).map_or(1000, |(i, _)| i);
+            assert_eq!(f.next_at(behind, time_s), expected, "{behind} {time_s}");
+        }
+        for from_s in [-1.0, 0.0, 127.0, 128.0, 130.5, 998.0, 2000.0] {
+            let first = f.points.partition_point(|point| point.time_s < from_s);
+            assert_eq!(f.heights_from(from_s), Heights::of(&f.points[first..]), "{from_s}");
+        }
     }
 }

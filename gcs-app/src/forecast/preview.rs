@@ -1,6 +1,6 @@
 //! From a plan to its forecast, by flying it with the code that flies it aboard; from plan to plan only what has changed.
 
-use super::{Alarm, Forecast, Passage, Point, Shared, left_out};
+use super::{Alarm, Forecast, Outline, Passage, Point, Shared, left_out};
 use aircraft::{Profile, Wind, Winds};
 use flight_exec::rehearse::{
     Diversion, Kept, Options, Preview, PreviewError, Reach, Rehearsal, Start, WhatIf,
@@ -88,7 +88,7 @@ impl Forecaster {
         };
         let points = points(preview, &self.last.points, self.rehearsal.kept(), self.terrain.as_ref());
         let passages = passages(preview, &points, self.profile.energy_j);
-        self.last = Arc::new(Forecast {
+        let forecast = Forecast {
             points,
             passages,
             left_out: left_out::of(preview, program.flown()),
@@ -97,7 +97,10 @@ impl Forecaster {
             stops: preview.stops.len(),
             cut_short: cut_short(preview, outcome),
             is_beginning: false,
-        });
+            outline: Outline::default(),
+        };
+        forecast.prepare(&self.last);
+        self.last = Arc::new(forecast);
         Ok(self.last.clone())
     }
 }

@@ -1,28 +1,31 @@
 //! The path that will be flown and the waypoints that will be sent.
 
-use super::polyline::{self, Cached, Style};
+use super::polyline::{self, Style};
 use super::sketch::Sketch;
 use super::text;
 use super::view::{Mercator, View};
-use crate::chart::Point;
+use crate::chart;
 use crate::chart::labels::{self, Labels};
 use crate::command::{PreviewCommand, Queue, Selection};
+use crate::forecast::{Forecast, Point};
 use crate::map::coverage;
 use crate::panels::{Scene, bar, decision};
 use crate::theme::Palette;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Shape, Stroke, pos2, vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 use flight_plan::Id;
+use std::collections::HashSet;
 
-/// The layer; keeps the decimated line until view or forecast change.
+/// The layer; keeps what it drew of the path until view or forecast change.
 #[derive(Debug, Default)]
 pub struct Layer {
-    line: Cached,
+    of: Option<(u64, View)>,
+    parts: Vec<Vec<Pos2>>,
 }
 
 /// Screen points per metre from which single waypoints are drawn.
 const WAYPOINTS_FROM: f64 = 0.015;
-/// Most waypoints drawn at once.
-const MAX_WAYPOINTS: usize = 3000;
+/// About the width of a waypoint, screen points.
+const MARK: f32 = 7.0;
 
 impl Layer {
     /// Draws the forecast; where there is none, the plan's places as a draft.
@@ -35,8 +38,10 @@ impl Layer {
         if forecast.points.is_empty() {
             return;
         }
-        let line = || forecast.points.iter().map(|point| point.position.into()).collect();
-        let parts = self.line.parts(line, scene.analysis.forecast_version, view);
+        let of = Some((scene.analysis.forecast_version, *view));
+        if self.of != of {
+            (self.of, self.parts) = (of, visible(forecast, view));
+        }
         // a draft that differs from what is aboard is dashed
         let is_draft = standing == bar::Standing::Draft && scene.vehicle.active_hash().is_some();
         let style = if is_draft { Style::Dashed } else { Style::Solid };
@@ -48,7 +53,7 @@ impl Layer {
                     polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, style, p.halo);
                 }
             }
-            _ => polyline::draw(painter, parts, Stroke::new(2.0, colour(scene, p)), style, p.halo),
+            _ => polyline::draw(painter, &self.parts, Stroke::new(2.0, colour(scene, p)), style, p.halo),
         }
         let faulty = scene.faulty();
         highlight(painter, view, scene, (p.warning, p), |leg, _| faulty.contains(leg));
@@ -57,6 +62,14 @@ impl Layer {
             waypoints(painter, view, scene, p);
         }
     }
+}
+
+/// A line so far out of view may still be seen, screen points.
+const BESIDE: f32 = 20.0;
+
+fn visible(forecast: &Forecast, view: &View) -> Vec<Vec<Pos2>> {
+    let parts = forecast.line(view.octave()).map(|line| line.parts(view.area(view.rect.expand(BESIDE))));
+    parts.into_iter().flatten().flat_map(|part| polyline::visible_parts(part, view)).collect()
 }
 
 /// Grey, when it is out of date.
@@ -101,22 +114,25 @@ fn highlight(
 }
 
 fn waypoints(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
-    let near = scene
-        .forecast()
-        .waypoints
-        .iter()
-        .map(|w| (w, view.place(w.position)))
-        .filter(|(_, at)| view.is_near(*at));
+    let forecast = scene.forecast();
+    let places = forecast.waypoint_places();
+    let mut taken: HashSet<(i32, i32)> = HashSet::new();
     let mut last: Option<Pos2> = None;
-    for (waypoint, at) in near.take(MAX_WAYPOINTS) {
-        if last.is_some_and(|l| l.distance(at) < 7.0) {
+    for index in places.within(view.area(view.rect.expand(MARK))) {
+        let (Some(waypoint), Some(at)) = (forecast.waypoints.get(index), places.at.get(index)) else {
+            continue;
+        };
+        let at = view.screen(*at);
+        // one in each square: more could not be told apart
+        let is_beside = last.is_some_and(|last| last.distance(at) < MARK);
+        if is_beside || !taken.insert(((at.x / MARK) as i32, (at.y / MARK) as i32)) {
             continue;
         }
         last = Some(at);
         if waypoint.fly_over {
-            painter.circle(at, 3.4, p.halo, Stroke::new(1.6, p.accent));
+            text::disc(painter, at, 3.4, p.halo, Stroke::new(1.6, p.accent));
         } else {
-            painter.circle(at, 2.4, p.accent, Stroke::new(1.0, p.halo));
+            text::disc(painter, at, 2.4, p.accent, Stroke::new(1.0, p.halo));
         }
     }
 }
@@ -142,10 +158,10 @@ fn name_branch(painter: &Painter, way: &[Pos2], name: &str, named: &mut Labels, 
     let Some(middle) = polyline::middle(way) else { return };
     let size = painter.layout_no_wrap(name.into(), FontId::proportional(SIZE), p.active).size();
     let beside = middle + vec2(6.0 + size.x / 2.0, -6.0 - size.y / 2.0);
-    let line: Vec<Point> = way.iter().map(|at| (at.x, at.y)).collect();
+    let line: Vec<chart::Point> = way.iter().map(|at| (at.x, at.y)).collect();
     let room = (size.x, size.y);
     let others = labels::along(&line, room).into_iter().chain(labels::beside((middle.x, middle.y), room));
-    let middles: Vec<Point> = std::iter::once((beside.x, beside.y)).chain(others).collect();
+    let middles: Vec<chart::Point> = std::iter::once((beside.x, beside.y)).chain(others).collect();
     if let Some((x, y)) = named.best(&middles, room) {
         let rect = text::haloed(painter, pos2(x, y), Align2::CENTER_CENTER, name, SIZE, p.active, p);
         named.take(rect.into());
@@ -173,25 +189,29 @@ pub fn move_cursor(response: &egui::Response, view: &View, scene: &Scene<'_>, qu
 
 /// When the path comes to where the pointer is, seconds from its start; `None`: it is not there.
 pub fn time_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Option<f64> {
-    let point = point_near(at, view, scene).and_then(|index| scene.forecast().points.get(index))?;
-    Some(point.time_s)
+    let near = points_near(at, view, scene).min_by(|(_, a), (_, b)| a.total_cmp(b));
+    near.map(|(point, _)| point.time_s)
 }
 
-/// The index of the point of the path under the pointer.
-fn point_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Option<usize> {
-    const REACH: f32 = 9.0;
-    scene.forecast().nearest_index(|point| view.place(point.position).distance(at), REACH)
+/// The pointer reaches so far, screen points.
+const REACH: f32 = 9.0;
+
+/// The points of the path under the pointer, each with its distance from there, screen points.
+fn points_near<'a>(at: Pos2, view: &'a View, scene: &Scene<'a>) -> impl Iterator<Item = (&'a Point, f32)> {
+    let (forecast, places) = (scene.forecast(), scene.forecast().places());
+    let around = Rect::from_center_size(at, Vec2::splat(2.0 * REACH));
+    let near = places.within(view.area(around)).filter_map(move |index| {
+        Some((forecast.points.get(index)?, view.screen(*places.at.get(index)?).distance(at)))
+    });
+    near.filter(|(_, far)| *far < REACH)
 }
 
 /// The legs whose path is under the pointer, the nearest first.
 pub fn legs_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Vec<Id> {
-    const REACH: f32 = 9.0;
     let forecast = scene.forecast();
     let mut near: Vec<(f32, usize)> = Vec::new();
-    for point in &forecast.points {
-        let far = view.place(point.position).distance(at);
+    for (point, far) in points_near(at, view, scene) {
         match near.last_mut() {
-            _ if far >= REACH => {}
             Some((least, passage)) if *passage == point.passage => *least = least.min(far),
             _ => near.push((far, point.passage)),
         }

@@ -1,8 +1,8 @@
-//! Text on the map.
+//! Text and small marks on the map.
 
 use crate::chart::Room;
 use crate::theme::Palette;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, vec2};
 
 /// Text with a halo, readable on any ground. Returns where it is.
 pub fn haloed(
@@ -22,6 +22,17 @@ pub fn haloed(
     }
     painter.galley_with_override_text_color(rect.min, galley, colour);
     rect
+}
+
+/// A small disc with an edge. egui keeps pictures of discs: two of them are a tenth of the vertices of a circle with a stroke.
+pub fn disc(painter: &Painter, at: Pos2, radius: f32, fill: Color32, edge: Stroke) {
+    // what is below shows through what is faint
+    if painter.opacity() < 1.0 || !fill.is_opaque() || !edge.color.is_opaque() {
+        painter.circle(at, radius, fill, edge);
+        return;
+    }
+    painter.circle_filled(at, radius + edge.width / 2.0, edge.color);
+    painter.circle_filled(at, radius - edge.width / 2.0, fill);
 }
 
 /// Text on a plate, readable over other names too; kept within the map.

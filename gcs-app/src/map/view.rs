@@ -30,6 +30,38 @@ impl Mercator {
     }
 }
 
+/// A rectangle of the unit square.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Area {
+    least: Mercator,
+    most: Mercator,
+}
+
+impl Area {
+    /// Around these places.
+    pub fn around(places: &[Mercator]) -> Self {
+        let none = Self {
+            least: Mercator { x: f64::INFINITY, y: f64::INFINITY },
+            most: Mercator { x: f64::NEG_INFINITY, y: f64::NEG_INFINITY },
+        };
+        places.iter().fold(none, |Self { least, most }, at| Self {
+            least: Mercator { x: least.x.min(at.x), y: least.y.min(at.y) },
+            most: Mercator { x: most.x.max(at.x), y: most.y.max(at.y) },
+        })
+    }
+
+    /// It is in there, or on the edge.
+    pub fn has(&self, at: Mercator) -> bool {
+        (self.least.x..=self.most.x).contains(&at.x) && (self.least.y..=self.most.y).contains(&at.y)
+    }
+
+    /// They have something in common.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let apart = |a: &Self, b: &Self| a.most.x < b.least.x || a.most.y < b.least.y;
+        !apart(self, other) && !apart(other, self)
+    }
+}
+
 /// Free space around what is fitted, screen points.
 const MARGIN: f32 = 48.0;
 /// More of it at the bottom, where the strip of commands floats over the map, screen points.
@@ -93,6 +125,11 @@ impl View {
             x: self.centre.x + f64::from(d.x) / self.scale,
             y: self.centre.y + f64::from(d.y) / self.scale,
         }
+    }
+
+    /// What a part of the screen shows.
+    pub fn area(&self, rect: Rect) -> Area {
+        Area::around(&[self.unit(rect.left_top()), self.unit(rect.right_bottom())])
     }
 
     /// The middle of the view that has another scale (`factor` times this one) and the same position at a point.

@@ -7,7 +7,7 @@ pub use flown::is_elsewhere;
 
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{PreviewCommand, Queue};
-use crate::forecast::{Forecast, Passage, Point};
+use crate::forecast::{Forecast, Heights, Passage, Point};
 use crate::map::coverage;
 use crate::theme::{self, Palette};
 use crate::units;
@@ -122,11 +122,7 @@ struct Axes {
 impl Axes {
     fn new(rect: Rect, forecast: &Forecast, from_s: f64) -> Self {
         let plot = Rect::from_min_max(rect.min + vec2(48.0, 20.0), rect.max - vec2(10.0, 20.0));
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for point in forecast.points.iter().filter(|point| point.time_s >= from_s) {
-            low = low.min(point.ground_amsl_m.unwrap_or(point.altitude_amsl_m));
-            high = high.max(point.altitude_amsl_m).max(point.ground_amsl_m.unwrap_or(high));
-        }
+        let Heights { low_m: low, high_m: high } = forecast.heights_from(from_s);
         let margin = ((high - low) * 0.08).max(20.0);
         let duration_s = (forecast.duration_s() - from_s).max(1.0);
         Self { plot, from_s, duration_s, low_m: low - margin, high_m: high + margin }
@@ -200,19 +196,19 @@ const LEAST_BAND: f32 = 24.0;
 
 /// One band above the plot per stage, with its name where there is room.
 fn draw_stages(ui: &Ui, painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
-    let (forecast, plan) = (scene.forecast(), scene.document.plan());
+    let (forecast, document) = (scene.forecast(), scene.document);
     let mut band: Option<(&Passage, f32)> = None;
     for passage in &forecast.passages {
         if band.is_none_or(|(b, _)| b.stage != passage.stage) {
             let x = forecast.points.get(passage.first).map_or(axes.plot.left(), |point| axes.x(point.time_s));
             if let Some((before, from)) = band {
-                draw_band(ui, painter, axes, plan.label(&before.stage), from, x, p);
+                draw_band(ui, painter, axes, document.label(&before.stage), from, x, p);
             }
             band = Some((passage, x));
         }
     }
     if let Some((last, from)) = band {
-        draw_band(ui, painter, axes, plan.label(&last.stage), from, axes.plot.right(), p);
+        draw_band(ui, painter, axes, document.label(&last.stage), from, axes.plot.right(), p);
     }
 }
 
@@ -239,15 +235,14 @@ fn draw_band(ui: &Ui, painter: &Painter, axes: &Axes, name: &str, from: f32, to:
 
 /// At most one point per screen point: the first of each column.
 fn thinned<'a>(axes: &'a Axes, forecast: &'a Forecast) -> impl Iterator<Item = &'a Point> {
-    let mut last = f32::NEG_INFINITY;
-    forecast.points.iter().filter(move |point| {
-        let x = axes.x(point.time_s);
-        let keep = x - last >= 1.0;
-        if keep {
-            last = x;
-        }
-        keep
+    let column_s = axes.duration_s / f64::from(axes.plot.width().max(1.0));
+    // the line comes from the point before
+    let first = forecast.points.partition_point(|point| point.time_s < axes.from_s).saturating_sub(1);
+    std::iter::successors(Some(first), move |index| {
+        let time_s = forecast.points.get(*index)?.time_s;
+        Some(forecast.next_at(*index, time_s + column_s))
     })
+    .map_while(|index| forecast.points.get(index))
 }
 
 fn draw_ground(painter: &Painter, axes: &Axes, forecast: &Forecast, p: &Palette) {

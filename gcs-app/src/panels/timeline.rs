@@ -118,7 +118,7 @@ fn draw_strip(painter: &Painter, rect: Rect, scene: &Scene<'_>, p: &Palette) {
     let duration_s = forecast.duration_s();
     let x = |time_s: f64| rect.left() + (time_s / duration_s) as f32 * rect.width();
     for (stage, from_s, to_s) in stages(forecast) {
-        let name = scene.document.plan().label(stage);
+        let name = scene.document.label(stage);
         let band = Rect::from_x_y_ranges(x(from_s) + 1.0..=x(to_s) - 1.0, rect.y_range());
         painter.rect_filled(band, 2.0, p.line);
         let galley = painter.layout_no_wrap(name.into(), FontId::proportional(11.0), p.text);

@@ -145,7 +145,7 @@ impl Levels {
 fn marks<'a>(axes: &Axes, scene: &Scene<'a>) -> Vec<(usize, &'a Passage, Pos2)> {
     let forecast = scene.forecast();
     let is_of_plan = |leg: &Id| !scene.document.kind_name(leg).is_empty();
-    let places = forecast.passages.iter().enumerate().filter(|(_, passage)| is_of_plan(&passage.leg));
+    let places = forecast.passages.iter().enumerate();
     let places = places.filter_map(|(index, passage)| {
         let last = forecast.points.get(passage.first..passage.end)?.last()?;
         Some((index, passage, axes.place(last)))
@@ -156,9 +156,10 @@ fn marks<'a>(axes: &Axes, scene: &Scene<'a>) -> Vec<(usize, &'a Passage, Pos2)> 
         places.into_iter().partition(|(_, passage, _)| is_selected(passage));
     // whole screen points suffice, and are in order
     let mut taken: BTreeSet<i64> = BTreeSet::new();
-    let is_free = |(.., at): &(usize, &Passage, Pos2)| {
+    // whose leg it is takes longest to find out, and few are asked
+    let is_free = |(_, passage, at): &(usize, &Passage, Pos2)| {
         let (x, gap) = (at.x.round() as i64, REACH as i64 + 1);
-        taken.range(x - gap + 1..x + gap).next().is_none() && taken.insert(x)
+        taken.range(x - gap + 1..x + gap).next().is_none() && is_of_plan(&passage.leg) && taken.insert(x)
     };
     first.into_iter().chain(rest).filter(is_free).collect()
 }
@@ -168,7 +169,7 @@ fn mark(ui: &Ui, scene: &Scene<'_>, passage: &Passage, index: usize, at: Pos2) -
     let response = ui.interact(rect, ui.scope_id().with(("level", index)), Sense::click_and_drag());
     let pass: Vec<String> = passage.passes.iter().map(ToString::to_string).collect();
     let pass = if pass.is_empty() { String::new() } else { format!(", pass {}", pass.join(".")) };
-    let name = format!("Altitude of {}{pass}", scene.document.plan().label(&passage.leg));
+    let name = format!("Altitude of {}{pass}", scene.document.label(&passage.leg));
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     response.on_hover_cursor(egui::CursorIcon::ResizeVertical)
 }
