@@ -13,12 +13,11 @@ use crate::panels::tree::title;
 use crate::units::{self, Units};
 use egui::accesskit::Action;
 use egui::{Key, Pos2, Rect, Role, Sense, Ui, Vec2, WidgetInfo};
-use flight_plan::{FlightPlan, Id};
 use geometry::LatLon;
 use std::collections::HashSet;
 
 /// Most of them; more could not be told apart.
-const MOST: usize = 300;
+const MOST: usize = 150;
 /// So many legs are looked at for those in view.
 const MOST_LEGS: usize = 5000;
 /// The side of a widget, screen points.
@@ -132,15 +131,16 @@ fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
         outline(line, format!("Path of emergency plan {name}"), Selection::Emergency(id.clone()))
     });
     let areas = sketch.polygons.iter().filter_map(|(leg, rings)| {
-        let name = format!("Area of {}", name_of_leg(plan, leg));
+        let name = format!("Area of {}", scene.document.label(leg));
         outline(&closed(rings.first()?), name, Selection::Leg(leg.clone()))
     });
-    let handles = sketch.handles.iter().filter(|handle| {
+    let placed = sketch.handles.iter().zip(&sketch.placed.handles);
+    let handles = placed.filter(|(handle, _)| {
         fixes && matches!(handle.what, Handled::Fix(_) | Handled::Waypoint(_) | Handled::Centre(_))
     });
-    let handles = handles.filter_map(|handle| {
-        let (at, what) = (view.place(handle.at), selection(plan, &handle.what));
-        inside(at, view).then(|| Item { name: handle.what.name(scene.document), at, what })
+    let handles = handles.filter_map(|(handle, at)| {
+        let (at, name) = (view.screen(*at), || handle.what.name(scene.document));
+        inside(at, view).then(|| Item { name: name(), at, what: selection(plan, &handle.what) })
     });
     let mut once = HashSet::new();
     let all = runways
@@ -157,13 +157,13 @@ fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
 /// Each leg where its path is in view.
 fn legs<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Item> + 'a {
     let Canvas { view, scene, .. } = *canvas;
-    let (plan, forecast) = (scene.document.plan(), scene.forecast());
+    let forecast = scene.forecast();
     let mut flown = HashSet::new();
     let passages = forecast.passages.iter().take(MOST_LEGS).filter(move |passage| flown.insert(&passage.leg));
     passages.filter_map(move |passage| {
-        let leg = scene.document.written(&passage.leg);
         let at = on_path(forecast, passage, view)?;
-        let name = format!("Path of {}", name_of_leg(plan, &leg));
+        let leg = scene.document.written(&passage.leg);
+        let name = format!("Path of {}", scene.document.label(&leg));
         Some(Item { name, at, what: Selection::Leg(leg) })
     })
 }
@@ -174,19 +174,15 @@ fn legs_of_ways<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Item> + 'a {
     let lines = sketch.ways.iter().flat_map(|way| &way.lines).take(MOST_LEGS);
     lines.filter_map(move |line| {
         let at = on_outline(&[line.from, line.to], view)?;
-        let name = format!("Path of {}", name_of_leg(scene.document.plan(), &line.leg));
+        let name = format!("Path of {}", scene.document.label(&line.leg));
         Some(Item { name, at, what: Selection::Leg(line.leg.clone()) })
     })
 }
 
-fn name_of_leg(plan: &FlightPlan, leg: &Id) -> String {
-    plan.leg(leg).map_or_else(|| leg.to_string(), |context| title(&context.leg.name, leg.as_str()))
-}
-
 /// A place of a path in view, in its middle if that is.
 fn on_path(forecast: &Forecast, passage: &Passage, view: &View) -> Option<Pos2> {
-    let points = forecast.part(passage)?;
-    let place = |sixteenth: usize| points.get(points.len() * sixteenth / 16).map(|q| view.place(q.position));
+    let places = forecast.places().at.get(passage.first..(passage.end + 1).min(forecast.points.len()))?;
+    let place = |sixteenth: usize| places.get(places.len() * sixteenth / 16).map(|at| view.screen(*at));
     [8, 4, 12, 2, 6, 10, 14].into_iter().filter_map(place).find(|at| inside(*at, view))
 }
 

@@ -40,7 +40,10 @@ impl Kin {
     }
 }
 
-/// These with what goes with them. The plan is gone through once, however many there are.
+/// Selected legs up to so many are looked for one by one: that needs no list of all.
+const FEW: usize = 4;
+
+/// These with what goes with them. The plan is gone through a few times, however many there are.
 fn around<'a>(plan: &FlightPlan, selected: impl Iterator<Item = &'a Selection>) -> HashSet<Id> {
     let (mut ids, mut legs) = (HashSet::new(), HashSet::new());
     for what in selected {
@@ -55,7 +58,10 @@ fn around<'a>(plan: &FlightPlan, selected: impl Iterator<Item = &'a Selection>) 
             _ => {}
         }
     }
-    let contexts = if legs.is_empty() { Vec::new() } else { plan.all_legs() };
+    let contexts = match legs.len() {
+        ..=FEW => legs.iter().filter_map(|leg| plan.leg(leg)).collect(),
+        _ => plan.all_legs(),
+    };
     for context in contexts.iter().filter(|context| legs.contains(&context.leg.id)) {
         add_alternates(in_force(plan, context), &mut ids);
         add_legs(context.leg, &mut ids);

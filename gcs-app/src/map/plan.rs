@@ -38,10 +38,17 @@ fn is_selected(scene: &Scene<'_>, leg: &Id) -> bool {
     scene.is_selected(&Selection::Leg(leg.clone()))
 }
 
+/// Smaller circles are not drawn, screen points.
+const LEAST: f32 = 5.0;
+
 fn draw_circle(painter: &Painter, view: &View, circle: &Circle, selected: bool, p: &Palette) {
     let centre = view.place(circle.centre);
     let radius = (circle.radius_m * view.points_per_metre()) as f32;
     if !view.rect.expand(radius).contains(centre) || radius > 20_000.0 {
+        return;
+    }
+    // the handle in its middle covers it
+    if radius < LEAST && !selected {
         return;
     }
     let stroke = Stroke::new(if selected { 2.2 } else { 1.4 }, p.text);

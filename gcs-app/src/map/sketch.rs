@@ -6,11 +6,13 @@ mod calls;
 mod handle;
 pub mod numbers;
 pub mod photos;
+mod placed;
 mod radius;
 mod ruler;
 mod ways;
 
 pub use handle::{Handle, Handled};
+pub use placed::Placed;
 pub use radius::{bound_radius, radius_edit};
 pub use ways::Way;
 
@@ -71,6 +73,8 @@ pub struct Sketch {
     pub photos: Vec<photos::Photos>,
     /// Where legs end a series of pictures.
     pub photo_ends: HashMap<Id, Vec<photos::Spot>>,
+    /// Handles and lines on the map.
+    pub placed: Placed,
 }
 
 /// A variable that is a place.
@@ -105,6 +109,7 @@ impl Sketch {
         sketch.add_variables();
         sketch.ways = ways::of(&arrivals, &reader);
         sketch.called = ways::called(&reader);
+        sketch.placed = Placed::of(&sketch.handles, &sketch.lines);
         sketch
     }
 
@@ -143,8 +148,8 @@ impl Sketch {
         let is_straight = matches!(leg.kind, LegKind::Tf(_) | LegKind::Df { .. });
         let ends = from.zip(reader.place_of(leg)).filter(|_| is_straight);
         let Some((from, to)) = ends else { return };
-        let what = Handled::Between { leg: leg.id.clone(), gap_m: from.distance_m(to) as u32 };
-        self.handles.push(Handle { what, at: from.interpolate(to, 0.5) });
+        let (gap_m, at) = placed::middle(from, to);
+        self.handles.push(Handle { what: Handled::Between { leg: leg.id.clone(), gap_m: gap_m as u32 }, at });
         self.lines.push(Line { leg: leg.id.clone(), from, to });
     }
 

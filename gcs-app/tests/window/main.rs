@@ -26,6 +26,7 @@ mod guarding;
 mod handles;
 mod inspecting;
 mod interchange;
+mod large;
 mod lasting;
 mod levels;
 mod lines;

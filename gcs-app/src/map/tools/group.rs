@@ -71,7 +71,9 @@ impl Group {
     pub fn grips(&self, canvas: &Canvas<'_>) -> Vec<Grip> {
         let Some(around) = around(canvas) else { return Vec::new() };
         let grips = (FIRST_KEY..).zip(Does::ALL);
-        grips.map(|(key, does)| Grip { key, name: does.name().into(), at: does.at(around) }).collect()
+        grips
+            .map(|(key, does)| Grip { key, name: does.name().into(), at: does.at(around), first: true })
+            .collect()
     }
 
     /// A grip was clicked, or a drag of it begins; true if it is one of these.

@@ -32,11 +32,10 @@ pub fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle,
         Handled::Between { gap_m, .. } => f64::from(*gap_m) * view.points_per_metre() > GAP,
         Handled::Fix(_) | Handled::Variable(_) | Handled::Waypoint(_) => true,
     };
-    sketch
-        .handles
-        .iter()
+    let placed = sketch.handles.iter().zip(&sketch.placed.handles);
+    placed
         .enumerate()
-        .map(move |(key, handle)| (key, handle, view.place(handle.at)))
+        .map(move |(key, (handle, at))| (key, handle, view.screen(*at)))
         .filter(move |(_, _, at)| view.rect.contains(*at))
         .filter(move |(_, handle, _)| is_shown(handle))
         .take(MOST)
@@ -86,13 +85,13 @@ pub fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: b
             painter.add(Shape::convex_polygon(corners.to_vec(), fill, stroke));
         }
         Handled::Variable(_) => {
-            painter.circle(at, size * 0.6, fill, stroke);
+            text::disc(painter, at, size * 0.6, fill, stroke);
         }
         Handled::Waypoint(_) => {
-            painter.circle(at, size * 0.8, fill, stroke);
+            text::disc(painter, at, size * 0.8, fill, stroke);
         }
         Handled::Centre(_) => {
-            painter.circle(at, size, fill, stroke);
+            text::disc(painter, at, size, fill, stroke);
             painter.line_segment([at - vec2(size, 0.0), at + vec2(size, 0.0)], stroke);
             painter.line_segment([at - vec2(0.0, size), at + vec2(0.0, size)], stroke);
         }

@@ -57,7 +57,7 @@ impl Tool for Measure {
     fn grips(&self, canvas: &Canvas<'_>) -> Vec<Grip> {
         let ends = [self.from, self.to].into_iter().zip(ENDS).enumerate();
         let grip = |(key, (at, name)): (usize, (Option<LatLon>, &str))| {
-            Some(Grip { key, name: name.into(), at: canvas.view.place(at?) })
+            Some(Grip { key, name: name.into(), at: canvas.view.place(at?), first: true })
         };
         ends.filter_map(grip).filter(|grip| canvas.view.rect.contains(grip.at)).collect()
     }

@@ -97,6 +97,8 @@ pub struct Grip {
     pub name: String,
     /// Where it is, on the screen.
     pub at: Pos2,
+    /// It is there however many others are.
+    pub first: bool,
 }
 
 /// Where the pointer is.

@@ -4,7 +4,7 @@ use super::Canvas;
 use crate::chart::zones as chart;
 use crate::command::Selection;
 use crate::map::path;
-use crate::map::sketch::Handled;
+use crate::map::sketch::{Handle, Handled};
 use egui::Pos2;
 use flight_plan::{FlightPlan, Id, Runway};
 use geometry::LatLon;
@@ -19,17 +19,27 @@ const REACH: f32 = 9.0;
 /// Everything under the pointer, what is on top first.
 pub fn things_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
     let plan = canvas.scene.document.plan();
-    let handles = canvas.sketch.handles.iter().filter(|handle| {
+    let handles = handles_near(at, REACH, canvas).filter(|handle| {
         let is_always = matches!(
             handle.what,
             Handled::Fix(_) | Handled::Variable(_) | Handled::Waypoint(_) | Handled::Centre(_)
         );
-        let shown = is_always || canvas.scene.is_selected(&selection(plan, &handle.what));
-        shown && canvas.view.place(handle.at).distance(at) < REACH
+        is_always || canvas.scene.is_selected(&selection(plan, &handle.what))
     });
     let mut things: Vec<Selection> = handles.map(|handle| selection(plan, &handle.what)).collect();
     things.extend(lines_near(at, canvas));
     without_repeats(things)
+}
+
+/// The handles that are not farther from a place of the screen, in screen points.
+pub fn handles_near<'a>(
+    at: Pos2,
+    reach: f32,
+    canvas: &Canvas<'a>,
+) -> impl Iterator<Item = &'a Handle> + use<'a> {
+    let Canvas { sketch, view, .. } = *canvas;
+    let placed = sketch.handles.iter().zip(&sketch.placed.handles);
+    placed.filter(move |(_, place)| view.screen(**place).distance(at) < reach).map(|(handle, _)| handle)
 }
 
 /// Everything whose line is under the pointer.
@@ -136,8 +146,8 @@ fn foot(at: Pos2, from: Pos2, to: Pos2) -> Pos2 {
 /// The straight leg whose line is under the pointer, and where on it; none that is too short to be told from its ends.
 pub fn line_under(at: Pos2, canvas: &Canvas<'_>) -> Option<(Id, Pos2)> {
     let Canvas { view, sketch, .. } = *canvas;
-    let near = sketch.lines.iter().filter_map(|line| {
-        let (from, to) = (view.place(line.from), view.place(line.to));
+    let near = sketch.lines.iter().zip(&sketch.placed.lines).filter_map(|(line, ends)| {
+        let [from, to] = ends.map(|end| view.screen(end));
         let on = foot(at, from, to);
         (from.distance(to) > SHORTEST && on.distance(at) < NEAR).then_some((line, on))
     });

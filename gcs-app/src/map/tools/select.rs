@@ -61,7 +61,7 @@ impl Select {
         let at = canvas.pointer?;
         let is_free = grips.iter().all(|grip| grip.at.distance(at) > BESIDE);
         let (leg, _) = line_under(at, canvas).filter(|_| is_free)?;
-        Some(Grip { key: LINE, name: line_name(&leg, canvas), at })
+        Some(Grip { key: LINE, name: line_name(&leg, canvas), at, first: true })
     }
 
     /// A mark between two corners, in the middle of a leg or anywhere on its line, becomes what it stands for.
@@ -104,7 +104,9 @@ impl Tool for Select {
             _ => handle.what.name(canvas.scene.document),
         };
         let shown = near(canvas).filter(|(_, handle, _)| self.inserting.is_none() || !is_mark(handle));
-        let grips = shown.map(|(key, handle, at)| Grip { key, name: name(handle), at });
+        let plan = canvas.scene.document.plan();
+        let first = |handle: &Handle| canvas.scene.is_selected(&selection(plan, &handle.what));
+        let grips = shown.map(|(key, handle, at)| Grip { key, name: name(handle), at, first: first(handle) });
         let grips: Vec<Grip> = grips.chain(self.group.grips(canvas)).collect();
         // below the others
         self.line_grip(&grips, canvas).into_iter().chain(grips).collect()

@@ -2,6 +2,7 @@
 
 use super::Canvas;
 use super::pen::Mark;
+use super::pick::handles_near;
 use crate::map::sketch::Handled;
 use crate::map::text;
 use crate::theme::Palette;
@@ -28,7 +29,7 @@ pub fn snap_but(at: Pos2, canvas: &Canvas<'_>, not: &dyn Fn(&str, LatLon) -> boo
     }
     let far = |mark: &Mark| canvas.view.place(mark.at).distance(at);
     let is_near = |mark: &Mark| far(mark) < SNAP && mark.on.as_ref().is_none_or(|on| !not(on, mark.at));
-    let points = things(canvas).chain(runway_ends(canvas)).chain(corners(canvas)).find(is_near);
+    let points = things(canvas).chain(runway_ends(canvas)).chain(corners(at, canvas)).find(is_near);
     let lines = || {
         let runways = canvas.scene.document.plan().runways.iter();
         let on_line = runways.filter_map(|runway| line_of(runway, canvas.view.geo(at)));
@@ -61,9 +62,9 @@ fn runway_ends<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> 
     })
 }
 
-fn corners<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> {
-    let Canvas { sketch, scene, .. } = *canvas;
-    sketch.handles.iter().filter_map(move |handle| match &handle.what {
+fn corners<'a>(at: Pos2, canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> {
+    let scene = canvas.scene;
+    handles_near(at, SNAP, canvas).filter_map(move |handle| match &handle.what {
         Handled::Corner { .. } | Handled::Waypoint(_) | Handled::Centre(_) => {
             Some(Mark { on: Some(handle.what.name(scene.document)), ..Mark::at(handle.at) })
         }

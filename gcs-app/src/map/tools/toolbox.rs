@@ -7,12 +7,14 @@ use super::{Asked, Canvas, Card, Grip, Pointer, Tool, Touch, all, guided, handle
 use crate::command::Queue;
 use crate::panels::Scene;
 use crate::theme::Palette;
-use egui::{Context, CursorIcon, Key, Modifiers, Order, Rect, Response, Role, Sense, Ui, Vec2};
+use egui::{Context, CursorIcon, Id, Key, Modifiers, Order, Rect, Response, Role, Sense, Ui, Vec2};
 
 /// Keys that a tool in use may take.
 const KEYS: [Key; 4] = [Key::Escape, Key::Enter, Key::Backspace, Key::Delete];
 /// Reach of a grip, screen points.
 const REACH: f32 = 18.0;
+/// So many grips are offered wherever the pointer is.
+const OFFERED: usize = 150;
 
 /// The tools, and the one in use.
 #[derive(Debug)]
@@ -168,8 +170,8 @@ impl Toolbox {
         }
         let mut touch = Touch::default();
         let mut asks = map.secondary_clicked();
-        for grip in tool.grips(canvas) {
-            let response = widget(ui, &grip);
+        for (grip, id) in offered(ui, tool.grips(canvas)) {
+            let response = widget(ui, &grip, id);
             if response.hovered() {
                 touch.hovered = Some(grip.key);
                 ui.ctx().set_cursor_icon(CursorIcon::Grab);
@@ -217,9 +219,23 @@ fn is_covered(map: &Response, canvas: &Canvas<'_>) -> bool {
     layer.is_some_and(|layer| layer != map.layer_id && layer.order == Order::Middle)
 }
 
-fn widget(ui: &Ui, grip: &Grip) -> Response {
+/// Those that become widgets: where there are many, those that the pointer can reach, and so many others for keyboard and screen
+/// reader.
+fn offered(ui: &Ui, grips: Vec<Grip>) -> impl Iterator<Item = (Grip, Id)> {
+    let scope = ui.scope_id();
+    let pointer = ui.input(|i| i.pointer.press_origin().or(i.pointer.latest_pos()));
+    let held = [ui.ctx().dragged_id(), ui.memory(|memory| memory.focused())];
+    let with_ids = grips.into_iter().map(move |grip| (scope.with(&grip.name), grip));
+    let offered = with_ids.enumerate().filter(move |(number, (id, grip))| {
+        let is_near = || pointer.is_some_and(|at| at.distance(grip.at) < 2.0 * REACH);
+        *number < OFFERED || grip.first || is_near() || held.contains(&Some(*id))
+    });
+    offered.map(|(_, (id, grip))| (grip, id))
+}
+
+fn widget(ui: &Ui, grip: &Grip, id: Id) -> Response {
     let rect = Rect::from_center_size(grip.at, Vec2::splat(REACH));
-    let response = ui.interact(rect, ui.scope_id().with(&grip.name), Sense::click_and_drag());
+    let response = ui.interact(rect, id, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(Role::Button, true, &grip.name));
     response
 }

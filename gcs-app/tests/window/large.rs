@@ -1,0 +1,49 @@
+//! A large plan: a frame draws and names what can be seen and grabbed of it, and no more.
+
+use super::{SQUARE, Window};
+use egui::vec2;
+use egui_kittest::kittest::Queryable;
+use flight_plan::Id;
+
+const LEGS: usize = 200;
+const SIDE: &str = r#"<TF id="side2" fix="B"/>"#;
+
+/// Many legs in the place of one.
+fn with_legs(leg: impl Fn(usize) -> String) -> Window {
+    let legs: String = (0..LEGS).map(leg).collect();
+    let mut window = Window::open(&SQUARE.replacen(SIDE, &legs, 1));
+    window.until_analysed();
+    window
+}
+
+fn named(window: &Window, label: &str) -> usize {
+    window.harness.query_all_by_label_contains(label).count()
+}
+
+#[test]
+fn of_many_waypoints_some_are_named_and_whichever_the_pointer_is_at_is_dragged() {
+    let leg = |i: usize| {
+        let (lat, lon) = (36.31 + 0.002 * (i / 20) as f64, -84.2 + 0.003 * (i % 20) as f64);
+        format!(r#"<TF id="w{i}" lat="{lat:.4}" lon="{lon:.4}"/>"#)
+    };
+    let mut window = with_legs(leg);
+    assert!((100..=150).contains(&named(&window, "Waypoint w")), "{}", named(&window, "Waypoint w"));
+    let [first, row_end, second_row] =
+        ["w0", "w19", "w20"].map(|leg| window.centre(&format!("Waypoint {leg}")));
+    let last = row_end + 9.0 * (second_row - first);
+    let before = window.plan();
+    window.drag(last, vec2(9.0, 7.0));
+    let after = window.plan();
+    let is_moved = |id: &Id| after.leg(id).map(|c| c.leg) != before.leg(id).map(|c| c.leg);
+    let moved: Vec<Id> =
+        before.all_legs().iter().map(|c| c.leg.id.clone()).filter(|id| is_moved(id)).collect();
+    assert_eq!(moved, [Id::new("w199")]);
+}
+
+#[test]
+fn of_many_problems_those_near_the_view_are_drawn() {
+    let window = with_legs(|i| format!(r#"<TF id="bad{i}" fix="NOWHERE{i}"/>"#));
+    assert!(window.errors().len() >= LEGS, "{}", window.errors().len());
+    let rows = named(&window, "Problem: ");
+    assert!((10..60).contains(&rows), "{rows}");
+}
