@@ -19,6 +19,8 @@ pub enum Mismatch {
     Size(PathBuf, (u32, u32), (u32, u32)),
     /// So many of a thousand pixels are not alike; the new picture lies there.
     Pixels(PathBuf, usize, PathBuf),
+    /// Of a sheet, there, pixels; the new one lies there, and one that shows what differs.
+    Place(PathBuf, (u32, u32), PathBuf, PathBuf),
 }
 
 impl fmt::Display for Mismatch {
@@ -30,6 +32,10 @@ impl fmt::Display for Mismatch {
             }
             Self::Pixels(path, differing, new) => {
                 write!(f, "{}: {differing} ‰ of the pixels differ from {}", path.display(), new.display())?;
+            }
+            Self::Place(path, at, new, difference) => {
+                let (path, new, difference) = (path.display(), new.display(), difference.display());
+                write!(f, "{path}: at {at:?} pixels it differs from {new}, see {difference}")?;
             }
         }
         write!(f, "; LEGWORK_BLESS=1 writes it anew")
@@ -43,10 +49,15 @@ impl fmt::Display for Mismatch {
 /// They differ, or there is no such file.
 pub fn check(picture: &RgbaImage, path: &Path, scratch: &Path) -> Result<(), Mismatch> {
     let found = compare(picture, path, scratch);
-    if found.is_err() && std::env::var_os("LEGWORK_BLESS").is_some() {
+    if found.is_err() && is_blessed() {
         return save(picture, path);
     }
     found
+}
+
+/// What differs is to be written anew.
+pub(crate) fn is_blessed() -> bool {
+    std::env::var_os("LEGWORK_BLESS").is_some()
 }
 
 fn compare(picture: &RgbaImage, path: &Path, scratch: &Path) -> Result<(), Mismatch> {

@@ -3,7 +3,9 @@
 
 mod compare;
 mod raster;
+mod sheet;
 mod texture;
 
 pub use compare::{Mismatch, check, halved};
 pub use raster::Raster;
+pub use sheet::Sheet;
