@@ -5,8 +5,11 @@ use super::reach::Missing as Dropped;
 use super::{SQUARE, Window};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, vec2};
+use egui_kittest::kittest::Queryable;
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 fn window() -> Window {
     let mut window = Window::open(SQUARE);
@@ -144,6 +147,53 @@ fn elevations_that_are_dropped_are_what_the_plan_is_looked_at_over() {
     assert!(window.shows("1 tile, 1 unreadable and left out"));
     window.click("hills");
     window.until("the shipped ground", |app| app.analysis().problems.iter().all(|p| !p.is_error()));
+}
+
+/// The colour that most of the map's pixels have, and how many of a hundred have it.
+fn ground(window: &mut Window) -> ([u8; 4], usize) {
+    let rect = window.harness.get_by_label("Map").rect();
+    let picture = window.harness.render().unwrap();
+    let mut counts = HashMap::<[u8; 4], usize>::new();
+    for y in rect.top() as u32..rect.bottom() as u32 {
+        for x in rect.left() as u32..rect.right() as u32 {
+            *counts.entry(picture.get_pixel(x, y).0).or_default() += 1;
+        }
+    }
+    let pixels: usize = counts.values().sum();
+    let (colour, count) = counts.into_iter().max_by_key(|(_, count)| *count).unwrap();
+    (colour, count * 100 / pixels)
+}
+
+/// Draws until the ground looks so.
+fn until_ground(window: &mut Window, what: &str, is_so: impl Fn([u8; 4], usize) -> bool) {
+    let deadline = Instant::now() + Duration::from_secs(20);
+    loop {
+        window.steps(10);
+        let (colour, share) = ground(window);
+        if is_so(colour, share) {
+            return;
+        }
+        assert!(Instant::now() < deadline, "waited in vain: {what}; {colour:?} at {share} %");
+    }
+}
+
+#[test]
+fn the_ground_in_use_is_shaded_in_the_dark_and_in_the_light() {
+    let folder = tempfile::tempdir().unwrap();
+    let flat = folder.path().join("flat");
+    std::fs::create_dir(&flat).unwrap();
+    std::fs::write(flat.join("N36W085.hgt"), hgt(300)).unwrap();
+    let mut window = window();
+    let (plain, share) = ground(&mut window);
+    assert!(share > 50, "{share} %");
+    let ctx = window.harness.ctx.clone();
+    window.harness.state_mut().shade_ground(&ctx);
+    until_ground(&mut window, "hills", |colour, share| colour[1] < 128 && share < 20);
+    window.harness.input_mut().system_theme = Some(egui::Theme::Light);
+    until_ground(&mut window, "hills in the light", |colour, share| colour[1] > 128 && share < 20);
+    window.harness.input_mut().system_theme = Some(egui::Theme::Dark);
+    drop_file(&mut window, &flat);
+    until_ground(&mut window, "the flat ground", |colour, share| colour != plain && share > 50);
 }
 
 /// They say where one looks before there is any plan.
