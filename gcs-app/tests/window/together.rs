@@ -3,6 +3,7 @@
 use super::{SQUARE, Window};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, vec2};
+use egui_kittest::kittest::Queryable;
 use flight_plan::Value;
 
 fn opened() -> Window {
@@ -89,4 +90,14 @@ fn what_cannot_be_done_with_legs_together_says_why() {
     window.select_row_with(("TF side3", 0), Modifiers::COMMAND);
     window.ask_for("fork around them");
     assert!(window.paints("They do not follow each other"));
+}
+
+#[test]
+fn what_leaves_out_an_altitude_of_several_legs_keeps_away_from_the_edge_of_the_window() {
+    let mut window = opened();
+    window.select_row(("TF side1", 0));
+    window.select_row_with(("TF side3", 0), Modifiers::SHIFT);
+    let right = |name| window.harness.query_all_by_label_contains(name).next().unwrap().rect().right();
+    let (button, panel) = (right("eave out the altitude"), right("Hide Inspector"));
+    assert!(button <= panel, "{button} {panel}");
 }

@@ -45,6 +45,8 @@ pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
 /// button that leaves it out. Screen points.
 const REFERENCE_WIDTH: f32 = 88.0;
 const REMOVE_WIDTH: f32 = 24.0;
+/// Beside a field, as in the rows around. Screen points.
+const MARGIN: f32 = 30.0;
 
 fn own(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, reference: &Property) {
     let (below, has_room) = field::row_with_help(ui, one.label, one.help, |ui| {
@@ -147,7 +149,8 @@ fn drop_absent(ui: &Ui, page: &mut Page<'_, '_>, from: Pos2) {
 fn mixed(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf) {
     let name = page.name(&format!("{}: mixed", one.label));
     let typed = field::row_with_help(ui, one.label, one.help, |ui| {
-        let typed = field::text_or_hint(ui, &name, "", "mixed: type one for all");
+        let width = ui.available_width() - MARGIN - REMOVE_WIDTH;
+        let typed = field::text_of_width(ui, &name, "", "mixed: type one for all", width);
         remove(ui, page, one);
         typed
     });
