@@ -47,6 +47,7 @@ mod reading;
 mod recovering;
 mod recreating;
 mod replacing;
+mod sheets;
 mod small;
 mod states;
 mod store;

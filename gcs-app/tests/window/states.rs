@@ -1,5 +1,5 @@
 //! Everything that the window can look like, at the sizes and scales that it promises: nothing is cut off, nothing lies over
-//! another thing, and everything that can be used has a name.
+//! another thing, everything that can be used has a name, and all of it is as on the sheets in `tests/pictures/states`.
 
 use super::considering::{considered, foresight};
 use super::creating::EMPTY;
@@ -19,26 +19,28 @@ use std::collections::HashMap;
 use usal::contract::{Alarm, Severity};
 
 /// In points: the smallest window (at any scale: a window of 960 by 600 is not scaled up), 3840 by 2160 at scale 3, and a large one.
-const SIZES: [Vec2; 3] = [vec2(960.0, 600.0), vec2(1280.0, 720.0), vec2(1920.0, 1080.0)];
-/// Sizes that some states are looked at, too: 1280 by 800, 3840 by 2160 at scale 0.8, and 960 by 600 at scale 0.8.
-const MORE: [Vec2; 3] = [vec2(1280.0, 800.0), vec2(4800.0, 2700.0), vec2(1200.0, 750.0)];
+pub const SIZES: [Vec2; 3] = [vec2(960.0, 600.0), vec2(1280.0, 720.0), vec2(1920.0, 1080.0)];
+/// Sizes that some states are looked at, too: 1280 by 800, 3840 by 2160 at the scales 1 and 0.8, and 960 by 600 at scale 0.8.
+const MORE: [Vec2; 4] =
+    [vec2(1280.0, 800.0), vec2(3840.0, 2160.0), vec2(4800.0, 2700.0), vec2(1200.0, 750.0)];
+pub const THEMES: [egui::Theme; 2] = [egui::Theme::Dark, egui::Theme::Light];
 
 /// A widget as it was drawn.
 #[derive(Debug, Clone)]
-struct Widget {
+pub struct Widget {
     layer: LayerId,
     /// All of it.
-    rect: Rect,
+    pub rect: Rect,
     /// What of it is not cut off.
-    seen: Rect,
-    role: Role,
-    name: String,
+    pub seen: Rect,
+    pub role: Role,
+    pub name: String,
     interactive: bool,
     has_tooltip: bool,
 }
 
 /// Those with a role: rectangles by egui, names by what a screen reader is told.
-fn widgets(window: &Window) -> Vec<Widget> {
+pub fn widgets(window: &Window) -> Vec<Widget> {
     let told: HashMap<_, _> = window
         .harness
         .root()
@@ -82,7 +84,7 @@ fn is_on_map(widget: &Widget) -> bool {
 }
 
 /// What is to be read or used where it is, neither on the map nor around other widgets.
-fn placed(widgets: &[Widget]) -> Vec<&Widget> {
+pub fn placed(widgets: &[Widget]) -> Vec<&Widget> {
     let around = [Role::ScrollBar, Role::Splitter, Role::Window, Role::Pane, Role::ScrollView];
     let is_placed = |w: &&Widget| w.seen.is_positive() && !is_on_map(w) && !around.contains(&w.role);
     widgets.iter().filter(is_placed).filter(|w| !w.name.is_empty()).collect()
@@ -171,47 +173,54 @@ fn off_the_screen(window: &Window) -> Vec<String> {
     })
 }
 
-/// Looks at a state at every size, in the dark or in the light, and at the smallest in both.
-fn look(state: &str, window: &mut Window, found: &mut Vec<String>) {
-    let more = ["plan", "flying"].contains(&state);
-    let sizes = SIZES.into_iter().chain(MORE.into_iter().filter(|_| more));
+/// A way to look at a state; what is wrong with it is added to what was found before.
+pub type Look = fn(&str, &mut Window, &mut Vec<String>);
+
+/// At every size, in the dark or in the light, and at the smallest in both: each look takes its time. `sheets` looks at all.
+fn in_turn(state: &str, window: &mut Window, found: &mut Vec<String>) {
+    let is_looked_at_more = ["plan", "flying"].contains(&state);
+    let sizes = SIZES.into_iter().chain(MORE.into_iter().filter(|_| is_looked_at_more));
     for (number, size) in sizes.enumerate() {
         window.harness.set_size(size);
-        // the smallest in both themes, the others in turn: each look takes its time
-        let themes = [egui::Theme::Dark, egui::Theme::Light].into_iter().skip(number % 2);
+        let themes = THEMES.into_iter().skip(number % 2);
         for theme in themes.take(if number == 0 { 2 } else { 1 }) {
-            window.harness.input_mut().system_theme = Some(theme);
-            window.steps(2);
-            let faults = faults(window).into_iter().chain(off_the_screen(window));
-            found.extend(faults.map(|fault| format!("{state} at {size}, {theme:?}: {fault}")));
+            examine(state, size, theme, window, found);
         }
     }
     window.harness.set_size(vec2(1280.0, 800.0));
     window.steps(2);
 }
 
+/// What is wrong with the window in this theme.
+pub fn examine(state: &str, size: Vec2, theme: egui::Theme, window: &mut Window, found: &mut Vec<String>) {
+    window.harness.input_mut().system_theme = Some(theme);
+    window.steps(2);
+    let faults = faults(window).into_iter().chain(off_the_screen(window));
+    found.extend(faults.map(|fault| format!("{state} at {size}, {theme:?}: {fault}")));
+}
+
 type Act = (&'static str, fn(&mut Window));
 
 /// Looks at what each act makes of the window that the acts before it have left.
-fn check(mut window: Window, acts: &[Act]) {
+fn check(look: Look, mut window: Window, acts: &[Act]) {
     let mut found = Vec::new();
     for (state, act) in acts {
         act(&mut window);
-        window.steps(2);
+        window.until_analysed();
         look(state, &mut window, &mut found);
     }
     assert!(found.is_empty(), "{} faults:\n{}", found.len(), found.join("\n"));
 }
 
-fn opened(text: &str) -> Window {
+pub fn opened(text: &str) -> Window {
     let mut window = Window::open(text);
     window.until_analysed();
     window
 }
 
-#[test]
-fn new_plan() {
+pub fn new_plan(look: Look) {
     check(
+        look,
         Window::open(EMPTY),
         &[
             ("no plan", |_| ()),
@@ -233,9 +242,9 @@ fn new_plan() {
     );
 }
 
-#[test]
-fn selections_and_tools() {
+pub fn selections_and_tools(look: Look) {
     check(
+        look,
         opened(SQUARE),
         &[
             ("plan", |_| ()),
@@ -244,7 +253,7 @@ fn selections_and_tools() {
                 w.harness.get_by_label("TF side4").click_modifiers(egui::Modifiers::SHIFT);
             }),
             ("fix", |w| w.click("Fix C")),
-            ("runway", |w| w.click("RWY R05")),
+            ("runway", |w| w.select_row(("RWY R05", 0))),
             ("stage", |w| w.click("ENR circuit")),
             ("emergency plan", |w| w.click("ALT return")),
             ("legs are drawn", |w| w.press(Key::T)),
@@ -262,9 +271,9 @@ fn selections_and_tools() {
     );
 }
 
-#[test]
-fn panels_and_dialogs() {
+pub fn panels_and_dialogs(look: Look) {
     check(
+        look,
         opened(FIRE_WATCH),
         &[
             ("plan with everything", |_| ()),
@@ -292,10 +301,10 @@ fn panels_and_dialogs() {
     );
 }
 
-#[test]
-fn flight() {
+pub fn flight(look: Look) {
     let (window, _) = flying();
     check(
+        look,
         window,
         &[
             ("flying", Window::receive_attitude),
@@ -337,8 +346,7 @@ fn flight() {
     );
 }
 
-#[test]
-fn questions_and_emergencies() {
+pub fn questions_and_emergencies(look: Look) {
     let (mut window, ticket) = considered();
     let mut found = Vec::new();
     look("looking ahead", &mut window, &mut found);
@@ -347,4 +355,33 @@ fn questions_and_emergencies() {
     look("emergency", &mut in_emergency(), &mut found);
     look("two vehicles", &mut two(), &mut found);
     assert!(found.is_empty(), "{} faults:\n{}", found.len(), found.join("\n"));
+}
+
+mod rectangles {
+    use super::in_turn;
+
+    #[test]
+    fn of_a_new_plan() {
+        super::new_plan(in_turn);
+    }
+
+    #[test]
+    fn of_selections_and_tools() {
+        super::selections_and_tools(in_turn);
+    }
+
+    #[test]
+    fn of_panels_and_dialogs() {
+        super::panels_and_dialogs(in_turn);
+    }
+
+    #[test]
+    fn of_a_flight() {
+        super::flight(in_turn);
+    }
+
+    #[test]
+    fn of_questions_and_emergencies() {
+        super::questions_and_emergencies(in_turn);
+    }
 }

@@ -1,0 +1,123 @@
+//! The pictures of every state at every size in both themes: a sheet each, kept in `tests/pictures/states`. They take a minute
+//! where nothing is optimised: `cargo test -p gcs-app --test window -- --ignored sheets`.
+
+use super::states::{SIZES, THEMES, Widget, examine, opened, placed, widgets};
+use super::{SQUARE, Window, states};
+use egui::{Rect, vec2};
+use image::RgbaImage;
+use pictures::Sheet;
+
+/// It lists what lies in a folder of this machine, and its path: no picture of it is kept.
+const WITHOUT_PICTURE: &str = "file dialog";
+
+/// What the window looks like now, without the clock.
+fn picture(window: &mut Window) -> RgbaImage {
+    let mut picture = window.harness.render().unwrap();
+    widgets(window).iter().filter(|w| is_clock(w)).for_each(|clock| erase(&mut picture, clock.rect));
+    picture
+}
+
+fn is_clock(widget: &Widget) -> bool {
+    widget.name.ends_with('Z') && widget.name.contains(':')
+}
+
+/// A cross, a plus or one digit: no more than a faint dot there.
+fn is_a_dot(widget: &Widget) -> bool {
+    widget.rect.width() < 34.0
+}
+
+/// Leaves there only what is beside it.
+fn erase(picture: &mut RgbaImage, rect: Rect) {
+    let (left, top) = (rect.left().max(1.0) as u32, rect.top().max(0.0) as u32);
+    for y in top..(rect.bottom().ceil() as u32).min(picture.height()) {
+        let beside = *picture.get_pixel(left - 1, y);
+        (left..(rect.right().ceil() as u32).min(picture.width()))
+            .for_each(|x| picture.put_pixel(x, y, beside));
+    }
+}
+
+/// A row for each size, the dark one before the light one.
+fn in_all(state: &str, window: &mut Window, found: &mut Vec<String>) {
+    let mut sheet = Sheet::default();
+    for size in SIZES {
+        window.harness.set_size(size);
+        sheet.begin_row();
+        for theme in THEMES {
+            examine(state, size, theme, window, found);
+            sheet.add(&picture(window));
+        }
+    }
+    found.extend(check(&sheet, state).err());
+    window.harness.set_size(vec2(1280.0, 800.0));
+    window.steps(2);
+}
+
+/// Compares a state's sheet with the one that is kept; `LEGWORK_BLESS=1` keeps this one. What differs is left in
+/// `target/tmp/states`.
+fn check(sheet: &Sheet, state: &str) -> Result<(), String> {
+    if state == WITHOUT_PICTURE {
+        return Ok(());
+    }
+    let name = state.replace(' ', "-");
+    let path = format!("{}/tests/pictures/states/{name}.png", env!("CARGO_MANIFEST_DIR"));
+    let scratch = format!("{}/states", env!("CARGO_TARGET_TMPDIR"));
+    sheet.check(path.as_ref(), scratch.as_ref()).map_err(|mismatch| mismatch.to_string())
+}
+
+fn sheet_of(picture: &RgbaImage) -> Sheet {
+    let mut sheet = Sheet::default();
+    sheet.add(picture);
+    sheet
+}
+
+#[test]
+#[ignore = "takes long"]
+fn of_a_new_plan() {
+    states::new_plan(in_all);
+}
+
+#[test]
+#[ignore = "takes long"]
+fn of_selections_and_tools() {
+    states::selections_and_tools(in_all);
+}
+
+#[test]
+#[ignore = "takes long"]
+fn of_panels_and_dialogs() {
+    states::panels_and_dialogs(in_all);
+}
+
+#[test]
+#[ignore = "takes long"]
+fn of_a_flight() {
+    states::flight(in_all);
+}
+
+#[test]
+#[ignore = "takes long"]
+fn of_questions_and_emergencies() {
+    states::questions_and_emergencies(in_all);
+}
+
+/// Whatever is read or used: each in turn is taken out of the picture.
+#[test]
+fn a_widget_that_is_gone_is_seen_on_a_sheet() {
+    let mut window = opened(SQUARE);
+    for theme in THEMES {
+        window.harness.input_mut().system_theme = Some(theme);
+        window.steps(2);
+        let whole = picture(&mut window);
+        let kept = sheet_of(&whole);
+        let all = widgets(&window);
+        let shown = placed(&all).into_iter().filter(|w| w.seen == w.rect && !is_clock(w) && !is_a_dot(w));
+        let unseen = shown.filter(|gone| {
+            let mut without = whole.clone();
+            erase(&mut without, gone.rect);
+            sheet_of(&without).difference(&kept).is_none()
+        });
+        let unseen: Vec<_> =
+            unseen.map(|gone| format!("{:?} {:?} {}", gone.role, gone.name, gone.rect)).collect();
+        assert!(unseen.is_empty(), "{theme:?}: {unseen:#?}");
+    }
+}
