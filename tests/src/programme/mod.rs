@@ -18,7 +18,7 @@ use std::pin::Pin;
 use usal::contract::GatewayState;
 
 /// Longest flight, seconds of the autopilot's time.
-const FLIGHT_S: f64 = 5000.0;
+const FLIGHT_S: f64 = 8000.0;
 
 /// The rest of a flight.
 type Rest<'a> = Pin<Box<dyn Future<Output = anyhow::Result<()>> + 'a>>;
