@@ -30,7 +30,7 @@ pub struct Table {
     cursor: Cursor,
     /// What was selected when it was last drawn.
     selected: Option<Selection>,
-    /// It had no row yet: it is of a version that is not foreseen, for instance.
+    /// It has no row yet, or not its last one: it is of a version that is not foreseen, for instance.
     sought: bool,
     editing: Option<Editing>,
     /// What was selected with a leg before it was clicked: the click may be the first of a double click.
@@ -131,7 +131,8 @@ impl Table {
         };
         if let Some(row) = self.rows.iter().position(is_it) {
             self.cursor = Cursor { row, moved: true, ..self.cursor };
-            self.sought = false;
+            // its row moves once more when the plan as it is now is foreseen
+            self.sought = scene.is_behind();
         }
     }
 
@@ -228,6 +229,8 @@ impl Table {
             .striped(true)
             .sense(Sense::click())
             .animate_scrolling(false)
+            // a low dock has less than its usual least height: its last rows were below the window
+            .min_scrolled_height(0.0)
             .cell_layout(egui::Layout::left_to_right(Align::Center))
             .column(egui_extras::Column::initial(120.0).at_least(60.0).clip(true))
             .column(egui_extras::Column::initial(150.0).at_least(60.0).clip(true))
