@@ -74,6 +74,8 @@ async fn the_autopilot_of_another_driver_is_seen_on_the_network() {
             let next = tokio::time::timeout(Duration::from_millis(100), state.changed()).await;
             if let Ok(Some(status)) = next
                 && status.stamped.value.autopilot_mode == "manual"
+                // it never says whether it stands: that is believed after a while
+                && status.stamped.value.state != GatewayState::Off
             {
                 return status.stamped.value.state;
             }
