@@ -41,6 +41,8 @@ pub struct Control {
     pub safe_until_command: bool,
     /// The way home was chosen for an aircraft without an engine.
     pub glides_home: bool,
+    /// The autopilot returns by its own means, for it was not known where the aircraft is.
+    pub returns_blind: bool,
     /// What the driver said of this autopilot.
     pub capability: Option<Result<(), String>>,
     /// Place and height of a direct command.
@@ -92,6 +94,7 @@ impl Default for Control {
             safe_since: None,
             safe_until_command: false,
             glides_home: false,
+            returns_blind: false,
             capability: None,
             direct: None,
             direct_due: false,

@@ -151,9 +151,7 @@ impl Gateway {
                     self.return_home(out);
                 }
             }
-            GatewayState::SafeReturn if self.alarms.engine_has_failed() != self.control.glides_home => {
-                self.choose_again(out);
-            }
+            GatewayState::SafeReturn if self.wants_another_way() => self.choose_again(out),
             GatewayState::Off | GatewayState::Stop => self.fp_manager.expected_since = None,
             _ => {}
         }
@@ -208,6 +206,13 @@ impl Gateway {
         out.push(Output::Save);
     }
 
+    /// The engine failed on the way home, which was chosen for a flight with it, or runs after all; or it is known where the aircraft
+    /// is, at last.
+    fn wants_another_way(&self) -> bool {
+        let is_found = self.control.returns_blind && self.situation().is_some();
+        is_found || self.alarms.engine_has_failed() != self.control.glides_home
+    }
+
     fn return_home(&mut self, out: &mut Vec<Output>) {
         self.control.safe_since = None;
         self.control.glides_home = self.alarms.engine_has_failed();
@@ -216,9 +221,9 @@ impl Gateway {
         self.change(Trigger::ReturnDue, &cause, out);
     }
 
-    /// The engine failed on the way home, which was chosen for a flight with it; or it runs after all. Without a runway that is in reach
-    /// now, that way stays.
+    /// Without a runway that is in reach now, the way that is flown stays.
     fn choose_again(&mut self, out: &mut Vec<Output>) {
+        self.control.returns_blind = false;
         self.control.glides_home = self.alarms.engine_has_failed();
         if let Some((cause, way)) = self.way_home() {
             self.fly_home(way, out);
@@ -258,6 +263,7 @@ impl Gateway {
     /// No runway is known within reach (or no position): the autopilot's own return.
     fn return_by_itself(&mut self, out: &mut Vec<Output>) {
         self.control.set_intent(Intent::Return, self.telemetry.mode);
+        self.control.returns_blind = self.situation().is_none();
         let cause = match self.situation() {
             Some(_) => "no runway known within reach: the autopilot returns by its own means",
             None => "its position is not known: the autopilot returns by its own means",

@@ -5,7 +5,7 @@ use super::*;
 use crate::fp_manager::manager::Manager;
 use flight_exec::Phase;
 use flight_plan::Id;
-use usal::contract::{Alarm, Cause, GatewayEvent, GatewayRequest, Severity};
+use usal::contract::{Alarm, Cause, GatewayEvent, GatewayRequest, Position, Severity};
 
 /// In the air, so many waypoints flown; nothing but these first requests is asked.
 fn flown(waypoints: usize, requests: usize) -> Flight {
@@ -221,7 +221,8 @@ fn a_command_to_lead_elsewhere_ends_a_direct_command_but_takes_nothing_from_the_
         assert_eq!(piloted.gateway.state, GatewayState::Manual, "{command:?}");
         piloted.ask_once(&What::Command(Command::Hold), "hold").unwrap();
         run(&mut piloted, 2);
-        piloted.ask_once(&What::Command(Command::GoTo { leg: Id::new("back") }), "on").ok();
+        let leg = if matches!(command, Command::GoTo { .. }) { "back" } else { "home-land" };
+        piloted.ask_once(&What::Command(Command::GoTo { leg: Id::new(leg) }), "on").unwrap();
         run(&mut piloted, 6);
         assert_eq!(piloted.gateway.state, GatewayState::Manual, "{command:?}, held");
     }
@@ -295,7 +296,10 @@ fn alarm_less_severe_is_answered_when_another_plan_is_entered_as_well() {
 #[test]
 fn the_plan_for_an_engine_that_is_out_is_laid_out_once() {
     let mut flight = flown(10, STARTED);
+    let high = Position { altitude_amsl_m: 2000.0, ..flight.gateway.position() };
     let (now, manager) = (flight.time, &mut flight.process.manager);
+    manager.aircraft().position(high);
+    manager.tick(now, &mut Vec::new());
     let (severity, cause) = (Severity::Warning, Some(Cause::Engine));
     let alarm =
         Alarm { id: "engine-out".into(), severity, source: "gateway".into(), advice: "land".into(), cause };

@@ -66,6 +66,9 @@ fn nothing_is_chosen_from_where_it_was_long_ago() {
     let status = core.gateway.status(core.now);
     assert_eq!(status.state, GatewayState::SafeReturn, "{}", status.cause);
     assert!(status.cause.contains("position is not known"), "{}", status.cause);
+    core.run(2, &[beat(Mode::Return, true), fix(0.0)]);
+    let cause = core.gateway.status(core.now).cause;
+    assert!(cause.starts_with("returning to runway"), "now that it is known: {cause}");
 }
 
 /// A glide is told the altitudes that it has: nothing would show again that its engine stands.

@@ -63,7 +63,9 @@ fn an_engine_that_fails_on_the_way_home_makes_it_choose_again() {
     let mut flight = high(53);
     let near = place(&flight).destination(HEADING_DEG, 4500.0);
     let alternate = SafeRunway { id: "near".into(), priority: 9, ..runway_at(near) };
-    let runways = vec![runway_at(HOME), alternate];
+    // beyond a glide, from either end
+    let far = place(&flight).destination(HEADING_DEG + 180.0, 9000.0);
+    let runways = vec![runway_at(far), alternate];
     flight.ask(GatewayRequest::SetRunways { runways }).unwrap();
     flight.ask(GatewayRequest::Safe).unwrap();
     flight.run_until(30.0, "Safe.Return", |f| f.state() == GatewayState::SafeReturn);
