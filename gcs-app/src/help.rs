@@ -218,9 +218,9 @@ mod tests {
     #[test]
     fn words_in_a_title_are_found_first() {
         let topics = topics();
-        let found = search(&topics, "hold until released");
+        let found = search(topics, "hold until released");
         assert_eq!(found.first().map(|t| t.key.as_str()), Some("plan-language.md#hm-hold-until-released"));
-        assert!(search(&topics, "no such zebra").is_empty());
-        assert_eq!(search(&topics, "").len(), topics.len());
+        assert!(search(topics, "no such zebra").is_empty());
+        assert_eq!(search(topics, "").len(), topics.len());
     }
 }

@@ -60,7 +60,7 @@ impl Help {
             info.current_text_value = Some(text.clone());
             info
         });
-        let found = search(&self.topics, &self.words);
+        let found = search(self.topics, &self.words);
         if found.is_empty() {
             ui.label("No topic has these words.");
         }

@@ -89,10 +89,11 @@ impl Voice {
             MavMessage::MISSION_REQUEST_INT(r) if is_ours(r.target_system, r.target_component) => {
                 self.wanted = Some(r.seq);
             }
-            MavMessage::MISSION_ACK(ack) if is_ours(ack.target_system, ack.target_component) => {
-                if ack.mavtype == MavMissionResult::MAV_MISSION_ACCEPTED {
-                    self.answered();
-                }
+            MavMessage::MISSION_ACK(ack)
+                if is_ours(ack.target_system, ack.target_component)
+                    && ack.mavtype == MavMissionResult::MAV_MISSION_ACCEPTED =>
+            {
+                self.answered();
             }
             _ => {}
         }
