@@ -1,5 +1,5 @@
-//! The pictures of every state at every size in both themes: a sheet each, kept in `tests/pictures/states`. They take a minute
-//! where nothing is optimised: `cargo test -p gcs-app --test window -- --ignored sheets`.
+//! The pictures of every state without a vehicle, at every size in both themes: a sheet each, kept in `tests/pictures/states`.
+//! What a vehicle says grows old while its pictures are made: its states are looked at by their rectangles.
 
 use super::states::{SIZES, THEMES, Widget, examine, opened, placed, widgets};
 use super::{SQUARE, Window, states};
@@ -71,33 +71,18 @@ fn sheet_of(picture: &RgbaImage) -> Sheet {
 }
 
 #[test]
-#[ignore = "takes long"]
 fn of_a_new_plan() {
     states::new_plan(in_all);
 }
 
 #[test]
-#[ignore = "takes long"]
 fn of_selections_and_tools() {
     states::selections_and_tools(in_all);
 }
 
 #[test]
-#[ignore = "takes long"]
 fn of_panels_and_dialogs() {
     states::panels_and_dialogs(in_all);
-}
-
-#[test]
-#[ignore = "takes long"]
-fn of_a_flight() {
-    states::flight(in_all);
-}
-
-#[test]
-#[ignore = "takes long"]
-fn of_questions_and_emergencies() {
-    states::questions_and_emergencies(in_all);
 }
 
 /// Whatever is read or used: each in turn is taken out of the picture.
