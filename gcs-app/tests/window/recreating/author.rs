@@ -81,6 +81,10 @@ impl Author {
             let now = Draft::of(&plan, &subject).unwrap_or_else(|| panic!("{subject:?} is gone"));
             let Some(gesture) = next(&plan, &now, &wanted) else { return };
             let notice = self.window.app().view().notice.clone();
+            if subject == Subject::Plan {
+                // its figures come with the forecast, and move the fields below them
+                self.window.until_analysed();
+            }
             self.perform(&gesture);
             if Draft::of(&self.window.plan(), &subject).is_none() {
                 subject = to_be.clone();
