@@ -26,7 +26,7 @@ impl Field {
     }
 
     /// The mission: take-off, a departure with an RF, three sweeps over a spot that can move, an intersection after
-    /// each, home and landing; one emergency plan each for plan, mission stage and the leg `far`.
+    /// each, home and landing; one emergency plan each for plan, mission stage and the leg `far`, which is flown at 20 m/s.
     ///
     /// `way_back_m` moves the way home further out: two values give two plans for an update in flight.
     pub fn mission(&self, way_back_m: f64) -> String {
@@ -49,7 +49,7 @@ impl Field {
     <stage id="dep" type="departure" altitude="120" altitudeReference="home">
       <TF id="out" {out}/>
       <RF id="round" {round} centreLat="{centre_lat:.7}" centreLon="{centre_lon:.7}" turn="right"/>
-      <TF id="far" {far} emergency="near-home"/>
+      <TF id="far" {far} speed="20" emergency="near-home"/>
     </stage>
     <stage id="watch" type="mission" emergency="field" altitude="120" altitudeReference="home">
       <iterative id="loop" form="forward" count="3" until="found" turn="right">

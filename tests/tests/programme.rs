@@ -1,15 +1,19 @@
 //! The flight-test programme on the personalities of our simulator, with the real binaries and in lockstep: time goes on only
-//! when the test says so. Those on PX4, and some on either, are flown with `--release`: all of
-//! them take long otherwise.
+//! when the test says so. A build without optimisation takes minutes for all of them, so it flies only those marked `always`, as
+//! ArduPlane; with `--release` each is flown as both.
 #![cfg(test)]
 
 use system_tests::programme::{scenario, scenarios};
 
 /// A test for each scenario and personality.
 macro_rules! programme {
-    ($($(#[$how:meta])* $name:ident)*) => {
-        programme!(arduplane: $(#[cfg(test)] $(#[$how])* $name)*);
-        programme!(px4: $(#[cfg_attr(debug_assertions, ignore = "flown with --release")] $name)*);
+    ($($name:ident $($always:ident)?,)*) => {
+        mod arduplane {
+            $(programme!(@flight arduplane $name $($always)?);)*
+        }
+        mod px4 {
+            $(programme!(@flight px4 $name);)*
+        }
 
         #[test]
         fn every_scenario_is_flown() {
@@ -17,15 +21,17 @@ macro_rules! programme {
             assert_eq!(scenarios().map(|s| s.name).collect::<Vec<_>>(), flown);
         }
     };
-    ($personality:ident: $($(#[$how:meta])* $name:ident)*) => {
-        mod $personality {
-            $(
-                $(#[$how])*
-                #[tokio::test(flavor = "multi_thread")]
-                async fn $name() {
-                    super::fly(stringify!($personality), stringify!($name)).await;
-                }
-            )*
+    (@flight $personality:ident $name:ident always) => {
+        #[tokio::test(flavor = "multi_thread")]
+        async fn $name() {
+            super::fly(stringify!($personality), stringify!($name)).await;
+        }
+    };
+    (@flight $personality:ident $name:ident) => {
+        #[tokio::test(flavor = "multi_thread")]
+        #[cfg_attr(debug_assertions, ignore = "flown with --release")]
+        async fn $name() {
+            super::fly(stringify!($personality), stringify!($name)).await;
         }
     };
 }
@@ -36,52 +42,41 @@ async fn fly(personality: &str, name: &str) {
 }
 
 programme! {
-    nominal
-    strong_wind
-    bad_radio
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    example_alternates
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    example_coast_patrol
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    example_fire_watch
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    example_navaid_inspection
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    example_pipeline
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    example_search
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    example_square
-    variable_moves_the_sweep
-    plan_update_in_flight
-    decision_by_default
-    decision_by_operator
-    hold_and_resume
-    emergency_at_leg_level
-    emergency_at_stage_level
-    emergency_at_plan_level
-    engine_lost
-    engine_lost_unreported
-    battery_low
-    gps_lost
-    fp_manager_killed
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    fp_manager_frozen
-    fp_manager_gone_for_good
-    gateway_killed
-    agent_restarted
-    ground_station_gone
-    link_cut_1_s
-    link_cut_5_s
-    link_cut_30_s
-    link_cut_300_s
-    pilot_takes_over_and_gives_back
-    operator_takes_back
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    geofence_breached
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    list_replaced
-    #[cfg_attr(debug_assertions, ignore = "flown with --release")]
-    list_replaced_and_flown
+    nominal always,
+    strong_wind,
+    bad_radio always,
+    example_alternates,
+    example_coast_patrol,
+    example_fire_watch,
+    example_navaid_inspection,
+    example_pipeline,
+    example_search,
+    example_square,
+    variable_moves_the_sweep always,
+    plan_update_in_flight,
+    decision_by_default,
+    decision_by_operator,
+    hold_and_resume,
+    emergency_at_leg_level,
+    emergency_at_stage_level,
+    emergency_at_plan_level always,
+    engine_lost always,
+    engine_lost_unreported,
+    battery_low,
+    gps_lost,
+    fp_manager_killed always,
+    fp_manager_frozen,
+    fp_manager_gone_for_good,
+    gateway_killed always,
+    agent_restarted,
+    ground_station_gone,
+    link_cut_1_s,
+    link_cut_5_s,
+    link_cut_30_s,
+    link_cut_300_s,
+    pilot_takes_over_and_gives_back always,
+    operator_takes_back,
+    geofence_breached,
+    list_replaced,
+    list_replaced_and_flown,
 }

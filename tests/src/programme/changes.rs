@@ -1,9 +1,9 @@
 //! What an operator, or a service above the plan, changes in flight.
 
-use super::{FLIGHT_S, Scenario, expect_whole_mission, land_by_plan, of_field, on_leg};
+use super::{FLIGHT_S, Scenario, expect_whole_mission, in_state, land_by_plan, of_field, on_leg};
 use crate::rig::{Rig, id, number};
-use anyhow::{Context, ensure};
-use usal::contract::{Command, PlanEvent, VariableValue};
+use anyhow::ensure;
+use usal::contract::{Command, GatewayState, PlanEvent, VariableValue};
 
 pub const SCENARIOS: &[Scenario] = &[
     Scenario {
@@ -48,8 +48,10 @@ pub const SCENARIOS: &[Scenario] = &[
     },
 ];
 
+/// Of the leg `far`, m/s: not the one that an autopilot flies at by itself.
+const FAR_MPS: f64 = 20.0;
 /// Share of an airspeed within which gusts and turns leave it the same.
-const SAME_SPEED: f64 = 0.12;
+const SAME_SPEED: f64 = 0.08;
 
 async fn variable_moves_the_sweep(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "sweep").await?;
@@ -96,7 +98,7 @@ async fn decision_by_operator(rig: &mut Rig) -> anyhow::Result<()> {
 
 async fn hold_and_resume(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "far").await?;
-    let before_mps = rig.airspeed_mps().context("no airspeed")?;
+    flies_at(rig, FAR_MPS).await?;
     rig.command(Command::Hold).await?;
     let held_at = rig.position().map(|p| p.position);
     let from_s = rig.seen.time_s;
@@ -104,10 +106,14 @@ async fn hold_and_resume(rig: &mut Rig) -> anyhow::Result<()> {
     let away_m = rig.position().zip(held_at).map(|(now, then)| now.position.distance_m(then));
     ensure!(away_m.is_some_and(|m| m < 600.0), "it did not hold: {away_m:?} m away");
     rig.command(Command::Resume).await?;
+    in_state(rig, GatewayState::Nav, 60.0).await?;
     // an autopilot that forgets the airspeed with each change of its mode is told it again
-    let as_before =
-        |rig: &Rig| rig.airspeed_mps().is_some_and(|now| (now - before_mps).abs() < SAME_SPEED * before_mps);
-    rig.until("as fast as before the hold", 60.0, |rig, _| as_before(rig)).await?;
+    flies_at(rig, FAR_MPS).await?;
     land_by_plan(rig).await?;
     expect_whole_mission(rig)
+}
+
+async fn flies_at(rig: &mut Rig, mps: f64) -> anyhow::Result<()> {
+    let is_so = |rig: &Rig| rig.airspeed_mps().is_some_and(|now| (now - mps).abs() < SAME_SPEED * mps);
+    rig.until(&format!("at {mps} m/s"), 60.0, |rig, _| is_so(rig)).await
 }

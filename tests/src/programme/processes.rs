@@ -77,7 +77,7 @@ async fn fp_manager_frozen(rig: &mut Rig) -> anyhow::Result<()> {
     in_state(rig, GatewayState::SafeHold, HELD_WITHIN_S).await?;
     let from_s = rig.seen.time_s;
     rig.until("ten seconds", 20.0, |_, seen| seen.time_s > from_s + 10.0).await?;
-    rig.fp_manager.thaw()?;
+    rig.thaw_fp_manager().await?;
     in_its_place_again(rig).await
 }
 
@@ -88,7 +88,7 @@ async fn in_its_place_again(rig: &mut Rig) -> anyhow::Result<()> {
     let finished = rig.seen.plan.iter().filter(|e| matches!(e, PlanEvent::IterationFinished { .. })).count();
     ensure!(finished == 3, "{finished} passes of the loop, three were planned");
     ensure!(!rig.seen.went_to(GatewayState::SafeReturn), "it gave the mission up");
-    Ok(())
+    expect_whole_mission(rig)
 }
 
 async fn fp_manager_gone_for_good(rig: &mut Rig) -> anyhow::Result<()> {

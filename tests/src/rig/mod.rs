@@ -270,6 +270,19 @@ impl Rig {
         tokio::time::timeout(PATIENCE, known).await.with_context(|| format!("FP Manager there: {there}"))?
     }
 
+    /// Lets the frozen FP Manager go on, and waits, without letting time go on, until it says something again: nobody waits
+    /// for one who has not answered a tick, and the flight would be far ahead of it.
+    pub async fn thaw_fp_manager(&mut self) -> anyhow::Result<()> {
+        let status = &mut self.ground.as_mut().context("no ground station")?.status;
+        let frozen_s = status.latest().map_or(0.0, |said| said.stamped.time_s);
+        self.fp_manager.thaw()?;
+        let speaks = async {
+            while status.changed().await.context("the session is closed")?.stamped.time_s <= frozen_s {}
+            Ok(())
+        };
+        tokio::time::timeout(PATIENCE, speaks).await.context("the FP Manager does not go on")?
+    }
+
     fn ground(&self) -> anyhow::Result<&Ground> {
         self.ground.as_ref().context("no ground station")
     }
