@@ -36,12 +36,16 @@ fn problems(outline: &Outline, terrain: Arc<dyn Terrain>) -> Vec<String> {
     found.into_iter().filter(|p| !ALLOWED.contains(&p.code)).map(|p| p.to_string()).collect()
 }
 
-#[test]
-fn every_template_can_be_flown_among_hills() {
+fn hills() -> Arc<dyn Terrain> {
     let tile = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/terrain/N36W085.hgt");
     let mut tiles = Tiles::new();
     tiles.add(Tile::from_hgt("N36W085.hgt", &std::fs::read(tile).unwrap()).unwrap());
-    let ground: Arc<dyn Terrain> = Arc::new(tiles);
+    Arc::new(tiles)
+}
+
+#[test]
+fn every_template_can_be_flown_among_hills() {
+    let ground = hills();
     for (template, aircraft) in
         Template::ALL.iter().flat_map(|t| Profile::names().into_iter().map(|n| (*t, n)))
     {
@@ -49,6 +53,18 @@ fn every_template_can_be_flown_among_hills() {
         let outline = Outline { aircraft: aircraft.into(), ..ours };
         assert_eq!(problems(&outline, ground.clone()), Vec::<String>::new(), "{template:?} by {aircraft}");
     }
+}
+
+#[test]
+fn a_corridor_beside_the_mountains_is_no_higher_than_its_own_ground_asks_for() {
+    let line =
+        [(36.345, -84.160), (36.352, -84.148), (36.350, -84.132), (36.358, -84.118), (36.352, -84.105)];
+    let extent = Extent::Drawn(line.map(|(lat, lon)| LatLon::new(lat, lon)).to_vec());
+    let ours = outline(Template::Corridor, LatLon::new(36.319, -84.173), 349.0, 52.0);
+    let outline = Outline { extent, ..ours };
+    let height_m = outline.mission_height_m(&Profile::default(), hills().as_ref());
+    assert!(height_m < 400.0, "{height_m}");
+    assert_eq!(problems(&outline, hills()), Vec::<String>::new());
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use super::{Outline, above_home, fix, hold, leg, stage, to};
 use crate::{Altitude, Fix, Id, Leg, LegKind, Place, PlanWaypoint, Runway, Stage, StageKind, TurnDirection};
 use aircraft::Profile;
-use geometry::LatLon;
-use std::sync::Arc;
+use geometry::{LatLon, LocalFrame, Vec2};
+use std::{f64::consts::TAU, sync::Arc};
 use terrain::Terrain;
 
 /// Height above the runway at which a take-off ends, metres.
@@ -20,7 +20,11 @@ const GATE_ROOM_M: f64 = 300.0;
 /// Share of what an aircraft can fly that its mission's tracks may take; the rest is for climbs, turns and the way there.
 const TRACKS: f64 = 0.25;
 /// The ground is looked at in a grid of so many by so many places.
-const GRID: u32 = 24;
+const GRID: u32 = 32;
+/// Around what is flown, turn radii.
+const ROOM: f64 = 6.0;
+/// Towards which it is asked how far a mission reaches.
+const DIRECTIONS: usize = 16;
 
 /// Climb-out altitude of a take-off.
 pub(crate) fn climb_out() -> Altitude {
@@ -68,20 +72,17 @@ impl<'a> Frame<'a> {
         frame
     }
 
-    /// The highest known ground around runway and mission, metres AMSL; the runway's own where none is known.
+    /// The highest known ground of the mission and of the ways to it and home from anywhere in it, with room for turns, metres AMSL;
+    /// the runway's own where none is known.
     fn highest_ground(&self, outline: &Outline, terrain: &dyn Terrain) -> f64 {
-        let margin_m = outline.extent.radius_m() * 1.5 + 6.0 * self.turn_radius_m;
-        let centre = outline.extent.centre();
-        let around = [0.0, 90.0, 180.0, 270.0].map(|bearing| centre.destination(bearing, margin_m));
-        let places = [self.at(self.ahead_m, 0.0), self.at(-self.final_m, 0.0), self.at(0.0, self.side_m())];
-        let (south_west, north_east) = bounds(around.into_iter().chain(places));
-        let share = |i: u32, from: f64, to: f64| from + (to - from) * f64::from(i) / f64::from(GRID);
-        let grid = (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| (i, j)));
-        grid.filter_map(|(i, j)| {
-            let lat_deg = share(i, south_west.lat_deg, north_east.lat_deg);
-            terrain.elevation_m(LatLon { lat_deg, lon_deg: share(j, south_west.lon_deg, north_east.lon_deg) })
-        })
-        .fold(self.runway.elevation_amsl_m, f64::max)
+        let frame = LocalFrame::new(self.runway.threshold);
+        let own = [self.at(self.ahead_m, 0.0), self.at(-self.final_m, 0.0), self.at(0.0, self.side_m())];
+        let places = outline.extent.corners(self.runway.heading_deg).into_iter().chain(own);
+        let flown = Surroundings::of(&places.map(|at| frame.to_local(at)).collect::<Vec<_>>());
+        flown
+            .grid(ROOM * self.turn_radius_m)
+            .filter_map(|at| terrain.elevation_m(frame.to_geo(at)))
+            .fold(self.runway.elevation_amsl_m, f64::max)
     }
 
     /// The highest known ground between the final's beginning and its gate, metres above the runway.
@@ -198,12 +199,24 @@ impl<'a> Frame<'a> {
 }
 
 /// The box around places, none of them near the antimeridian.
-fn bounds(places: impl Iterator<Item = LatLon>) -> (LatLon, LatLon) {
-    let nothing = (LatLon::new(90.0, 180.0), LatLon::new(-90.0, -180.0));
-    places.fold(nothing, |(low, high), at| {
-        (
-            LatLon { lat_deg: low.lat_deg.min(at.lat_deg), lon_deg: low.lon_deg.min(at.lon_deg) },
-            LatLon { lat_deg: high.lat_deg.max(at.lat_deg), lon_deg: high.lon_deg.max(at.lon_deg) },
-        )
-    })
+/// How far some places reach in each of some directions: with so many, all that lies between them and little else.
+struct Surroundings([(Vec2, f64); DIRECTIONS]);
+
+impl Surroundings {
+    fn of(places: &[Vec2]) -> Self {
+        Self(std::array::from_fn(|index| {
+            let towards = Vec2::from_bearing_rad(index as f64 * TAU / DIRECTIONS as f64);
+            (towards, places.iter().map(|at| at.dot(towards)).fold(f64::MIN, f64::max))
+        }))
+    }
+
+    /// A grid of places between them and so far around, metres.
+    fn grid(&self, room_m: f64) -> impl Iterator<Item = Vec2> {
+        // north, east, south and west
+        let [north, east, south, west] = [0, 1, 2, 3].map(|side| self.0[side * DIRECTIONS / 4].1 + room_m);
+        let share = |i: u32, from: f64, to: f64| from + (to - from) * f64::from(i) / f64::from(GRID);
+        let grid = (0..=GRID).flat_map(move |i| (0..=GRID).map(move |j| (i, j)));
+        grid.map(move |(i, j)| Vec2 { e: share(i, -west, east), n: share(j, -south, north) })
+            .filter(move |at| self.0.iter().all(|(towards, reach_m)| at.dot(*towards) <= reach_m + room_m))
+    }
 }
