@@ -196,7 +196,7 @@ pub enum Edit {
         /// What it is to name.
         to: Id,
     },
-    /// Corrects a variable's name in the expressions of a leg or stage.
+    /// Corrects a variable's name, or a whole number, in the expressions of a leg or stage.
     CorrectName {
         /// The leg or stage.
         of: Id,

@@ -83,6 +83,23 @@ mod tests {
         }
     }
 
+    /// A planner writes 300.
+    #[test]
+    fn a_whole_number_beside_a_double_is_written_as_one() {
+        let variables = r#"<variable name="fire_radius" type="number" initial="300"/>"#;
+        for (written, mended) in [
+            ("fire_radius + 300", "fire_radius + 300.0"),
+            ("-200 + 1.0e-3 * fire_radius - 200", "-200.0 + 1.0e-3 * fire_radius - 200.0"),
+        ] {
+            let stages = format!(
+                r#"<stage id="s" type="mission" altitude="500" altitudeReference="amsl"><IF id="a" fix="A"/>
+                   <orbit id="o" radius="= {written}" turn="left"><centre fix="C"/></orbit><TF id="b" fix="B"/></stage>"#
+            );
+            let text = crate::write(&fixed(&document_with(variables, &stages, ""), "wrong-type"));
+            assert!(text.contains(&format!("= {mended}")), "{text}");
+        }
+    }
+
     #[test]
     fn expressions_are_typed() {
         let cases: [(&str, &[&str]); 14] = [

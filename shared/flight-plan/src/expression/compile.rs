@@ -1,6 +1,6 @@
 //! From CEL source to a checked tree.
 
-use super::{Expression, ExpressionError, FlightName, Function, Node, Operator, Type};
+use super::{Expression, ExpressionError, FlightName, Function, Node, Operator, Type, doubles};
 use crate::suggest::{did_you_mean, meant, question};
 use crate::{FlightPlan, Id, Variable, VariableValue};
 use cel::common::ast::{CallExpr, Expr, IdedExpr, LiteralValue, SourceInfo, operators};
@@ -276,7 +276,9 @@ impl Checker<'_> {
         };
         let (left, kind) = self.check(a, depth)?;
         let (right, other) = self.check(b, depth)?;
-        let result = self.binary_type(at, operator, kind, other)?;
+        let result = self.binary_type(at, operator, kind, other);
+        let written = |error| doubles::corrected(error, self.source, operator, [(a, kind), (b, other)]);
+        let result = result.map_err(written)?;
         Ok((Node::Binary(operator, left.into(), right.into()), result))
     }
 

@@ -9,6 +9,7 @@
 //! As in CEL, int and double compare with each other but do not mix in arithmetic.
 
 mod compile;
+mod doubles;
 mod eval;
 pub(crate) mod range;
 mod tokens;
@@ -63,7 +64,7 @@ pub struct ExpressionError {
     pub source_text: String,
     /// Says what to do.
     pub message: String,
-    /// A name that nobody knows, and the one that was probably meant.
+    /// A name that nobody knows, and the one that was probably meant; or a whole number where a double is needed, and that one.
     pub correction: Option<(Id, Id)>,
 }
 

@@ -1,23 +1,23 @@
-//! Names in CEL source, found token by token: text and numbers are left alone.
+//! Names and whole numbers in CEL source, found token by token: text and other numbers are left alone.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
 
-/// `source` with names replaced by other expressions. Members (`a.name`) and functions (`name(…)`) are no names; what is
-/// put in is set in brackets unless it is one word or stands alone.
+/// `source` with names and whole numbers replaced by other expressions. Members (`a.name`) and functions (`name(…)`) are no names,
+/// exponents no numbers; what is put in is set in brackets unless it is one word or number or stands alone.
 pub fn substitute<'a>(source: &'a str, replacement: &dyn Fn(&str) -> Option<&'a str>) -> Cow<'a, str> {
     if let Some(whole) = replacement(source.trim()) {
         return whole.into();
     }
     let mut out = String::new();
-    let (mut rest, mut copied, mut after_dot) = (source, 0, false);
+    let (mut rest, mut copied, mut after_dot, mut exponent) = (source, 0, false, Exponent::None);
     while let Some(token) = next(rest) {
         let from = source.len() - rest.len();
         rest = rest.get(token.len()..).unwrap_or("");
         let called = rest.trim_start().starts_with('(');
+        let is_whole = exponent != Exponent::Sign && is_number(token) && !rest.starts_with('.');
         if !after_dot
-            && !called
-            && is_word(token)
+            && (is_whole || (!called && is_word(token)))
             && let Some(new) = replacement(token)
         {
             out.push_str(source.get(copied..from).unwrap_or(""));
@@ -26,6 +26,7 @@ pub fn substitute<'a>(source: &'a str, replacement: &dyn Fn(&str) -> Option<&'a 
         }
         if !token.trim().is_empty() {
             after_dot = token == ".";
+            exponent = exponent.after(token);
         }
     }
     if copied == 0 {
@@ -35,7 +36,7 @@ pub fn substitute<'a>(source: &'a str, replacement: &dyn Fn(&str) -> Option<&'a 
     out.into()
 }
 
-/// The names in a source that are wanted; some perhaps again.
+/// The names and whole numbers in a source that are wanted; some perhaps again.
 pub fn mentioned(source: &str, wanted: &dyn Fn(&str) -> bool) -> Vec<String> {
     let found = RefCell::new(Vec::new());
     substitute(source, &|word| {
@@ -46,12 +47,35 @@ pub fn mentioned(source: &str, wanted: &dyn Fn(&str) -> bool) -> Vec<String> {
 }
 
 fn push(out: &mut String, expression: &str) {
-    if expression.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_') {
+    if expression.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'.')) {
         out.push_str(expression);
     } else {
         out.push('(');
         out.push_str(expression);
         out.push(')');
+    }
+}
+
+fn is_number(token: &str) -> bool {
+    token.bytes().all(|b| b.is_ascii_digit())
+}
+
+/// How much of an exponent with a sign (`1.5e-3`) has been seen: it is several tokens.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Exponent {
+    None,
+    Begun,
+    Sign,
+}
+
+impl Exponent {
+    fn after(self, token: &str) -> Self {
+        let is_begun = token.starts_with(|c: char| c.is_ascii_digit()) && token.ends_with(['e', 'E']);
+        match token {
+            _ if is_begun => Self::Begun,
+            "+" | "-" if self == Self::Begun => Self::Sign,
+            _ => Self::None,
+        }
     }
 }
 
@@ -120,11 +144,13 @@ mod tests {
             ("'''p ' p''' + q + b'p'", "'''p ' p''' + y + b'p'"),
             ("1e5 + 0xp + 5p + q", "1e5 + 0xp + 5p + y"),
             ("'p", "'p"),
+            ("q + 3 * 30 + 3.0 + 0.3 + 3e3 + 1.5e-3 + 3", "y + 3.0 * 30 + 3.0 + 0.3 + 3e3 + 1.5e-3 + 3.0"),
             ("é + q + '漢\\", "é + y + '漢\\"),
         ];
         let replacement = |name: &str| match name {
             "p" => Some("x + 1.0"),
             "q" => Some("y"),
+            "3" => Some("3.0"),
             _ => None,
         };
         for (source, expected) in cases {
