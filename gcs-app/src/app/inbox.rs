@@ -52,6 +52,9 @@ impl App {
                 vehicle.outlook.asked_which_way(ticket, now_s);
             }
         }
+        for (vehicle, command) in self.vehicles.due_to_look_again(now_s) {
+            self.ask_what_follows(&vehicle, command, now_s);
+        }
         self.compare_with_aboard();
     }
 

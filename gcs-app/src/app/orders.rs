@@ -347,13 +347,18 @@ impl App {
 
     fn consider(&mut self, name: &VehicleName, command: PlanCommand, now_s: f64) {
         let Some(vehicle) = self.vehicles.get_mut(name) else { return };
-        let leg = vehicle.current_leg().cloned();
-        vehicle.outlook.consider(command.clone(), leg);
+        vehicle.outlook.consider(command.clone());
+        self.ask_what_follows(name, command, now_s);
+    }
+
+    /// Asks what would follow the command that is considered.
+    pub(super) fn ask_what_follows(&mut self, name: &VehicleName, command: PlanCommand, now_s: f64) {
         let ticket = self.call(name, LOOK_AHEAD, Call::Foresee(Some(command)), now_s);
         if let (Some(vehicle), Some(ticket)) = (self.vehicles.get_mut(name), ticket) {
-            vehicle.outlook.asked_what_follows(ticket);
+            let leg = vehicle.current_leg().cloned();
+            vehicle.outlook.asked_what_follows(ticket, leg, now_s);
             if vehicle.open_link().is_none() {
-                vehicle.outlook.answered(ticket, Err("there is no link: connect first".into()), None);
+                vehicle.outlook.answered(ticket, Err("there is no link: connect first".into()), now_s, None);
             }
         }
     }

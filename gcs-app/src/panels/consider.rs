@@ -9,6 +9,7 @@ use crate::units::{self, Units};
 use egui::{Panel, RichText, ScrollArea, Ui};
 use flight_exec::{Command, Foresight};
 use flight_plan::Id;
+use usal::contract::GatewayState;
 
 /// Screen points.
 const WIDTH: f32 = 260.0;
@@ -34,7 +35,7 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
     let p = theme::of(ui);
     ui.label(RichText::new(format!("{}?", effect(considered, scene.vehicle))).strong().size(16.0));
     let gone_on =
-        considered.command == Command::SkipLeg && considered.on_leg.as_ref() != scene.vehicle.current_leg();
+        considered.command == Command::SkipLeg && considered.has_gone_on(scene.vehicle.current_leg());
     if gone_on {
         let text = "⚠ The aircraft is on another leg by now: look again.";
         ui.label(RichText::new(text).color(p.caution));
@@ -70,10 +71,10 @@ fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
     let p = theme::of(ui);
     let text = effect(considered, scene.vehicle);
     let units = scene.units();
-    let is_new = old_s(considered, scene).is_none();
-    let is_clean = matches!(&considered.foresight, Some(Ok(foresight)) if is_new && cautions(considered, foresight, units).is_empty());
+    let is_as_told = since(considered, scene).is_empty();
+    let is_clean = matches!(&considered.foresight, Some(Ok(foresight)) if is_as_told && cautions(considered, foresight, units).is_empty());
     let given = if is_clean {
-        ui.add(super::primary_button(&text, p)).clicked()
+        field::is_pressed(&ui.add(super::primary_button(&text, p)))
     } else {
         field::hold_button(ui, &text, p.caution, 0.0)
     };
@@ -82,10 +83,21 @@ fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
     }
 }
 
-/// How long ago what follows was told, if that is long, seconds.
-fn old_s(considered: &Considered, scene: &Scene<'_>) -> Option<f64> {
-    let age_s = scene.vehicle.clock_s(scene.now_s)? - considered.told_s?;
-    Some(age_s).filter(|age_s| *age_s > OLD_S)
+/// What has become of the aircraft since what follows was told, or is about to: who reads it decides about another flight.
+fn since(considered: &Considered, scene: &Scene<'_>) -> Vec<String> {
+    let vehicle = scene.vehicle;
+    let age_s = considered.age_s(scene.now_s, vehicle.clock_s(scene.now_s));
+    let old = age_s.filter(|age_s| *age_s > OLD_S);
+    let old = old.map(|age_s| format!("Looked at {} ago: look again", units::duration(age_s)));
+    let is_elsewhere = considered.has_gone_on(vehicle.current_leg());
+    let elsewhere = is_elsewhere.then(|| "The aircraft is on another leg by now: look again".to_owned());
+    let state = vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
+    let landing = (state == Some(GatewayState::Land)).then(|| {
+        let agl =
+            vehicle.watch.agl_m.map(|m| format!(", {} above the ground", scene.units().altitude().show(m)));
+        format!("It is landing{}: it would go around", agl.unwrap_or_default())
+    });
+    old.into_iter().chain(elsewhere).chain(landing).collect()
 }
 
 /// `Skip side2, fly side3 next`.
@@ -110,11 +122,8 @@ fn follows(ui: &mut Ui, considered: &Considered, foresight: &Foresight, scene: &
     let p = theme::of(ui);
     ui.label(RichText::new("╌╌ on the map: the path that would be flown").color(p.text));
     ScrollArea::vertical().id_salt("consider").auto_shrink(false).show(ui, |ui| {
-        if let Some(age_s) = old_s(considered, scene) {
-            let text = format!("⚠ Looked at {} ago: look again", units::duration(age_s));
-            ui.label(RichText::new(text).color(p.caution));
-        }
-        for line in cautions(considered, foresight, scene.units()) {
+        for line in since(considered, scene).into_iter().chain(cautions(considered, foresight, scene.units()))
+        {
             ui.label(RichText::new(format!("⚠ {line}")).color(p.caution));
         }
         for line in facts(considered, foresight, scene) {

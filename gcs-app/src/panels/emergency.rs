@@ -1,6 +1,6 @@
 //! An emergency plan that is being flown: what, why, where to, and the way back to the main plan.
 
-use super::{Scene, flight};
+use super::{Scene, field, flight};
 use crate::command::Queue;
 use crate::theme;
 use crate::units;
@@ -117,7 +117,8 @@ fn way_back(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let id = ui.make_persistent_id("way back");
     let chosen: Option<Id> = ui.data(|d| d.get_temp(id));
     let Some(leg) = chosen.filter(|leg| main.contains(&leg)).or_else(|| way_back_to(scene)) else { return };
-    if ui.button(format!("Return to the main plan at {}", scene.vehicle.name_of(&leg))).clicked() {
+    let back = ui.button(format!("Return to the main plan at {}", scene.vehicle.name_of(&leg)));
+    if field::is_pressed(&back) {
         queue.consider(Command::ReturnToMain { leg: leg.clone() });
     }
     let combo = ComboBox::from_id_salt("way back").selected_text("another leg").width(96.0);

@@ -272,16 +272,31 @@ fn was_typing() -> Id {
     Id::unique("something was being typed")
 }
 
+/// A button was pressed, however long: who has just held another one holds this one, too.
+pub fn is_pressed(button: &Response) -> bool {
+    let id = button.id.with("is down");
+    let is_down = button.is_pointer_button_down_on();
+    let was_down = button.ctx.data(|d| d.get_temp::<bool>(id)).unwrap_or(false);
+    if was_down != is_down {
+        button.ctx.data_mut(|d| d.insert_temp(id, is_down));
+    }
+    button.clicked() || (was_down && !is_down && button.contains_pointer())
+}
+
 /// Height of a button to hold, screen points.
 pub const HOLD_HEIGHT: f32 = 30.0;
+/// Least width of its text, screen points.
+const LEAST_HOLD: f32 = 80.0;
 /// Seconds a dangerous button must be held.
 pub const HOLD_S: f64 = 1.0;
 
 /// A button for something dangerous, named by its effect: it works only when held for [`HOLD_S`],
 /// with the pointer or with the space bar. True in the frame in which it has been held long enough.
 pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool {
-    let galley = ui.painter().layout_no_wrap(text.into(), egui::FontId::proportional(13.5), colour);
-    let size = vec2((galley.size().x + 24.0).max(width), HOLD_HEIGHT);
+    // a long name takes several lines where there is no room for one
+    let room = (ui.max_rect().width() - 24.0).max(LEAST_HOLD);
+    let galley = ui.painter().layout(text.into(), egui::FontId::proportional(13.5), colour, room);
+    let size = vec2((galley.size().x + 24.0).max(width), (galley.size().y + 12.0).max(HOLD_HEIGHT));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let name = format!("{text} (hold)");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));

@@ -237,13 +237,14 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if can_launch(scene) && !is_down {
         launch(ui, scene, queue);
     }
-    if flying && ui.button("⏸ Hold").clicked() {
+    if flying && field::is_pressed(&ui.button("⏸ Hold")) {
         queue.plan(Command::Hold);
     }
-    if can_resume(scene) && ui.add(super::primary_button("▶ Resume", p)).clicked() {
+    if can_resume(scene) && field::is_pressed(&ui.add(super::primary_button("▶ Resume", p))) {
         queue.plan(Command::Resume);
     }
-    if flying && ui.button("⏭ Skip leg").on_hover_text("Shows what would follow, then asks").clicked() {
+    let ask = "Shows what would follow, then asks";
+    if flying && field::is_pressed(&ui.button("⏭ Skip leg").on_hover_text(ask)) {
         queue.consider(Command::SkipLeg);
     }
     recover(ui, scene, queue);

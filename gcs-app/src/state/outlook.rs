@@ -15,12 +15,40 @@ pub struct Considered {
     pub on_leg: Option<Id>,
     /// What would follow it, or why that is not known; `None`: not known yet.
     pub foresight: Option<Result<Box<Foresight>, String>>,
-    /// When that was told, seconds of the aircraft's clock.
-    pub told_s: Option<f64>,
+    /// When that was told.
+    told: Option<Told>,
+    /// When it was last asked or answered, seconds of the window's clock.
+    tried_s: f64,
+    /// The leg that is flown as it is asked anew; `None`: it is not being asked.
+    asked_on: Option<Option<Id>>,
     /// The least height above this window's ground on that way; `None`: that is known nowhere, or not yet.
     pub clearance: Option<Clearance>,
     is_over_ground: bool,
     ticket: Option<Ticket>,
+}
+
+/// When something was told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Told {
+    /// Seconds of the window's clock.
+    window_s: f64,
+    /// Seconds of the aircraft's clock: that of a simulation may run faster.
+    aircraft_s: Option<f64>,
+}
+
+impl Considered {
+    /// How long ago what follows was told, by whichever clock is further, seconds; `None`: it was not. `aircraft_s`: the aircraft's
+    /// clock, if it is known now.
+    pub fn age_s(&self, now_s: f64, aircraft_s: Option<f64>) -> Option<f64> {
+        let told = self.told?;
+        let by_aircraft = aircraft_s.zip(told.aircraft_s).map_or(0.0, |(now_s, told_s)| now_s - told_s);
+        Some(by_aircraft.max(now_s - told.window_s))
+    }
+
+    /// The aircraft flies another leg than when it was looked at.
+    pub fn has_gone_on(&self, leg: Option<&Id>) -> bool {
+        self.on_leg.as_ref() != leg
+    }
 }
 
 /// The way that the vehicle says it flies.
@@ -45,6 +73,10 @@ pub struct Outlook {
 
 /// While another way is flown than the preview's, the vehicle is asked for it so often, seconds.
 const ASK_WAY_S: f64 = 15.0;
+/// What was told of a command that is considered is asked anew when it is so old, seconds.
+const AGAIN_S: f64 = 5.0;
+/// But not sooner after the last question or answer, seconds of the window's clock: looking ahead is work.
+const PAUSE_S: f64 = 2.0;
 
 impl Outlook {
     /// The command that is considered.
@@ -81,23 +113,38 @@ impl Outlook {
     }
 
     /// A command is considered; nothing is known of it yet.
-    pub fn consider(&mut self, command: Command, on_leg: Option<Id>) {
+    pub fn consider(&mut self, command: Command) {
         self.considered = Some(Considered {
             command,
-            on_leg,
+            on_leg: None,
             foresight: None,
-            told_s: None,
+            told: None,
+            tried_s: f64::NEG_INFINITY,
+            asked_on: None,
             clearance: None,
             is_over_ground: false,
             ticket: None,
         });
     }
 
-    /// It was asked what would follow the command that is considered.
-    pub fn asked_what_follows(&mut self, ticket: Ticket) {
+    /// It was asked what would follow the command that is considered, while this leg is flown.
+    pub fn asked_what_follows(&mut self, ticket: Ticket, leg: Option<Id>, now_s: f64) {
         if let Some(considered) = &mut self.considered {
-            considered.ticket = Some(ticket);
+            if considered.told.is_none() {
+                considered.on_leg.clone_from(&leg);
+            }
+            (considered.ticket, considered.asked_on, considered.tried_s) = (Some(ticket), Some(leg), now_s);
         }
+    }
+
+    /// The command that is considered, if what follows it is to be asked anew: the aircraft has flown on since. Another leg is not
+    /// skipped than the one that was meant.
+    pub fn to_ask_anew(&self, leg: Option<&Id>, now_s: f64, aircraft_s: Option<f64>) -> Option<&Command> {
+        let considered = self.considered.as_ref().filter(|considered| considered.asked_on.is_none())?;
+        let is_old = considered.age_s(now_s, aircraft_s).is_some_and(|age_s| age_s > AGAIN_S);
+        let is_due = is_old && now_s - considered.tried_s > PAUSE_S;
+        let is_of_another = considered.command == Command::SkipLeg && considered.has_gone_on(leg);
+        (is_due && !is_of_another).then_some(&considered.command)
     }
 
     /// The command was given, or is not to be.
@@ -133,19 +180,101 @@ impl Outlook {
         self.asked = Some((ticket, now_s));
     }
 
-    /// What was asked for, or why there is no answer; `aircraft_s` is the aircraft's clock, if it is known.
+    /// What was asked for, or why there is no answer; `aircraft_s` is the aircraft's clock, if it is known. What is known stays
+    /// where a later question has no answer: its age is told.
     pub fn answered(
         &mut self,
         ticket: Ticket,
         answer: Result<Box<Foresight>, String>,
+        now_s: f64,
         aircraft_s: Option<f64>,
     ) {
         if self.asked.is_some_and(|(asked, _)| asked == ticket) {
             let told = answer.ok().zip(aircraft_s);
             self.way = told.map(|(foresight, told_s)| Way { foresight, told_s, over_ground: None });
         } else if let Some(considered) = self.considered.as_mut().filter(|c| c.ticket == Some(ticket)) {
-            considered.foresight = Some(answer);
-            considered.told_s = aircraft_s;
+            let leg = considered.asked_on.take().flatten();
+            considered.tried_s = now_s;
+            if answer.is_ok() || !matches!(considered.foresight, Some(Ok(_))) {
+                considered.foresight = Some(answer);
+                considered.told = Some(Told { window_s: now_s, aircraft_s });
+                (considered.on_leg, considered.is_over_ground) = (leg, false);
+            }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn foresight(least_m: f64) -> Result<Box<Foresight>, String> {
+        Ok(Box::new(Foresight {
+            path: Vec::new(),
+            next_leg: None,
+            left_out: Vec::new(),
+            short_of_altitude_m: None,
+            clearance_m: Some(least_m),
+            problems: Vec::new(),
+            time_s: 0.0,
+            distance_m: 0.0,
+            battery_left: 1.0,
+            landed: true,
+            cut_short: None,
+        }))
+    }
+
+    fn least_m(outlook: &Outlook) -> Option<f64> {
+        outlook.considered()?.foresight.as_ref()?.as_ref().ok()?.clearance_m
+    }
+
+    /// The aircraft came down from 230 m to 2 m while a card of 40 s ago said 191 m.
+    #[test]
+    fn what_follows_is_asked_anew_while_it_is_considered() {
+        let mut outlook = Outlook::default();
+        let go_on = Command::ReturnToMain { leg: "valley".into() };
+        let (hold, land) = (Some(Id::new("hold")), Some(Id::new("land")));
+        outlook.consider(go_on.clone());
+        outlook.asked_what_follows(Ticket(1), hold.clone(), 10.0);
+        outlook.answered(Ticket(1), foresight(191.0), 11.0, None);
+        let anew = |outlook: &Outlook, now_s, aircraft_s| {
+            outlook.to_ask_anew(land.as_ref(), now_s, aircraft_s).cloned()
+        };
+        assert_eq!(anew(&outlook, 15.0, None), None, "it is fresh");
+        assert_eq!(
+            anew(&outlook, 17.0, None),
+            Some(go_on.clone()),
+            "also where the aircraft's clock was not known"
+        );
+        outlook.asked_what_follows(Ticket(2), land.clone(), 17.0);
+        assert_eq!(anew(&outlook, 30.0, None), None, "one question at a time");
+        assert!(
+            outlook.considered().is_some_and(|considered| considered.has_gone_on(land.as_ref())),
+            "as long as no answer is there"
+        );
+        outlook.answered(Ticket(2), Err("others are being looked ahead for".into()), 18.0, Some(100.0));
+        assert_eq!(
+            (least_m(&outlook), anew(&outlook, 19.0, None)),
+            (Some(191.0), None),
+            "what is known stays"
+        );
+        assert_eq!(outlook.considered().and_then(|considered| considered.age_s(21.0, None)), Some(10.0));
+        outlook.asked_what_follows(Ticket(3), land.clone(), 21.0);
+        outlook.answered(Ticket(3), foresight(2.0), 22.0, Some(104.0));
+        assert_eq!(least_m(&outlook), Some(2.0));
+        let considered = outlook.considered().unwrap();
+        assert!(!considered.has_gone_on(land.as_ref()));
+        assert_eq!(considered.age_s(23.0, Some(144.0)), Some(40.0), "a simulation's clock is faster");
+    }
+
+    #[test]
+    fn no_other_leg_is_skipped_than_the_one_that_was_meant() {
+        let mut outlook = Outlook::default();
+        outlook.consider(Command::SkipLeg);
+        outlook.asked_what_follows(Ticket(1), Some("side2".into()), 0.0);
+        outlook.answered(Ticket(1), foresight(80.0), 1.0, None);
+        let leg = |id: &str| Some(Id::new(id));
+        assert_eq!(outlook.to_ask_anew(leg("side2").as_ref(), 10.0, None), Some(&Command::SkipLeg));
+        assert_eq!(outlook.to_ask_anew(leg("side3").as_ref(), 10.0, None), None);
     }
 }

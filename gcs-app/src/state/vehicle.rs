@@ -338,7 +338,7 @@ impl Vehicle {
                 _ => Err("it answered something else".into()),
             });
             let aircraft_s = self.clock_s(now_s);
-            return self.outlook.answered(ticket, foresight, aircraft_s);
+            return self.outlook.answered(ticket, foresight, now_s, aircraft_s);
         }
         if let Outcome::Refused(reason) = &outcome {
             self.log.add(now_s, Level::Caution, "command", &format!("{label}: refused, {reason}"));
@@ -371,6 +371,12 @@ impl Vehicle {
     pub(super) fn should_ask_which_way(&self, now_s: f64) -> bool {
         let wanted = self.outlook.is_elsewhere() || self.emergency().is_some();
         wanted && self.outlook.is_due(now_s) && self.open_link().is_some()
+    }
+
+    /// The command that is considered, if what follows it should be asked anew now.
+    pub(super) fn should_look_again(&self, now_s: f64) -> Option<&flight_exec::Command> {
+        self.open_link()?;
+        self.outlook.to_ask_anew(self.current_leg(), now_s, self.clock_s(now_s))
     }
 
     /// The emergency plan that is being flown, or was flown last.

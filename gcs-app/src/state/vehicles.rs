@@ -138,6 +138,12 @@ impl Vehicles {
         due.map(|(name, _)| name.clone()).collect()
     }
 
+    /// Commands that are considered, where what follows should be asked anew now.
+    pub fn due_to_look_again(&self, now_s: f64) -> Vec<(VehicleName, flight_exec::Command)> {
+        let due = self.by_name.iter().filter_map(|(name, v)| Some((name, v.should_look_again(now_s)?)));
+        due.map(|(name, command)| (name.clone(), command.clone())).collect()
+    }
+
     /// Vehicles that fly a plan which is not known here and should be asked for it now.
     pub fn due_for_plan(&mut self, now_s: f64) -> Vec<VehicleName> {
         let due =

@@ -73,6 +73,44 @@ fn what_was_looked_at_long_ago_says_so_and_has_to_be_held() {
     assert!(window.shows("Skip side2, fly side3 next (hold)"));
 }
 
+/// Nobody decides by a height of a minute ago: it is looked at again by itself, and a leg further on it has to be held.
+#[test]
+fn what_follows_is_looked_at_again_while_it_is_read() {
+    let mut window = flying_its_plan();
+    let to = Command::GoTo { leg: "side4".into() };
+    window.ask_for("go to side4");
+    window.press(egui::Key::Enter);
+    let (ticket, _) = window.asked().unwrap();
+    window.receive(position(2.0, 500.0, false));
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    assert!(!window.shows("Go to side4 (hold)"));
+    window.steps(130);
+    assert!(window.asked().is_none(), "it is fresh");
+    let mut value = window.app().vehicle().status.as_ref().unwrap().value.clone();
+    value.place = Some(place("circuit", "side3"));
+    window.receive_status(value);
+    window.receive(position(9.0, 500.0, false));
+    assert!(window.shows("on another leg by now") && window.shows("Go to side4 (hold)"));
+    let (again, call) = window.asked().unwrap();
+    assert_eq!(call, Call::Foresee(Some(to)));
+    let lower = Foresight { clearance_m: Some(42.0), ..foresight() };
+    window.answer(again, Ok(Reply::Foresight(Box::new(lower))));
+    assert!(window.shows("until the approach: 42 m") && !window.shows("Go to side4 (hold)"));
+}
+
+/// The button that has to be held made the card wider than its place: its left end was cut off.
+#[test]
+fn a_long_name_on_a_button_to_hold_takes_two_lines() {
+    let name = r#"<TF id="side2" name="Along the long valley behind the second ridge" fix="B"/>"#;
+    let mut window = Window::open(&SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, name));
+    window.until_analysed();
+    fly_its_plan(&mut window);
+    window.click("⏭ Skip leg");
+    let button =
+        window.harness.get_by_label("Skip Along the long valley behind the second ridge (hold)").rect();
+    assert!(button.left() > 1280.0 - 260.0 && button.right() < 1280.0 && button.height() > 35.0, "{button}");
+}
+
 #[test]
 fn a_command_that_was_cancelled_is_not_given() {
     let (mut window, ticket) = considered();

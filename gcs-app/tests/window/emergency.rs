@@ -145,3 +145,18 @@ fn there_is_no_banner_without_an_emergency() {
     let (window, _) = flying();
     assert!(!window.shows("EMERGENCY: flying"));
 }
+
+/// Beside the button that is held, in a hurry: nothing happened, and nothing was said.
+#[test]
+fn who_holds_the_way_back_has_pressed_it() {
+    let mut window = in_emergency();
+    while window.asked().is_some() {}
+    let back = window.harness.get_all_by_label_contains("Return to the main plan at").next().unwrap().rect();
+    window.harness.hover_at(back.center());
+    window.harness.drag_at(back.center());
+    window.steps(120);
+    window.harness.drop_at(back.center());
+    window.steps(3);
+    let asked = std::iter::from_fn(|| window.asked()).any(|(_, call)| matches!(call, Call::Foresee(Some(_))));
+    assert!(asked, "a long press counts");
+}
