@@ -294,6 +294,8 @@ pub enum FlyCommand {
     Consider(PlanCommand),
     /// Give the command that is considered up.
     PutAside,
+    /// What became of the last command has been read.
+    PutAnswerAside,
     /// A request for the gateway.
     Gateway(GatewayRequest),
     /// Start the plan: the aircraft takes off.

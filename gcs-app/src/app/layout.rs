@@ -6,8 +6,8 @@ use crate::command::{DocumentCommand, LinkCommand, Queue, ViewCommand};
 use crate::dock::Content;
 use crate::map::furniture::below_tool;
 use crate::panels::{
-    Elevations, Scene, bar, browse, changed, consider, decision, emergency, field, flight, interchange, maps,
-    push, recover, start, story, toasts, tour, unsaved,
+    Elevations, Scene, answer, bar, browse, changed, consider, decision, emergency, field, flight,
+    interchange, maps, push, recover, start, story, toasts, tour, unsaved,
 };
 use crate::recovery::Keeper;
 use crate::theme;
@@ -124,7 +124,7 @@ fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.push_id(scene.vehicles.shown_name(), |ui| {
             ui.horizontal_wrapped(|ui| {
                 flight::commands(ui, scene, queue);
-                flight::last_command(ui, scene);
+                answer::show(ui, scene, queue);
             });
         });
     });

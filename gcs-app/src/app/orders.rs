@@ -329,6 +329,9 @@ impl App {
             }
             FlyCommand::Consider(command) => self.consider(vehicle, command, now_s),
             FlyCommand::PutAside => self.put_aside(vehicle),
+            FlyCommand::PutAnswerAside => {
+                self.vehicles.get_mut(vehicle).into_iter().for_each(|vehicle| vehicle.requests.put_aside());
+            }
             FlyCommand::Gateway(request) => {
                 let label = gateway_label(&request);
                 self.call(vehicle, label, Call::Gateway(request), now_s);

@@ -15,6 +15,8 @@ pub(super) struct Push {
     vehicle: VehicleName,
     /// The revision that the vehicle had when the operator asked for it.
     seen_revision: Option<u64>,
+    /// The document's version that is proposed.
+    version: u64,
     written: Task<Written>,
 }
 
@@ -42,7 +44,8 @@ impl App {
         let plan = self.document.plan().clone();
         let aboard: Option<Arc<FlightPlan>> = asked.aboard.as_ref().map(|aboard| aboard.plan.clone());
         let written = Task::begin(self.wake.clone(), move || Written::of(&plan, aboard.as_deref()));
-        self.pushes.push(Push { vehicle: vehicle.clone(), seen_revision, written });
+        let version = self.document.version();
+        self.pushes.push(Push { vehicle: vehicle.clone(), seen_revision, version, written });
     }
 
     /// Proposes what is written by now.
@@ -54,11 +57,15 @@ impl App {
                     self.view.notice = Some("The plan could not be written: push it again.".into());
                 }
                 Taken::Done(Written { xml, changes }) => {
-                    let Push { vehicle, seen_revision, .. } = push;
+                    let Push { vehicle, seen_revision, version, .. } = push;
                     if let Some(asked) = self.vehicles.get_mut(&vehicle) {
                         asked.put_forward = changes;
                     }
-                    self.call(&vehicle, PUSH, Call::Propose(Propose { xml, seen_revision }), now_s);
+                    let ticket =
+                        self.call(&vehicle, PUSH, Call::Propose(Propose { xml, seen_revision }), now_s);
+                    if let (Some(asked), Some(ticket)) = (self.vehicles.get_mut(&vehicle), ticket) {
+                        asked.requests.puts_forward(ticket, version);
+                    }
                 }
             }
         }

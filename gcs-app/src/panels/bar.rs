@@ -9,6 +9,7 @@ use crate::theme::{self, Palette};
 use crate::units;
 use egui::{Align, Color32, Layout, RichText, Ui, UiBuilder};
 use flight_exec::Phase;
+use flight_plan::Verdict;
 
 /// Draws the bar.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
@@ -263,18 +264,27 @@ pub fn may_push(scene: &Scene<'_>) -> Result<(), &'static str> {
 
 fn push(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let possible = may_push(scene);
-    let button = super::primary_button("⬆ Push", theme::of(ui));
-    let response =
-        ui.add_enabled(possible.is_ok(), if possible.is_ok() { button } else { egui::Button::new("⬆ Push") });
+    let objection = objection(scene);
+    let button = match possible.is_ok() && objection.is_none() {
+        true => super::primary_button("⬆ Push", theme::of(ui)),
+        false => egui::Button::new("⬆ Push"),
+    };
+    let response = ui.add_enabled(possible.is_ok(), button);
     named(&response, "Push");
     if let Err(why_not) = possible {
         response.on_disabled_hover_text(why_not);
-    } else if response
-        .on_hover_text("Propose this plan to the vehicle, look at what it would do, then commit")
-        .clicked()
-    {
+        return;
+    }
+    let what = "Propose this plan to the vehicle, look at what it would do, then commit".to_owned();
+    if response.on_hover_text(objection.unwrap_or(what)).clicked() {
         queue.fly(FlyCommand::Propose);
     }
+}
+
+/// Why the vehicle may refuse it, by what is known here.
+fn objection(scene: &Scene<'_>) -> Option<String> {
+    let found = Verdict::of(scene.problems());
+    (found.errors > 0).then(|| format!("⚠ This plan {found}: see Problems. The vehicle may refuse it"))
 }
 
 /// What the log calls a proposal.

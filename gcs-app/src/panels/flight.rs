@@ -2,7 +2,7 @@
 
 use super::{Panel, PanelId, Place, Scene, age_of, alarms, emergency, ended, field, pfd, value_with_age};
 use crate::command::{FlyCommand, Queue};
-use crate::state::{Outcome, Request, Vehicle};
+use crate::state::Vehicle;
 use crate::theme;
 use crate::units;
 use egui::{RichText, ScrollArea, Ui};
@@ -367,23 +367,4 @@ fn recover(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     {
         queue.fly(FlyCommand::Gateway(usal::contract::GatewayRequest::Recover));
     }
-}
-
-/// What became of the last command: pending, accepted, or refused and why.
-pub fn last_command(ui: &mut Ui, scene: &Scene<'_>) {
-    let p = theme::of(ui);
-    let Some(request) = last_request(scene) else { return };
-    let (text, colour) = match &request.outcome {
-        Outcome::Pending => {
-            (format!("⏳ {}: pending, {}", request.label, units::age(scene.now_s - request.sent_s)), p.text)
-        }
-        Outcome::Accepted => (format!("✔ {}: accepted", request.label), p.good),
-        Outcome::Refused(reason) => (format!("✖ {}: refused, {reason}", request.label), p.caution),
-    };
-    ui.add(egui::Label::new(RichText::new(text).color(colour)).wrap());
-}
-
-/// The last command, while it is pending, or was answered a short while ago.
-fn last_request<'a>(scene: &Scene<'a>) -> Option<&'a Request> {
-    scene.vehicle.requests.last().filter(|request| request.is_news(scene.now_s))
 }

@@ -1,6 +1,6 @@
 //! Commands with what became of them, and what happened.
 
-use super::{Panel, PanelId, Place, Scene};
+use super::{Panel, PanelId, Place, Scene, answer};
 use crate::command::Queue;
 use crate::state::log::merged;
 use crate::state::{Level, Line, Outcome, Request};
@@ -41,22 +41,24 @@ fn commands(ui: &mut Ui, scene: &Scene<'_>) {
         requests.len(),
         |ui, rows| {
             for request in requests.get(rows).unwrap_or_default() {
-                command(ui, request, scene.now_s);
+                command(ui, request, scene);
             }
         },
     );
 }
 
-fn command(ui: &mut Ui, request: &Request, now_s: f64) {
+fn command(ui: &mut Ui, request: &Request, scene: &Scene<'_>) {
     let p = theme::of(ui);
     ui.horizontal(|ui| {
         ui.add(egui::Label::new(RichText::new(&request.label)).truncate());
         let (text, colour) = match &request.outcome {
-            Outcome::Pending => (format!("⏳ pending, {}", units::age(now_s - request.sent_s)), p.weak),
+            Outcome::Pending => (format!("⏳ pending, {}", units::age(scene.now_s - request.sent_s)), p.weak),
             Outcome::Accepted => ("✔ accepted".to_owned(), p.good),
-            Outcome::Refused(reason) => (format!("✖ refused: {reason}"), p.caution),
+            Outcome::Refused(why) => {
+                (format!("✖ refused: {}", answer::why_not(scene, request, why)), p.caution)
+            }
         };
-        ui.add(egui::Label::new(RichText::new(&text).color(colour)).truncate()).on_hover_text(text);
+        ui.add(egui::Label::new(RichText::new(text).color(colour)).truncate());
     });
 }
 
@@ -89,6 +91,6 @@ fn event(ui: &mut Ui, line: &Line, now_s: f64) {
         ui.label(RichText::new(symbol).color(colour));
         let times = if line.times > 1 { format!(" (×{})", line.times) } else { String::new() };
         let text = format!("{}{times}", line.text);
-        ui.add(egui::Label::new(RichText::new(&text).color(colour)).truncate()).on_hover_text(&text);
+        ui.add(egui::Label::new(RichText::new(text).color(colour)).truncate());
     });
 }

@@ -4,6 +4,7 @@
 
 mod aged;
 pub mod alarms;
+pub mod answer;
 pub mod bar;
 pub mod binding;
 pub mod browse;

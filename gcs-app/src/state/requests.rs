@@ -31,14 +31,26 @@ pub struct Request {
     pub settled_s: Option<f64>,
     /// What became of it.
     pub outcome: Outcome,
+    /// The version of the document that it puts forward, if it does.
+    pub version: Option<u64>,
+    /// What became of it has been read.
+    is_read: bool,
 }
 
 impl Request {
-    /// It is pending, or was answered a short while ago. A refusal stays for as long as it takes to read and mend what it says; then
-    /// it is in the log.
+    /// It is pending, or was answered a short while ago and not put aside. A refusal stays for as long as it takes to read and mend what
+    /// it says; then it is in the log.
     pub fn is_news(&self, now_s: f64) -> bool {
+        if self.is_read {
+            return false;
+        }
         let shown_s = if matches!(self.outcome, Outcome::Refused(_)) { 60.0 } else { 8.0 };
         self.settled_s.is_none_or(|at| now_s - at < shown_s)
+    }
+
+    /// Somebody made it, rather than the window for itself.
+    fn is_somebodys(&self) -> bool {
+        ![READ_ABOARD, LOOK_AHEAD].contains(&self.label.as_str())
     }
 }
 
@@ -70,8 +82,22 @@ impl Requests {
             sent_s: now_s,
             settled_s: None,
             outcome: Outcome::Pending,
+            version: None,
+            is_read: false,
         });
         ticket
+    }
+
+    /// Notes which version of the document a request puts forward.
+    pub fn puts_forward(&mut self, ticket: Ticket, version: u64) {
+        self.list.iter_mut().filter(|r| r.ticket == ticket).for_each(|r| r.version = Some(version));
+    }
+
+    /// What became of [`Requests::last`] has been read.
+    pub fn put_aside(&mut self) {
+        if let Some(last) = self.list.iter_mut().rev().find(|r| r.is_somebodys()) {
+            last.is_read = true;
+        }
     }
 
     /// Notes an answer; its request's label if it was still waited for.
@@ -92,7 +118,7 @@ impl Requests {
 
     /// The newest request that somebody made, rather than the window for itself.
     pub fn last(&self) -> Option<&Request> {
-        self.list.iter().rev().find(|r| ![READ_ABOARD, LOOK_AHEAD].contains(&r.label.as_str()))
+        self.list.iter().rev().find(|r| r.is_somebodys())
     }
     /// All that are remembered, newest first.
     pub fn newest_first(&self) -> impl Iterator<Item = &Request> {
@@ -118,6 +144,18 @@ mod tests {
             let is_news = |now_s| requests.last().is_some_and(|request| request.is_news(now_s));
             assert!(is_news(200.0 + last_s) && !is_news(202.0 + last_s));
         }
+    }
+
+    #[test]
+    fn an_answer_that_is_put_aside_is_no_news() {
+        let mut requests = Requests::default();
+        let ticket = requests.open("Propose plan", 1.0);
+        requests.settle(ticket, Outcome::Refused("too steep".into()), 2.0);
+        requests.open(READ_ABOARD, 2.5);
+        requests.put_aside();
+        assert!(requests.last().is_some_and(|request| !request.is_news(3.0)));
+        requests.open("Propose plan", 4.0);
+        assert!(requests.last().is_some_and(|request| request.is_news(5.0)), "another one is");
     }
 
     #[test]

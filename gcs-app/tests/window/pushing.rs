@@ -1,7 +1,7 @@
 //! What stands in the panel of a proposal, and where the button is.
 
-use super::Window;
 use super::flying::{connected, flying, report};
+use super::{SQUARE, Window};
 use egui::Key;
 use egui_kittest::kittest::Queryable;
 use flight_exec::ProposalReport;
@@ -90,4 +90,45 @@ fn scale_and_sources_wind_and_heading_are_apart_in_the_least_window() {
     let heading = only("heading", window.places_of(|text| text.starts_with("HDG ")));
     let wind = window.places_of(|text| text == "5.0");
     assert!(!wind.is_empty() && wind.iter().all(|wind| !wind.intersects(heading)), "{wind:?} {heading}");
+}
+
+/// A refusal that is a paragraph moved the commands of the flight, for minutes, and nothing ended it.
+#[test]
+fn a_refused_push_is_one_line_that_moves_nothing_and_goes_with_an_edit_or_when_it_is_put_aside() {
+    let (mut window, mut value) = flying();
+    value.plan = Some("another".into());
+    window.receive_status(value);
+    window.harness.set_size(egui::vec2(960.0, 600.0));
+    window.steps(3);
+    let why = "12:7: error [too-steep] side2: climb earlier; ".repeat(20) + "and 3 more";
+    let hold = window.harness.get_by_label("⏸ Hold").rect();
+    let refuse = |window: &mut Window| {
+        while window.asked().is_some() {}
+        window.click("Push");
+        let (ticket, _) = window.asked().unwrap();
+        window.answer(ticket, Err(why.clone()));
+    };
+    refuse(&mut window);
+    let told = window.harness.get_by_label_contains("refused, `side2`: climb earlier; `side2`").rect();
+    assert!(told.height() < 30.0 && told.right() <= 960.0, "{told}");
+    assert_eq!(window.harness.get_by_label("⏸ Hold").rect(), hold);
+    window.click("Put this answer aside");
+    assert!(!window.shows("refused"));
+    refuse(&mut window);
+    assert!(window.shows("refused, `side2`"));
+    window.click("TF side2");
+    window.press(Key::Delete);
+    assert!(!window.shows("refused"), "it was said of another plan");
+}
+
+#[test]
+fn push_is_not_the_thing_to_do_with_a_plan_that_cannot_be_flown() {
+    let colour = |plan: &str| {
+        let mut window = Window::open(plan);
+        window.until_analysed();
+        window.connect();
+        assert!(window.is_enabled("Push"), "the vehicle decides");
+        window.colour_of("⬆ Push").unwrap()
+    };
+    assert_ne!(colour(SQUARE), colour(&SQUARE.replace(r#"fix="B""#, r#"fix="BB""#)));
 }
