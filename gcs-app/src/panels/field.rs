@@ -92,6 +92,22 @@ pub fn number_between(
     unit: Unit,
     range_si: RangeInclusive<f64>,
 ) -> Change<f64> {
+    numbered(ui, name, si, unit, range_si).0
+}
+
+/// A number that Return does something with: whether that was pressed in it now.
+pub fn number_to_enter(ui: &mut Ui, name: &str, si: f64, unit: Unit) -> (Change<f64>, bool) {
+    let (change, field) = numbered(ui, name, si, unit, f64::MIN..=f64::MAX);
+    (change, field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)))
+}
+
+fn numbered(
+    ui: &mut Ui,
+    name: &str,
+    si: f64,
+    unit: Unit,
+    range_si: RangeInclusive<f64>,
+) -> (Change<f64>, Response) {
     let typed = Typed::of(ui);
     let before = unit.from_si(si);
     let decimals = unit.decimals.max(1);
@@ -118,7 +134,9 @@ pub fn number_between(
     typed.tell(ui, &response);
     // a field that was only entered and left gives the number back as it is shown
     let is_rounded = !response.dragged() && (shown - before).abs() < 0.5 * 0.1_f64.powi(decimals as i32);
-    if response.changed() && is_rounded { Change::None } else { outcome(&response, unit.to_si(shown)) }
+    let change =
+        if response.changed() && is_rounded { Change::None } else { outcome(&response, unit.to_si(shown)) };
+    (change, response)
 }
 
 /// What was typed into a field of a number, and why it could not be read.

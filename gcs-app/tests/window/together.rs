@@ -35,16 +35,19 @@ fn raising_all_altitudes_is_found_and_reaches_take_off_and_emergency_plans() {
     assert!(window.shows("3 stages and 5 legs"));
     window.harness.event(Event::Text("50".into()));
     window.steps(2);
-    window.press(Key::Enter);
     assert!(window.shows("land, r-land stay as they are: they say no altitude."));
-    window.click_role(Role::Button, "Raise them");
+    window.press(Key::Enter);
     let own = |metres: f64| Some(Value::Constant(metres));
-    for (leg, raised) in [("side1", own(150.0)), ("side2", own(200.0)), ("r1", own(200.0))] {
+    for (leg, raised) in [("side1", own(150.0)), ("side2", None), ("r1", own(200.0))] {
         assert_eq!(of_leg(&window, leg), raised, "{leg}");
     }
-    assert_eq!(of_stage(&window, "take-off"), own(130.0));
+    for (stage, raised) in [("take-off", own(130.0)), ("circuit", own(200.0))] {
+        assert_eq!(of_stage(&window, stage), raised, "{stage}");
+    }
+    assert!(window.shows("5 altitudes raised by 50 m"), "who is not told raises again");
     window.click("Undo");
     assert_eq!(window.plan(), before, "one step");
+    assert!(!window.shows("raised by"));
 }
 
 #[test]

@@ -3,8 +3,9 @@
 use crate::command::Queue;
 use crate::panels::{Scene, field};
 use crate::theme;
+use crate::units::Unit;
 use egui::{Context, Label, RichText, Ui};
-use flight_plan::{Altitude, Edit, FlightPlan, Id, LegKind, Value};
+use flight_plan::{Altitude, Edit, FlightPlan, Id, LegKind, Stage, StageKind, Value};
 use std::collections::HashSet;
 
 /// What is offered at first, metres.
@@ -30,18 +31,76 @@ pub(super) fn show(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue
         if ui.data_mut(|d| d.remove_temp::<bool>(asked_for())).is_some() {
             field::focus_next(ui.ctx());
         }
-        match field::number(ui, "Raise by", by_m, scene.units().altitude(), f64::MIN) {
+        let (change, is_entered) = field::number_to_enter(ui, "Raise by", by_m, scene.units().altitude());
+        match change {
             field::Change::Moving(m) | field::Change::Set(m) => by_m = m,
             field::Change::None | field::Change::Ended => {}
         }
-        if ui.button("Raise them").on_hover_text("Less than nothing lowers them").clicked() {
-            queue.edit(Edit::All(Raised::of(scene.document.plan(), &set).edits(by_m)));
+        let button = ui.button("Raise them").on_hover_text("Less than nothing lowers them");
+        if button.clicked() || is_entered {
+            raise(ui, scene, &set, by_m, queue);
         }
     });
     ui.data_mut(|d| d.insert_temp(id, by_m));
-    if let Some(text) = Raised::of(scene.document.plan(), &set).stays(scene) {
-        ui.add(Label::new(RichText::new(text).size(12.0).color(theme::of(ui).weak)).wrap());
+    let p = theme::of(ui);
+    let told = Done::told(ui.ctx(), scene).map(|text| (format!("✔ {text}"), p.good));
+    let stays = Raised::of(scene.document.plan(), &set).stays(scene).map(|text| (text, p.weak));
+    for (text, colour) in told.into_iter().chain(stays) {
+        ui.add(Label::new(RichText::new(text).size(12.0).color(colour)).wrap());
     }
+}
+
+fn raise(ui: &Ui, scene: &Scene<'_>, set: &HashSet<&Id>, by_m: f64, queue: &mut Queue) {
+    let plan = scene.document.plan();
+    let raised = Raised::of(plan, set);
+    let text = raised.done(plan, by_m, scene.units().altitude());
+    ui.data_mut(|d| d.insert_temp(Done::id(), Done { before: scene.document.version(), after: None, text }));
+    queue.edit(Edit::All(raised.edits(by_m)));
+}
+
+/// What was raised last. Who is not told raises again.
+#[derive(Debug, Clone)]
+struct Done {
+    /// The document's version then, and with that edit, once it is made.
+    before: u64,
+    after: Option<u64>,
+    text: String,
+}
+
+impl Done {
+    fn id() -> egui::Id {
+        egui::Id::unique("what was raised last")
+    }
+
+    /// It is told until something else is edited, or that is undone.
+    fn told(ctx: &Context, scene: &Scene<'_>) -> Option<String> {
+        let (id, now) = (Self::id(), scene.document.version());
+        let mut done: Self = ctx.data(|d| d.get_temp(id))?;
+        if done.after.is_none() && done.before != now {
+            done.after = Some(now);
+            ctx.data_mut(|d| d.insert_temp(id, done.clone()));
+        }
+        (done.after == Some(now)).then_some(done.text)
+    }
+}
+
+/// Stages whose legs inherit their altitude, with all of their legs in the set.
+fn whole_stages<'a>(plan: &'a FlightPlan, set: &HashSet<&Id>) -> HashSet<&'a Id> {
+    let says = |stage: &&Stage| stage.altitude.is_some() && stage.kind != StageKind::TakeOff;
+    let stages = plan.all_stages().map(|(_, stage)| stage).filter(says);
+    let mut whole: HashSet<&Id> =
+        stages.filter(|stage| !stage.legs.is_empty()).map(|stage| &stage.id).collect();
+    for context in plan.all_legs() {
+        if !set.contains(&context.leg.id) && context.leg.as_fork().is_none() {
+            whole.remove(&context.stage.id);
+        }
+    }
+    whole
+}
+
+/// A stage, or that of a leg.
+fn stage_of<'a>(plan: &'a FlightPlan, id: &'a Id) -> Option<&'a Stage> {
+    plan.stage(id).or_else(|| plan.leg(id).map(|context| context.stage))
 }
 
 /// What of a set says an altitude that can be raised.
@@ -57,8 +116,10 @@ struct Raised<'a> {
 impl<'a> Raised<'a> {
     fn of(plan: &'a FlightPlan, set: &HashSet<&Id>) -> Self {
         let mut raised = Self { altitudes: Vec::new(), without: Vec::new(), calls: false };
-        let stages = plan.all_stages().map(|(_, stage)| stage).filter(|stage| set.contains(&stage.id));
-        for stage in stages {
+        // a stage of which all legs are raised is raised with them: they go on inheriting, and so do those that are added
+        let whole = whole_stages(plan, set);
+        let is_raised = |id: &Id| set.contains(id) || whole.contains(id);
+        for stage in plan.all_stages().map(|(_, stage)| stage).filter(|stage| is_raised(&stage.id)) {
             match &stage.altitude {
                 Some(own) => raised.altitudes.push((&stage.id, own.clone())),
                 None => raised.without.extend(stage.legs.is_empty().then_some(&stage.id)),
@@ -78,9 +139,8 @@ impl<'a> Raised<'a> {
             let around = context.loops.iter().rev().map(|leg| (&leg.id, &leg.altitude));
             let mut around = around.chain([(&context.stage.id, &context.stage.altitude)]);
             let from = around.find(|(_, altitude)| altitude.is_some());
-            let is_raised = from.is_some_and(|(id, _)| set.contains(id));
             match context.altitude() {
-                Some(_) if leg.altitude.is_none() && is_raised => {}
+                Some(_) if leg.altitude.is_none() && from.is_some_and(|(id, _)| is_raised(id)) => {}
                 Some(said) => raised.altitudes.push((&leg.id, said.clone())),
                 None => raised.without.push(&leg.id),
             }
@@ -98,6 +158,19 @@ impl<'a> Raised<'a> {
             Edit::SetAltitude { of: (*of).clone(), altitude }
         };
         self.altitudes.iter().map(raised).collect()
+    }
+
+    /// What was done, for people: `14 altitudes raised by 30 m; the final approach too`.
+    fn done(&self, plan: &FlightPlan, by_m: f64, unit: Unit) -> String {
+        let count = match self.altitudes.len() {
+            1 => "1 altitude".to_owned(),
+            count => format!("{count} altitudes"),
+        };
+        let how = if by_m < 0.0 { "lowered" } else { "raised" };
+        let is_final = |id| stage_of(plan, id).is_some_and(|stage| stage.kind == StageKind::Approach);
+        let finals = self.altitudes.iter().any(|(id, _)| is_final(id));
+        let finals = if finals { "; the final approach too" } else { "" };
+        format!("{count} {how} by {}{finals}", unit.show(by_m.abs()))
     }
 
     /// Which stay as they are, and why.
@@ -120,5 +193,38 @@ impl<'a> Raised<'a> {
             sentences.push("Procedures stay as they are where they say altitudes of their own.".into());
         }
         (!sentences.is_empty()).then(|| sentences.join(" "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAN: &[u8] = include_bytes!("../../../../assets/plans/square.xml");
+
+    fn raised(plan: &FlightPlan, ids: &[&str]) -> Vec<String> {
+        let set: Vec<Id> = ids.iter().map(|id| Id::new(id)).collect();
+        let raised = Raised::of(plan, &set.iter().collect());
+        raised.altitudes.iter().map(|(id, _)| id.to_string()).collect()
+    }
+
+    #[test]
+    fn a_stage_of_which_all_legs_are_raised_is_raised_and_they_inherit() {
+        let plan = flight_plan::read(PLAN).plan;
+        let sides = ["side1", "side2", "side3", "side4"];
+        assert_eq!(raised(&plan, &sides), ["circuit", "side1", "side4"]);
+        assert_eq!(raised(&plan, &sides[..3]), ["side1", "side2", "side3"], "side4 stays where it is");
+    }
+
+    #[test]
+    fn what_was_raised_is_said_and_the_final_approach_by_name() {
+        let text = String::from_utf8_lossy(PLAN).replace(r#"type="arrival""#, r#"type="approach""#);
+        let plan = flight_plan::read(text.as_bytes()).plan;
+        let done = |ids: [&str; 2], by_m| {
+            let ids = ids.map(Id::new);
+            Raised::of(&plan, &ids.iter().collect()).done(&plan, by_m, crate::units::Units::Si.altitude())
+        };
+        assert_eq!(done(["side1", "side2"], 30.0), "2 altitudes raised by 30 m");
+        assert_eq!(done(["side1", "r1"], -30.0), "2 altitudes lowered by 30 m; the final approach too");
     }
 }
