@@ -6,6 +6,7 @@ use crate::forecast::{Analysis, Forecast, Question};
 use crate::link::{BACKLOG, Call};
 use crate::panels::problems;
 use crate::state::{LOOK_AHEAD, READ_ABOARD, VehicleName};
+use flight_plan::{Id, transform};
 use std::sync::Arc;
 
 impl App {
@@ -35,10 +36,14 @@ impl App {
     /// What the vehicles say; and what they are asked because of it.
     fn drain_links(&mut self, now: Now) {
         let now_s = now.window_s;
+        let had_proposal = self.vehicles.shown().proposal.is_some();
         // no more than that in a frame: who talks without a break must not stop the drawing
         for _ in 0..=BACKLOG {
             let Some(message) = self.links.message() else { break };
             self.vehicles.receive(message, now_s);
+        }
+        if !had_proposal {
+            self.show_what_is_proposed();
         }
         self.vehicles.look_ahead(self.layers.ground().as_ref());
         self.look_out(now);
@@ -132,6 +137,17 @@ impl App {
             self.document = Document::default();
             self.view.select(None);
             (self.view.cursor_s, self.view.alarm) = (None, None);
+        }
+    }
+
+    /// The panel of a proposal takes room from the map: what differs is to be seen while one decides.
+    fn show_what_is_proposed(&mut self) {
+        let Some(proposal) = &self.vehicles.shown().proposal else { return };
+        let differs: Vec<Id> =
+            proposal.report.added.iter().chain(&proposal.report.changed).cloned().collect();
+        let places = transform::places_of(self.document.plan(), &differs);
+        if !places.is_empty() {
+            self.map.reveal_all(places);
         }
     }
 

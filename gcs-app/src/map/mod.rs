@@ -75,7 +75,7 @@ pub struct MapState {
     /// Maps that users brought, by the number of their layer.
     rasters: BTreeMap<u64, Raster>,
     /// What is to be brought into view, if it is not.
-    reveal: Option<Selection>,
+    reveal: Option<reveal::Wanted>,
     /// A box to be shown in the next frame.
     fit_to: Option<[LatLon; 2]>,
     path: path::Layer,
@@ -242,8 +242,8 @@ impl MapState {
         if follows && memory.detached().is_some() {
             queue.view(ViewCommand::Follow(false));
         }
-        if let Some(selection) = self.reveal.take().filter(|_| !scene.view.follow)
-            && self.come_to(&selection, &shown.inner, scene, &mut memory)
+        if let Some(wanted) = self.reveal.take().filter(|_| !scene.view.follow)
+            && self.come_to(&wanted, &shown.inner, scene, &mut memory)
         {
             ui.ctx().request_repaint();
         }

@@ -8,10 +8,24 @@ use flight_plan::{FlightPlan, Leg, Place, transform};
 use geometry::LatLon;
 use walkers::{MapMemory, lat_lon};
 
+/// What is to be brought into view.
+#[derive(Debug)]
+pub(super) enum Wanted {
+    /// What was selected, or where it is.
+    Selected(Selection),
+    /// All of these.
+    Places(Vec<LatLon>),
+}
+
 impl MapState {
     /// Brings what was selected into the middle, if it is not in view; in the next frame, for it may be new.
     pub fn reveal(&mut self, selection: &Selection) {
-        self.reveal = Some(selection.clone());
+        self.reveal = Some(Wanted::Selected(selection.clone()));
+    }
+
+    /// Brings all of these into view, if one is not; in the next frame, when what takes its place beside the map is there.
+    pub fn reveal_all(&mut self, places: Vec<LatLon>) {
+        self.reveal = Some(Wanted::Places(places));
     }
 
     /// Where something selectable is, if it is anywhere.
@@ -38,16 +52,20 @@ impl MapState {
     /// True: it was out of view. Of several places the map shows all.
     pub(super) fn come_to(
         &self,
-        what: &Selection,
+        wanted: &Wanted,
         view: &View,
         scene: &Scene<'_>,
         memory: &mut MapMemory,
     ) -> bool {
         let plan = scene.document.plan();
-        let Some(at) = self.place_of(what, plan).filter(|at| !view.rect.contains(view.place(*at))) else {
-            return false;
+        let is_out = |at: &LatLon| !view.rect.contains(view.place(*at));
+        let (found, all) = match wanted {
+            Wanted::Selected(what) => {
+                (self.place_of(what, plan).filter(is_out), transform::places_of(plan, &scene.selected_set()))
+            }
+            Wanted::Places(all) => (all.iter().copied().find(is_out), all.clone()),
         };
-        let all = transform::places_of(plan, &scene.selected_set());
+        let Some(at) = found else { return false };
         match View::fit(&all, view.rect.size()).filter(|_| all.len() > 1) {
             Some((middle, zoom)) => {
                 memory.center_at(middle);

@@ -132,3 +132,24 @@ fn push_is_not_the_thing_to_do_with_a_plan_that_cannot_be_flown() {
     };
     assert_ne!(colour(SQUARE), colour(&SQUARE.replace(r#"fix="B""#, r#"fix="BB""#)));
 }
+
+/// The panel takes the map's right part, and with it half of what is to be decided about.
+#[test]
+fn what_is_proposed_is_seen_while_one_decides() {
+    let (mut window, hash) = connected();
+    while window.asked().is_some() {}
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    window.harness.set_size(egui::vec2(960.0, 600.0));
+    for _ in 0..3 {
+        window.click("Zoom in");
+    }
+    let changed = vec!["side1".into(), "side3".into()];
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(ProposalReport { changed, ..report(&hash, true) }))));
+    window.steps(3);
+    let map = window.harness.get_by_label("Map").rect();
+    for fix in ["Fix A", "Fix C"] {
+        let at = window.centre(fix);
+        assert!(map.contains(at), "{fix} at {at}, the map is {map}");
+    }
+}
