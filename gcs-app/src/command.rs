@@ -164,6 +164,8 @@ pub enum ViewCommand {
     RaiseAll,
     /// Select it and bring it into the map's middle.
     JumpTo(Selection),
+    /// Select something, and bring this place into the middle of the map.
+    JumpToPlace(LatLon, Option<Selection>),
     /// Show the whole plan.
     Fit,
     /// Lock the plan against being dragged by accident, or unlock it.

@@ -209,6 +209,11 @@ impl App {
                 self.view.raise_all(self.document.plan());
             }
             ViewCommand::JumpTo(selection) => self.jump_to(selection),
+            ViewCommand::JumpToPlace(at, selection) => {
+                self.view.follow = false;
+                self.map.jump_to(at);
+                self.view.select(selection);
+            }
             ViewCommand::Fit => {
                 self.view.follow = false;
                 self.map.fit();

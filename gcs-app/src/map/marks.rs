@@ -1,6 +1,7 @@
 //! Marks on the path: where a preview ends early, where a plan is wrong, and the way out after an alarm.
 
 use super::polyline::{self, Style};
+use super::sketch::{Line, Sketch, Way};
 use super::text;
 use super::view::{Mercator, View};
 use crate::panels::what_if::{cause_name, reach_name};
@@ -9,7 +10,7 @@ use crate::theme::Palette;
 use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
 use flight_exec::rehearse::Diversion;
 use flight_exec::review::Margins;
-use flight_plan::{FlightPlan, Id, Problem};
+use flight_plan::{FlightPlan, FlownAt, Id, Problem};
 use geometry::LatLon;
 use std::collections::HashSet;
 
@@ -34,7 +35,31 @@ pub fn off_path<'a>(scene: &Scene<'a>) -> impl Iterator<Item = &'a Problem> {
         scene.problems().any(Problem::is_error).then_some(&forecast.passages).into_iter().flatten();
     let flown: HashSet<&Id> = passages.flat_map(|passage| [&passage.leg, &passage.stage]).collect();
     let is_flown = move |id: &Id| flown.contains(id);
-    errors.filter(move |p| p.subject.as_ref().is_some_and(|id| seen.insert(id) && !is_flown(id))).take(MOST)
+    let is_off = move |p: &Problem, id| p.is_off_plan() || !is_flown(id);
+    errors.filter(move |p| p.subject.as_ref().is_some_and(|id| seen.insert(id) && is_off(p, id))).take(MOST)
+}
+
+/// The pieces of ways on from forks on which a plan is wrong, where the flight as planned is not: they are red instead of it.
+pub fn draw_off_plan(painter: &Painter, view: &View, scene: &Scene<'_>, sketch: &Sketch, p: &Palette) {
+    let errors = scene.problems().filter(|problem| problem.is_error() && problem.is_off_plan());
+    for spot in errors.filter_map(|problem| problem.place.as_deref()).take(MOST) {
+        if let Some(line) = piece(&sketch.ways, spot) {
+            let parts = polyline::visible_parts(&[line.from.into(), line.to.into()], view);
+            polyline::draw(painter, &parts, Stroke::new(3.2, p.warning), Style::Dashed, p.halo);
+        }
+    }
+}
+
+/// The piece of a way that leads past a place: of the branch's fork, if that is known.
+fn piece<'a>(ways: &'a [Way], spot: &FlownAt) -> Option<&'a Line> {
+    let fork = spot.branch.as_ref().map(|(fork, _)| fork);
+    let ways = ways.iter().filter(|way| !way.is_default && fork.is_none_or(|fork| way.fork == *fork));
+    // the way that it is longer by when it leads over the place
+    let detour_m = |line: &Line| {
+        line.from.distance_m(spot.position) + spot.position.distance_m(line.to)
+            - line.from.distance_m(line.to)
+    };
+    ways.flat_map(|way| &way.lines).min_by(|a, b| detour_m(a).total_cmp(&detour_m(b)))
 }
 
 /// A cross where the path ends too early, and one where the plan is wrong. `error_at`: where that is; `others`: where else.
@@ -117,6 +142,30 @@ fn way(painter: &Painter, view: &View, places: &[LatLon], stroke: Stroke, p: &Pa
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The close look leads through a zone; what is flown without a decision does not.
+    #[test]
+    fn the_piece_of_the_branch_that_is_wrong_is_found() {
+        let plan = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><mainPlan><stage id="m" type="mission">
+            <TF id="a" lat="46.0" lon="9.0"/>
+            <intersection id="f" default="on"><branch id="on" next="z"/><branch id="close" next="look"/></intersection>
+            <TF id="look" lat="46.1" lon="9.1"/><TF id="z" lat="46.2" lon="9.0"/></stage></mainPlan></flightPlan>"#;
+        let plan = flight_plan::read(plan).plan;
+        let sketch = Sketch::new(&plan, &flight_plan::Variables::initial(&plan));
+        let at = LatLon::new;
+        let found = |lat, lon, fork: &str| {
+            let branch = Some((fork.into(), "close".into()));
+            let line = piece(&sketch.ways, &FlownAt { position: at(lat, lon), is_off_plan: true, branch })?;
+            Some((line.from, line.to))
+        };
+        assert_eq!(found(46.05, 9.05, "f"), Some((at(46.0, 9.0), at(46.1, 9.1))));
+        assert_eq!(
+            found(46.15, 9.05, "f"),
+            Some((at(46.1, 9.1), at(46.2, 9.0))),
+            "back to the default's way"
+        );
+        assert_eq!(found(46.05, 9.05, "another"), None);
+    }
 
     #[test]
     fn a_long_reason_is_shortened_between_characters() {

@@ -320,7 +320,8 @@ impl MapState {
     }
 
     fn draw_faults(&self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
-        let place = |problem| self.place_of(&marks::selection_of(problem, scene)?, scene.document.plan());
+        marks::draw_off_plan(painter, view, scene, &self.sketch, p);
+        let place = |problem| self.place_of_problem(problem, scene);
         let error_at = marks::first_error(scene).and_then(place);
         let others: Vec<LatLon> = marks::off_path(scene).filter_map(place).collect();
         marks::draw_failures(painter, view, scene, (error_at, &others), p);

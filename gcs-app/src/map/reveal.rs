@@ -1,10 +1,10 @@
 //! Where things are, and bringing what is out of view into it.
 
 use super::view::View;
-use super::{MapState, zones};
+use super::{MapState, marks, zones};
 use crate::command::Selection;
 use crate::panels::Scene;
-use flight_plan::{FlightPlan, Leg, Place, transform};
+use flight_plan::{FlightPlan, Leg, Place, Problem, transform};
 use geometry::LatLon;
 use walkers::{MapMemory, lat_lon};
 
@@ -26,6 +26,19 @@ impl MapState {
     /// Brings all of these into view, if one is not; in the next frame, when what takes its place beside the map is there.
     pub fn reveal_all(&mut self, places: Vec<LatLon>) {
         self.reveal = Some(Wanted::Places(places));
+    }
+
+    /// Where its middle was put; `None`: it follows the aircraft.
+    pub fn middle(&self) -> Option<LatLon> {
+        self.memory.detached().map(|at| LatLon::new(at.y(), at.x()))
+    }
+
+    /// Where something is wrong: the place that is named, or else where that is whose problem it is.
+    pub(super) fn place_of_problem(&self, problem: &Problem, scene: &Scene<'_>) -> Option<LatLon> {
+        match &problem.place {
+            Some(spot) => Some(spot.position),
+            None => self.place_of(&marks::selection_of(problem, scene)?, scene.document.plan()),
+        }
     }
 
     /// Where something selectable is, if it is anywhere.

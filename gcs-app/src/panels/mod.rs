@@ -342,10 +342,11 @@ impl<'a> Scene<'a> {
     pub fn problems(&self) -> impl Iterator<Item = &'a Problem> {
         self.document.reading_problems().iter().chain(&self.analysis.problems)
     }
-    /// What an error forbids to fly: legs and stages, and the zones that they come into conflict with.
+    /// What an error forbids to fly: legs and stages as they are planned, and the zones that flights come into conflict with.
     pub fn faulty(&self) -> HashSet<&'a Id> {
         let errors = self.problems().filter(|problem| problem.is_error());
-        errors.flat_map(|problem| problem.subject.iter().chain(problem.zone.as_deref())).collect()
+        let planned = |problem: &'a Problem| problem.subject.as_ref().filter(|_| !problem.is_off_plan());
+        errors.flat_map(|problem| planned(problem).into_iter().chain(problem.zone.as_deref())).collect()
     }
     /// A question or a dialog has the operator's attention: keys mean nothing to what is behind it.
     pub fn is_asking(&self) -> bool {

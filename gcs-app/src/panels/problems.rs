@@ -193,10 +193,12 @@ fn row(
     shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     let response =
         shown.response.on_hover_text(format!("{}\n[{}]", at_its_place(problem, &message), problem.code));
-    if response.clicked()
-        && let Some(selection) = selection
-    {
-        queue.view(ViewCommand::JumpTo(selection));
+    if response.clicked() {
+        match (&problem.place, selection) {
+            (Some(place), selection) => queue.view(ViewCommand::JumpToPlace(place.position, selection)),
+            (None, Some(selection)) => queue.view(ViewCommand::JumpTo(selection)),
+            (None, None) => {}
+        }
     }
     response
 }
@@ -297,6 +299,11 @@ pub fn find(document: &Document, id: &Id) -> Option<Selection> {
     let (plan, id_) = (document.plan(), || id.clone());
     if !document.kind_name(id).is_empty() {
         return Some(Selection::Leg(id_()));
+    }
+    // what calls make of a procedure's legs is mended there
+    let written = document.written(id);
+    if plan.procedure_leg(&written).is_some() {
+        return Some(Selection::Leg(written));
     }
     if plan.stage(id).is_some() {
         return Some(Selection::Stage(id_()));

@@ -203,3 +203,42 @@ fn a_leg_in_error_that_is_not_flown_has_a_red_cross_at_its_place() {
     assert!(window.errors().iter().any(|error| error.contains("side2")), "{:?}", window.errors());
     assert!(window.lines_within("Map", red) >= 3, "a circle and its two strokes");
 }
+
+/// Only the close look leads through the zone, on its way to a leg that is flown by default, too.
+#[test]
+fn a_click_on_what_only_a_branch_flies_goes_to_where_that_is_wrong_and_not_to_the_planned_leg() {
+    let fork = r#"<TF id="side2" fix="B"/>
+      <intersection id="ask" default="on"><branch id="on" next="side3"/><branch id="close" label="Close look" next="look"/></intersection>
+      <TF id="look" lat="36.300" lon="-84.130" next="side3"/>"#;
+    let zone = r#"<zones><keepOut id="quarry" lat="36.3025" lon="-84.150" radius="150"/></zones><mainPlan"#;
+    let plan = SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, fork).replacen("<mainPlan", zone, 1);
+    let mut window = opened(&plan);
+    let problems = &window.app().analysis().problems;
+    let error = problems.iter().find(|problem| problem.code == "keep-out").unwrap().clone();
+    assert!(error.message.contains("where it follows `look` (branch “Close look”)"), "{}", error.message);
+    let spot = error.place.unwrap();
+    assert!(spot.is_off_plan, "the way that is planned is far away, and is not drawn red");
+    let row = window.harness.query_all_by_label_contains("(branch “Close look”)").next().unwrap().rect();
+    window.click_at(row.center());
+    assert_eq!(window.selected(), "side3");
+    let middle = window.app().map().middle().unwrap();
+    let far_m = middle.distance_m(spot.position);
+    assert!(far_m < 10.0, "{far_m} m beside it");
+}
+
+/// Its legs are under *Procedures*, at the end of the plan: nobody finds that by a name that only calls have.
+#[test]
+fn a_click_on_a_problem_of_a_call_goes_to_the_leg_of_the_procedure() {
+    let called = r#"<TF id="side2" fix="B"/><call id="call1" procedure="look"/>"#;
+    let procedure = r#"<procedures><procedure id="look" reference="36.3209 -84.1537"><orbit id="round" radius="20" turn="left"><centre
+        fix="B"/></orbit></procedure></procedures><mainPlan"#;
+    let plan = SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, called).replacen("<mainPlan", procedure, 1);
+    let mut window = opened(&plan);
+    let row = window.harness.query_all_by_label_contains("Problem: call1.round: ").next().unwrap().rect();
+    window.click_at(row.center());
+    assert_eq!(window.selected(), "round");
+    window.press(egui::Key::Escape);
+    window.ask_for("show leg round");
+    window.press(egui::Key::Enter);
+    assert_eq!(window.selected(), "round", "the palette knows it, too");
+}

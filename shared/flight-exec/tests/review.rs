@@ -532,7 +532,18 @@ fn every_branch_is_flown() {
     // `z` is flown by default, too, far from the zone: it is told which way is meant
     let problems = verdict_over(&rectangle(zone, fork));
     let of = |leg: &str| problems.iter().find(|p| p.subject == Some(leg.into())).unwrap().message.clone();
-    assert!(of("z").contains(" m where it follows `y`: it goes into"), "{}", of("z"));
+    assert!(of("z").contains(" m where it follows `y` (branch “away”): it goes into"), "{}", of("z"));
+    let spot =
+        |leg: &str| problems.iter().find(|p| p.subject == Some(leg.into())).unwrap().place.clone().unwrap();
+    for leg in ["y", "z"] {
+        assert_eq!(
+            (spot(leg).is_off_plan, spot(leg).branch),
+            (true, Some(("i".into(), "away".into()))),
+            "{leg}"
+        );
+        let far_m = spot(leg).position.distance_m(LatLon::new(36.37, -84.20));
+        assert!(far_m < 320.0, "where it goes into the zone: {far_m} m from its middle");
+    }
     assert!(!of("y").contains("where it follows"), "{}", of("y"));
 }
 

@@ -34,7 +34,7 @@ pub use history::History;
 pub use legible::legible;
 pub use model::*;
 pub use names::in_names;
-pub use problem::{Location, Problem, Severity, Verdict};
+pub use problem::{FlownAt, Location, Problem, Severity, Verdict};
 pub use procedure::instantiate;
 pub use program::{LegPath, Program, compile, compile_again, compile_document, compile_reading};
 pub use uses::{Part, Use};

@@ -1,6 +1,7 @@
 //! What is wrong with a plan: one sentence each, with its place and often its remedy.
 
 use crate::{Edit, Id, legible};
+use geometry::LatLon;
 use serde::Serialize;
 
 /// How bad a problem is.
@@ -78,6 +79,24 @@ impl std::fmt::Display for Location {
     }
 }
 
+/// Where a flight goes wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlownAt {
+    /// The place.
+    pub position: LatLon,
+    /// The flight as planned does not come there this way: another branch does.
+    pub is_off_plan: bool,
+    /// That branch with its fork, where it is known: fork, branch.
+    pub branch: Option<(Id, Id)>,
+}
+
+impl From<LatLon> for FlownAt {
+    /// The flight as planned comes there.
+    fn from(position: LatLon) -> Self {
+        Self { position, is_off_plan: false, branch: None }
+    }
+}
+
 /// Something wrong with a plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
@@ -89,6 +108,8 @@ pub struct Problem {
     pub subject: Option<Id>,
     /// A zone that the subject comes into conflict with.
     pub zone: Option<Box<Id>>,
+    /// Where it is flown, if that is wrong at one place.
+    pub place: Option<Box<FlownAt>>,
     /// Where in the document, if the plan was read from one.
     pub location: Option<Location>,
     /// For people; says what to do. Its first sentence is short, details come behind it: see [`Problem::headline`].
@@ -105,6 +126,7 @@ impl Problem {
             severity: Severity::Error,
             subject: None,
             zone: None,
+            place: None,
             location: None,
             message: legible(&message.into()).into_owned(),
             fix: None,
@@ -124,6 +146,11 @@ impl Problem {
     /// The same problem, with this zone.
     pub fn with_zone(self, zone: &Id) -> Self {
         Self { zone: Some(Box::new(zone.clone())), ..self }
+    }
+
+    /// The same problem, at this place of the flight.
+    pub fn with_place(self, place: impl Into<FlownAt>) -> Self {
+        Self { place: Some(Box::new(place.into())), ..self }
     }
 
     /// The same problem, at this place of the document.
@@ -148,6 +175,11 @@ impl Problem {
     pub fn rank(&self) -> (bool, bool, usize) {
         let grave = GRAVE.iter().position(|code| *code == self.code);
         (self.code != CAUSE, !self.is_error(), grave.unwrap_or(GRAVE.len()))
+    }
+
+    /// The flight as planned is not what is wrong: another branch leads there.
+    pub fn is_off_plan(&self) -> bool {
+        self.place.as_ref().is_some_and(|place| place.is_off_plan)
     }
 
     /// What it says first, in one sentence: the rest of its message is details.

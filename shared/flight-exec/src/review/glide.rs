@@ -107,13 +107,13 @@ fn out_of_reach(
         let message = format!(
             "engine failure: `{plan}` is out of glide. From {from}, a glide along it {what}, or name a nearer emergency plan for an engine failure"
         );
-        return Problem::warning("glide-out-of-reach", message).of(&from.leg);
+        return Problem::warning("glide-out-of-reach", message).of(&from.leg).with_place(from.position);
     };
     let message = format!(
         "engine failure: runway out of glide on {:.0} % of the flight. Be ready to land elsewhere: no emergency plan is named for the cause `engine`, and at worst, from {from}, a glide {what}, or name a nearer plan for this cause",
         (100.0 * share).ceil()
     );
-    Problem::warning("glide-out-of-reach", message).of(plan)
+    Problem::warning("glide-out-of-reach", message).of(plan).with_place(from.position)
 }
 
 /// A hill that the glide to the plan's entry runs into.
@@ -135,5 +135,5 @@ fn hill(view: &View, alternate: &Alternate, from: &Origin) -> Option<Problem> {
         "fly higher there, or name another emergency plan for an engine failure. From {from}, the glide to `{}` runs into a hill at {:.5}, {:.5}",
         alternate.plan.id, hit.lat_deg, hit.lon_deg
     );
-    Some(Problem::warning("glide-into-terrain", message).of(&from.leg))
+    Some(Problem::warning("glide-into-terrain", message).of(&from.leg).with_place(hit))
 }

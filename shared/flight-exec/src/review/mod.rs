@@ -36,6 +36,7 @@ mod landings;
 mod layout;
 mod left_out;
 mod open_end;
+mod other_ways;
 mod passes;
 pub mod plausibility;
 mod powered;

@@ -2,6 +2,7 @@
 
 use super::View;
 use super::flown::{Flown, Point};
+use super::other_ways::{OtherWay, OtherWays};
 use flight_plan::{Id, Problem, StageKind};
 use std::collections::HashMap;
 
@@ -11,8 +12,9 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     for flown in view.flights.all() {
         track(view, flown, &mut lowest, &mut order);
     }
+    let ways = OtherWays::of(view);
     for leg in order {
-        problems.extend(lowest.get(leg).and_then(|lowest| problem(view, leg, lowest)));
+        problems.extend(lowest.get(leg).and_then(|lowest| problem(view, leg, lowest, ways.as_ref())));
     }
 }
 
@@ -72,7 +74,7 @@ fn clearance_m(view: &View, point: &Point) -> Option<(f64, bool)> {
     (clearance_m < 0.0).then_some((clearance_m, false))
 }
 
-fn problem(view: &View, leg: &Id, lowest: &Lowest) -> Option<Problem> {
+fn problem(view: &View, leg: &Id, lowest: &Lowest, ways: Option<&OtherWays>) -> Option<Problem> {
     let Lowest { clearance_m, point, wanted_amsl_m, known, .. } = *lowest;
     let kind = view.stage_kind(leg)?;
     // the autopilot performs these, on the runway's elevation and not the terrain's
@@ -96,6 +98,9 @@ fn problem(view: &View, leg: &Id, lowest: &Lowest) -> Option<Problem> {
             view.relevelled(leg, wanted_amsl_m, raise_m),
         ),
     };
+    let way = ways.and_then(|ways| ways.to(leg, lowest.before.map(|(before, _)| before)));
+    let spot = way.as_ref().map_or_else(|| point.position.into(), |way| way.spot(point.position));
+    let advice = advice + &way.as_ref().map(OtherWay::told).unwrap_or_default();
     if clearance_m < 0.0 {
         let message = if known {
             format!("{advice}: it goes into the ground at {lat:.5}, {lon:.5}")
@@ -105,12 +110,12 @@ fn problem(view: &View, leg: &Id, lowest: &Lowest) -> Option<Problem> {
                 -clearance_m
             )
         };
-        return Some(Problem::error("below-terrain", message).of(leg).perhaps_fixed_by(fix));
+        return Some(Problem::error("below-terrain", message).of(leg).with_place(spot).perhaps_fixed_by(fix));
     }
     let message = format!(
         "{advice}: as flown, it passes {:.0} m above the ground. That is at {lat:.5}, {lon:.5}; {margin_m:.0} m is the least of a path as flown",
         clearance_m.floor()
     );
-    let problem = Problem::warning("low-clearance", message).of(leg);
+    let problem = Problem::warning("low-clearance", message).of(leg).with_place(spot);
     (clearance_m < margin_m && !near_runway).then(|| problem.perhaps_fixed_by(fix))
 }

@@ -7,9 +7,10 @@
 
 use super::View;
 use super::flown::Flown;
+use super::other_ways::{OtherWay, OtherWays};
 use super::prepared::{At, Prepared, When};
 use crate::api::Branching;
-use crate::rehearse::{FlownWaypoint, Preview};
+use crate::rehearse::Preview;
 use flight_plan::{Id, Problem, Zone, ZoneKind};
 use geometry::zone::Breach;
 use std::collections::HashMap;
@@ -146,7 +147,8 @@ impl<'a> Findings<'a> {
     }
 
     fn problems(self, view: &View) -> Vec<Problem> {
-        self.found.iter().map(|found| found.problem(view)).collect()
+        let ways = OtherWays::of(view).filter(|_| !self.found.is_empty());
+        self.found.iter().map(|found| found.problem(view, ways.as_ref())).collect()
     }
 }
 
@@ -160,25 +162,16 @@ impl Found<'_> {
         (old.perhaps, depth_m(&self.breach)) > (self.perhaps, depth_m(&old.breach))
     }
 
-    /// The leg before this one, if the plan as it stands comes to this one otherwise: by another branch, for instance.
-    fn way(&self, view: &View) -> Option<&Id> {
-        let before = self.on?.leg_before(self.leg)?;
-        let planned = &view.flights.planned.as_ref().ok()?.waypoints;
-        let of = |at: &FlownWaypoint, leg: &Id| at.waypoint.leg == *leg;
-        let is_planned = planned.iter().any(|at| of(at, self.leg));
-        let pairs = planned.iter().zip(planned.iter().skip(1));
-        let mut same = pairs.filter(|(a, b)| of(a, before) && of(b, self.leg));
-        (is_planned && same.next().is_none()).then_some(before)
-    }
-
-    fn problem(&self, view: &View) -> Problem {
+    fn problem(&self, view: &View, ways: Option<&OtherWays<'_>>) -> Problem {
         let Breach { position, altitude_m, .. } = self.breach;
         // in whole metres that are enough
         let (horizontal_m, vertical_m) =
             (self.breach.horizontal_m.ceil().max(1.0), self.breach.vertical_m.ceil().max(1.0));
         let (lat, lon) = (position.lat_deg, position.lon_deg);
         let zone = &self.zone.id;
-        let after = self.way(view).map_or_else(String::new, |before| format!(" where it follows `{before}`"));
+        let way = ways.zip(self.on).and_then(|(ways, on)| ways.to(self.leg, on.leg_before(self.leg)));
+        let after = way.as_ref().map(OtherWay::told).unwrap_or_default();
+        let spot = way.map_or_else(|| position.into(), |way| way.spot(position));
         let place = format!("at {lat:.5}, {lon:.5}");
         let (code, what) = match self.zone.kind {
             ZoneKind::KeepOut => {
@@ -198,7 +191,7 @@ impl Found<'_> {
             ZoneKind::KeepIn => (
                 "keep-in",
                 format!(
-                    "change this leg's altitude by {vertical_m} m: {place} it is {altitude_m:.0} m high, outside the limits of the zone `{zone}`"
+                    "change this leg's altitude by {vertical_m} m{after}: {place} it is {altitude_m:.0} m high, outside the limits of the zone `{zone}`"
                 ),
             ),
         };
@@ -209,8 +202,8 @@ impl Found<'_> {
         };
         if self.perhaps {
             let message = format!("{what} if the flight comes there when the zone is active");
-            return Problem::warning(code, message).of(self.leg).with_zone(zone);
+            return Problem::warning(code, message).of(self.leg).with_zone(zone).with_place(spot);
         }
-        Problem::error(code, format!("{what}{timeless}")).of(self.leg).with_zone(zone)
+        Problem::error(code, format!("{what}{timeless}")).of(self.leg).with_zone(zone).with_place(spot)
     }
 }
