@@ -28,6 +28,7 @@ pub fn of(scene: &Scene<'_>) -> Vec<Action> {
                 kind: Kind::Switch(is_it),
                 keys: Vec::new(),
                 while_typing: false,
+                caution: None,
                 command: Ok(Command::Document(DocumentCommand::Edit(edit))),
             });
         }

@@ -43,6 +43,7 @@ fn action(id: String, name: String, edit: Edit, is_it: bool) -> Action {
         kind: Kind::Switch(is_it),
         keys: Vec::new(),
         while_typing: false,
+        caution: None,
         command: Ok(Command::Document(DocumentCommand::Edit(edit))),
     }
 }

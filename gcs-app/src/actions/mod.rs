@@ -103,6 +103,8 @@ pub struct Action {
     pub keys: Vec<KeyboardShortcut>,
     /// The keys work while text is being typed, too.
     pub while_typing: bool,
+    /// What whoever does it should know first.
+    pub caution: Option<&'static str>,
     /// What it asks for; or why it is not possible now.
     pub command: Result<Command, Cow<'static, str>>,
 }
@@ -117,6 +119,7 @@ impl Action {
             kind: Kind::Do,
             keys: Vec::new(),
             while_typing: false,
+            caution: None,
             command: command.map_err(Into::into),
         }
     }
@@ -191,6 +194,7 @@ fn tool(card: &'static Card, in_use: bool, guided: bool) -> Action {
         kind: Kind::Choice(in_use),
         keys: vec![KeyboardShortcut::new(Modifiers::NONE, card.key)],
         while_typing: false,
+        caution: None,
         command: if guided {
             Err("Draw what the card of the new mission asks for first".into())
         } else {
@@ -207,6 +211,7 @@ fn panel(entry: &PanelEntry) -> Action {
         kind: Kind::Switch(entry.shown),
         keys: Vec::new(),
         while_typing: false,
+        caution: None,
         command: Ok(Command::View(ViewCommand::ShowPanel(entry.id, !entry.shown))),
     }
 }

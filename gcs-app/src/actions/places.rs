@@ -46,6 +46,7 @@ fn show(kind: &str, document: &Document, selection: Selection) -> Action {
         kind: Kind::Do,
         keys: Vec::new(),
         while_typing: false,
+        caution: None,
         command: Ok(Command::View(ViewCommand::JumpTo(selection))),
     }
 }

@@ -8,7 +8,7 @@ use crate::guide::Answer;
 use crate::help::topic_of;
 use crate::map::furniture::Edge;
 use crate::panels::tree::Renamed;
-use crate::panels::{Scene, bar, start};
+use crate::panels::{Scene, bar, flight as panel, start};
 use crate::theme::Scale;
 use crate::units::Units;
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
@@ -27,6 +27,7 @@ pub struct Entry {
     kind: fn(&Scene<'_>) -> Kind,
     pub keys: &'static [KeyboardShortcut],
     ask: fn(&Scene<'_>) -> Asked,
+    caution: fn(&Scene<'_>) -> Option<&'static str>,
 }
 
 impl Entry {
@@ -39,6 +40,7 @@ impl Entry {
             kind: (self.kind)(scene),
             keys: self.keys.to_vec(),
             while_typing: self.group != Group::Edit && self.keys.iter().all(|key| !is_plain(key)),
+            caution: (self.caution)(scene),
             command: (self.ask)(scene).map_err(Into::into),
         }
     }
@@ -68,6 +70,7 @@ const fn alt(key: Key) -> KeyboardShortcut {
 
 const DO: fn(&Scene<'_>) -> Kind = |_| Kind::Do;
 const HOLD: fn(&Scene<'_>) -> Kind = |_| Kind::Hold;
+const NONE: fn(&Scene<'_>) -> Option<&'static str> = |_| None;
 
 const fn entry(
     group: Group,
@@ -76,7 +79,7 @@ const fn entry(
     keys: &'static [KeyboardShortcut],
     ask: fn(&Scene<'_>) -> Asked,
 ) -> Entry {
-    Entry { group, id, name, kind: DO, keys, ask }
+    Entry { group, id, name, kind: DO, keys, ask, caution: NONE }
 }
 
 const fn choice(
@@ -86,11 +89,11 @@ const fn choice(
     kind: fn(&Scene<'_>) -> Kind,
     ask: fn(&Scene<'_>) -> Asked,
 ) -> Entry {
-    Entry { group, id, name, kind, keys: &[], ask }
+    Entry { group, id, name, kind, keys: &[], ask, caution: NONE }
 }
 
 const fn hold(id: &'static str, name: &'static str, ask: fn(&Scene<'_>) -> Asked) -> Entry {
-    Entry { group: Group::Flight, id, name, kind: HOLD, keys: &[], ask }
+    Entry { group: Group::Flight, id, name, kind: HOLD, keys: &[], ask, caution: NONE }
 }
 
 /// All of them, in the order of the menus.
@@ -170,7 +173,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Flight, "keep-as-draft", "Keep what was pushed as a draft", &[], flight::keep_as_draft),
     entry(Group::Flight, "hold", "Hold here", &[], |s| flight::flying(s, PlanCommand::Hold)),
     entry(Group::Flight, "resume", "Resume", &[], flight::resume),
-    hold("start", "Start and take off", flight::start),
+    hold("start", "Start and take off", flight::start).with_caution(panel::another_aboard),
     hold("rewind", "Rewind to the start", flight::rewind),
     entry(Group::Flight, "skip-leg", "Skip the leg…", &[], flight::skip),
     entry(Group::Flight, "return-to-main", "Return to the main plan…", &[], flight::return_to_main),
@@ -186,6 +189,11 @@ pub const ENTRIES: &[Entry] = &[
 impl Entry {
     const fn with_keys(mut self, keys: &'static [KeyboardShortcut]) -> Self {
         self.keys = keys;
+        self
+    }
+
+    const fn with_caution(mut self, caution: fn(&Scene<'_>) -> Option<&'static str>) -> Self {
+        self.caution = caution;
         self
     }
 }

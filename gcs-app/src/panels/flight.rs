@@ -261,21 +261,26 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 /// Named by what would be flown: that is the plan aboard, whatever is shown.
 fn launch(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
-    let shown = scene.analysis.hash_of(scene.document.version());
-    let is_another = shown.is_some_and(|shown| scene.vehicle.active_hash().as_deref() != Some(shown));
+    let another = another_aboard(scene);
     let start =
         if scene.vehicle.phase() == Phase::Grounded { "Start the next flight" } else { "Start and take off" };
-    let (text, colour) = match is_another {
+    let (text, colour) = match another.is_some() {
         true => (format!("{start} with the plan aboard"), p.caution),
         false => (start.to_owned(), p.accent),
     };
     if field::hold_button(ui, &text, colour, 150.0) {
         queue.fly(FlyCommand::Launch);
     }
-    if is_another {
-        let text = "⚠ What is shown is not aboard and would not be flown: push it first";
+    if let Some(text) = another {
         ui.label(RichText::new(text).color(p.caution));
     }
+}
+
+/// What whoever starts should know first: the plan aboard is another one than what is shown.
+pub fn another_aboard(scene: &Scene<'_>) -> Option<&'static str> {
+    let shown = scene.analysis.hash_of(scene.document.version())?;
+    let is_another = scene.vehicle.active_hash().as_deref() != Some(shown);
+    is_another.then_some("⚠ What is shown is not aboard and would not be flown: push it first")
 }
 
 /// Why there is nothing to command.

@@ -143,6 +143,9 @@ fn field_id() -> Id {
 fn hold(ui: &mut Ui, action: &Action, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.label("This can't be taken back. Hold the button, or the space bar on it; Escape leaves it.");
+    if let Some(caution) = action.caution {
+        ui.label(RichText::new(caution).color(p.caution));
+    }
     if field::hold_button(ui, &action.name, p.warning, ui.available_width())
         && let Ok(command) = &action.command
     {
@@ -182,7 +185,7 @@ fn row(ui: &mut Ui, action: &Action, current: bool) -> egui::Response {
     let mark = if on { " ✔" } else { "" };
     let text = RichText::new(format!("{}  ▸  {}{mark}", action.group.name(), action.name)).color(colour);
     let aside = match &action.command {
-        Ok(_) => action.key(ui.ctx()).unwrap_or_default(),
+        Ok(_) => action.caution.map(Into::into).or(action.key(ui.ctx())).unwrap_or_default(),
         Err(why_not) => why_not.to_string(),
     };
     let button = egui::Button::new(text)

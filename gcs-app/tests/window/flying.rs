@@ -257,7 +257,13 @@ fn who_starts_with_a_draft_on_the_screen_is_told_that_another_plan_is_flown() {
     window.until_analysed();
     window.receive_status(value);
     assert!(window.shows("Start and take off with the plan aboard (hold)"));
-    assert!(window.shows("⚠ What is shown is not aboard and would not be flown: push it first"));
+    let caution = "⚠ What is shown is not aboard and would not be flown: push it first";
+    assert!(window.shows(caution));
+    let told = |window: &Window| window.harness.query_all_by_label_contains(caution).count();
+    let beside_the_button = told(&window);
+    window.ask_for("start and take off");
+    window.press(Key::Enter);
+    assert_eq!(told(&window), beside_the_button + 1, "in the palette, too");
 }
 
 #[test]
