@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Seconds between two copies, at least.
 const PERIOD_S: f64 = 2.0;
@@ -33,6 +33,15 @@ pub struct LeftDocument {
     /// That file as the window knew it.
     #[serde(default)]
     pub stamp: Option<Stamp>,
+    /// The plan's name.
+    #[serde(default)]
+    pub name: String,
+    /// When these changes were first kept, seconds since 1970-01-01T00:00:00Z; older copies do not say.
+    #[serde(default)]
+    kept_unix_s: Option<u64>,
+    /// How long ago that was when it was found.
+    #[serde(skip)]
+    pub age: Duration,
     /// The plan as it would be saved.
     pub text: String,
 }
@@ -42,8 +51,6 @@ pub struct LeftDocument {
 pub struct LeftBehind {
     /// The documents with unsaved changes, at least one; the one that was shown first.
     pub documents: Vec<LeftDocument>,
-    /// How long ago they were written.
-    pub age: Duration,
 }
 
 /// A document that is to be kept.
@@ -51,19 +58,28 @@ struct Unsaved {
     path: Option<PathBuf>,
     stamp: Option<Stamp>,
     plan: Arc<FlightPlan>,
+    since: SystemTime,
 }
 
 impl Unsaved {
-    fn of(document: &Document) -> Self {
+    fn of(document: &Document, since: SystemTime) -> Self {
         Self {
             path: document.path().map(Path::to_owned),
             stamp: document.stamp(),
             plan: document.plan().clone(),
+            since,
         }
     }
 
     fn written(&self) -> LeftDocument {
-        LeftDocument { path: self.path.clone(), stamp: self.stamp, text: flight_plan::write(&self.plan) }
+        LeftDocument {
+            path: self.path.clone(),
+            stamp: self.stamp,
+            name: self.plan.name.clone(),
+            kept_unix_s: self.since.duration_since(UNIX_EPOCH).ok().map(|since| since.as_secs()),
+            age: Duration::ZERO,
+            text: flight_plan::write(&self.plan),
+        }
     }
 }
 
@@ -80,8 +96,8 @@ pub struct Keeper {
     jobs: Option<Sender<Job>>,
     failures: Receiver<String>,
     worker: Option<JoinHandle<()>>,
-    /// The versions of which there are copies; `None`: what is there is not of this window.
-    kept: Option<Vec<u64>>,
+    /// The versions of which there are copies, each since when; `None`: what is there is not of this window.
+    kept: Option<Vec<(u64, SystemTime)>>,
     last_s: f64,
     left_behind: Option<LeftBehind>,
     /// Held while the window lives: the place is not free.
@@ -153,7 +169,8 @@ impl Keeper {
     pub fn tend<'d>(&mut self, unsaved: impl Iterator<Item = &'d Document>, now_s: f64) -> Option<Duration> {
         let unsaved: Vec<&Document> = unsaved.collect();
         let versions = unsaved.iter().map(|document| document.version());
-        if self.kept.as_ref().is_some_and(|kept| versions.clone().eq(kept.iter().copied())) {
+        let has_all = |kept: &Vec<(u64, _)>| versions.clone().eq(kept.iter().map(|(version, _)| *version));
+        if self.kept.as_ref().is_some_and(has_all) {
             return None;
         }
         let wait_s = self.last_s + PERIOD_S - now_s;
@@ -161,8 +178,15 @@ impl Keeper {
             return Some(Duration::from_secs_f64(wait_s));
         }
         self.last_s = now_s;
-        self.kept = Some(versions.collect());
-        self.order(unsaved.into_iter().map(Unsaved::of).collect());
+        let before = self.kept.take().unwrap_or_default();
+        let now = SystemTime::now();
+        let since =
+            |version| before.iter().find(|(known, _)| *known == version).map_or(now, |(_, since)| *since);
+        let kept: Vec<(u64, SystemTime)> = versions.map(|version| (version, since(version))).collect();
+        let unsaved =
+            unsaved.into_iter().zip(&kept).map(|(document, (_, since))| Unsaved::of(document, *since));
+        self.order(unsaved.collect());
+        self.kept = Some(kept);
         None
     }
 
@@ -219,9 +243,14 @@ fn carry_out(job: Job, copy: &Path) -> std::io::Result<()> {
 
 /// `None`: nothing was left there, or nothing that can be read.
 fn read(copy: &Path) -> Option<LeftBehind> {
-    let age = copy.metadata().and_then(|meta| meta.modified()).ok()?.elapsed().unwrap_or_default();
-    let kept: Kept = serde_json::from_slice(&std::fs::read(copy).ok()?).ok()?;
-    (!kept.documents.is_empty()).then_some(LeftBehind { documents: kept.documents, age })
+    let written = copy.metadata().and_then(|meta| meta.modified()).ok()?;
+    let mut kept: Kept = serde_json::from_slice(&std::fs::read(copy).ok()?).ok()?;
+    for document in &mut kept.documents {
+        let since = document.kept_unix_s.map(Duration::from_secs);
+        let since = since.and_then(|since| UNIX_EPOCH.checked_add(since)).unwrap_or(written);
+        document.age = since.elapsed().unwrap_or_default();
+    }
+    (!kept.documents.is_empty()).then_some(LeftBehind { documents: kept.documents })
 }
 
 #[cfg(test)]
@@ -345,6 +374,18 @@ mod tests {
         assert_eq!(tend(&mut keeper, &document, 12.1), None, "taken away at once");
         drop(keeper);
         assert_eq!(Keeper::open(folder.path()).unwrap().left_behind(), None);
+    }
+
+    /// Each since it was edited, though all are written when one is; copies of earlier versions are as old as their file.
+    #[test]
+    fn plans_are_left_with_their_names_and_ages() {
+        let folder = tempfile::tempdir().unwrap();
+        let kept = r#"{"documents":[{"path":null,"name":"Ridge","kept_unix_s":1000,"text":""},{"path":null,"text":""}]}"#;
+        std::fs::write(folder.path().join("0.json"), kept).unwrap();
+        let found = Keeper::open(folder.path()).unwrap().take_left_behind().unwrap();
+        let [ridge, old] = found.documents.as_slice() else { panic!("{found:?}") };
+        assert_eq!((ridge.name.as_str(), old.name.as_str()), ("Ridge", ""));
+        assert!(ridge.age.as_secs() > 1_000_000_000 && old.age.as_secs() < 60, "{ridge:?} {old:?}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{field, primary_button};
 use crate::command::{DocumentCommand, Queue, ViewCommand};
-use crate::recovery::LeftBehind;
+use crate::recovery::{LeftBehind, LeftDocument};
 use crate::{theme, units};
 use egui::{Key, Label, Response, RichText, ScrollArea, Ui};
 
@@ -14,13 +14,10 @@ const LIST_HEIGHT: f32 = 120.0;
 pub fn show(ui: &mut Ui, found: &LeftBehind, (may_close, is_calm): (bool, bool), queue: &mut Queue) {
     ui.set_width(380.0);
     ui.strong("The last window ended without saving");
-    let age = units::duration(found.age.as_secs_f64());
-    ui.label(format!("It had changes that were kept {age} ago, of"));
+    ui.label("It had changes of");
     ScrollArea::vertical().id_salt("left behind").max_height(LIST_HEIGHT).show(ui, |ui| {
         for document in &found.documents {
-            let name = document.path.as_ref().map(|path| path.display().to_string());
-            let name = name.unwrap_or_else(|| "a plan without a file".into());
-            ui.add(Label::new(format!("• {name}")).truncate()).on_hover_text(name);
+            ui.add(Label::new(format!("• {}", told(document))).truncate());
         }
     });
     let weak = theme::of(ui).weak;
@@ -41,6 +38,16 @@ pub fn show(ui: &mut Ui, found: &LeftBehind, (may_close, is_calm): (bool, bool),
             queue.view(ViewCommand::AskRecovery(false));
         }
     });
+}
+
+/// By which a plan is known again: its file or else its name, and how old its changes are.
+fn told(left: &LeftDocument) -> String {
+    let age = units::duration(left.age.as_secs_f64());
+    match (&left.path, left.name.as_str()) {
+        (Some(path), _) => format!("{}, {age} ago", path.display()),
+        (None, "") => format!("a plan without a file, {age} ago"),
+        (None, name) => format!("“{name}”, without a file, {age} ago"),
+    }
 }
 
 /// Return presses it, until something else is chosen. While something else has the keyboard, or in a flight, Return is not meant for it.

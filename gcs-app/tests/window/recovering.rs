@@ -30,7 +30,7 @@ fn killed_window_loses_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let lost = edit_and_kill(folder.path());
     let mut window = window_in(folder.path(), "");
-    assert!(window.shows("ended without saving"));
+    assert!(window.shows("ended without saving") && window.shows("• “Square circuit”, without a file, "));
     window.press(egui::Key::Enter);
     assert_eq!(window.plan(), lost);
     assert!(window.app().document().is_dirty() && !window.shows("ended without saving"));
