@@ -8,7 +8,7 @@ use crate::theme::{self, Palette};
 use crate::units::{self, Units};
 use egui::collapsing_header::CollapsingState;
 use egui::{Color32, Label, Panel, RichText, ScrollArea, Sense, Ui};
-use flight_plan::{Change, FlightPlan, Id};
+use flight_plan::{Change, FlightPlan, Id, Verdict};
 
 /// Screen points.
 const WIDTH: f32 = 260.0;
@@ -35,7 +35,7 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
     let report = &proposal.report;
     let p = theme::of(ui);
     ui.label(RichText::new("Push plan").strong().size(16.0));
-    verdict(ui, proposal, p);
+    verdict(ui, scene, proposal, p);
     if scene.analysis.hash_of(scene.document.version()).is_some_and(|hash| *hash != *report.hash) {
         let text = "⚠ The draft was edited since. What was checked is committed, without these edits.";
         ui.label(RichText::new(text).color(p.caution));
@@ -84,16 +84,32 @@ fn changes(ui: &mut Ui, plan: &FlightPlan, changes: &[Change], p: &Palette) {
     }
 }
 
-fn verdict(ui: &mut Ui, proposal: &Proposal, p: &Palette) {
+fn verdict(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, p: &Palette) {
     let (report, hash) = (&proposal.report, short_hash(&proposal.report.hash));
+    let here = found_here(scene, proposal);
     // what is found in a plan that is accepted are warnings
     let (text, colour) = match (report.acceptable, report.problems.len()) {
+        (true, 0) if here.is_some() => (format!("Checked aboard: {hash} can be flown"), p.text),
         (true, 0) => (format!("✔ Checked aboard: {hash} can be flown"), p.good),
         (true, 1) => (format!("⚠ Checked aboard: {hash} can be flown, 1 warning"), p.caution),
         (true, count) => (format!("⚠ Checked aboard: {hash} can be flown, {count} warnings"), p.caution),
         (false, _) => (format!("✖ Checked aboard: {hash} can't be flown. It stays a draft."), p.warning),
     };
     ui.label(RichText::new(text).strong().color(colour));
+    if let Some(found) = here.filter(|_| report.acceptable) {
+        let text = format!(
+            "⚠ Checked here: it {found}. Here all of the flight is checked, for other variables, too: see Problems"
+        );
+        ui.label(RichText::new(text).color(p.caution));
+    }
+}
+
+/// What Problems say of the plan that is proposed, where that is more than was found aboard.
+fn found_here(scene: &Scene<'_>, proposal: &Proposal) -> Option<Verdict> {
+    let report = &proposal.report;
+    let is_shown = scene.analysis.hash_of(scene.document.version()).is_some_and(|hash| *hash == *report.hash);
+    let found = Verdict::of(scene.problems());
+    (is_shown && found.errors + found.warnings > report.problems.len()).then_some(found)
 }
 
 /// `1 stage and 2 legs`: a take-off or a landing is a stage without legs.

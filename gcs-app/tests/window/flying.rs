@@ -174,11 +174,11 @@ fn proposal_says_in_words_what_is_different_and_what_was_edited_since() {
 }
 
 #[test]
-fn a_proposal_with_warnings_is_amber_and_one_without_is_green() {
+fn a_proposal_with_warnings_is_amber_and_one_that_is_warned_of_only_here_is_not_green() {
     let p = gcs_app::theme::palette(true);
     let warning = "out of glide of every runway".to_owned();
     let cases = [
-        (vec![], "✔ Checked aboard: ", " can be flown", p.good),
+        (vec![], "Checked aboard: ", " can be flown", p.text),
         (vec![warning.clone()], "⚠ Checked aboard: ", " can be flown, 1 warning", p.caution),
         (vec![warning.clone(), warning], "⚠ Checked aboard: ", " can be flown, 2 warnings", p.caution),
     ];
@@ -193,6 +193,9 @@ fn a_proposal_with_warnings_is_amber_and_one_without_is_green() {
         assert!(verdict.starts_with(begins) && verdict.ends_with(ends), "{verdict}");
         assert_eq!(window.colour_of(begins), Some(colour), "{verdict}");
         assert!(window.is_enabled("Commit"));
+        // the same fact in the same words, wherever it was found
+        let here = window.shows("⚠ Checked here: it can be flown, 1 warning");
+        assert_eq!(here, begins == "Checked aboard: ", "{verdict}");
     }
 }
 
