@@ -61,7 +61,7 @@ fn making_a_procedure_keeps_the_tree_where_it_was_and_calls_say_whose_they_are()
     window.until_analysed();
     window.row_menu(("TF side2", 0), "Make a procedure of it");
     window.steps(4);
-    assert!(window.shows("T/O take-off") && window.plan().procedures[0].id.as_str() == window.selected());
+    assert!(window.shows("T/O take-off") && window.selected() == "call1");
     window.click("TF side1");
     window.press(Key::P);
     assert!(window.shows("behind side1, in Main plan > circuit"));

@@ -42,7 +42,8 @@ fn a_leg_is_duplicated_moved_looped_and_deleted_from_its_menu() {
             }
             "Make a procedure of it" => {
                 assert_eq!(after.procedures.len(), 1);
-                assert_eq!(after.procedures[0].id.as_str(), window.selected());
+                let call = after.leg(&window.selected().as_str().into()).unwrap().leg;
+                assert!(matches!(call.kind, LegKind::Call(_)), "the next call goes behind it");
             }
             _ => assert!(!legs(&after).contains(&"side2".to_owned())),
         }

@@ -11,7 +11,7 @@ use crate::theme::Palette;
 use crate::units;
 use egui::{CursorIcon, Key, Painter, Pos2, Ui};
 use flight_plan::create::{self, Approach};
-use flight_plan::{Id, Leg, Procedure};
+use flight_plan::{Id, Leg, LegKind, Procedure};
 use geometry::LatLon;
 use geometry::geodesy::normalise_360;
 
@@ -22,7 +22,7 @@ const FROM_M: f64 = 1000.0;
 #[derive(Debug)]
 pub struct PlaceProcedure {
     pen: Pen,
-    /// The procedure that was chosen; else the selected or the first one.
+    /// The procedure that was chosen; else the selected or called or the first one.
     chosen: Option<Id>,
     side: Side,
     trials: Trials,
@@ -47,6 +47,10 @@ impl PlaceProcedure {
         let plan = scene.document.plan();
         let selected = match &scene.view.selection {
             Some(Selection::Procedure(id)) => plan.procedure(id),
+            Some(Selection::Leg(id)) => match plan.leg(id).map(|context| &context.leg.kind) {
+                Some(LegKind::Call(call)) => plan.procedure(&call.procedure),
+                _ => None,
+            },
             _ => None,
         };
         let chosen = || self.chosen.as_ref().and_then(|id| plan.procedure(id));

@@ -211,7 +211,7 @@ fn of_legs(plan: &FlightPlan, legs: &[Id]) -> Vec<Entry> {
     vec![
         Entry::making("Put them into a loop", looped, Selection::Leg, NOT_ONE_LIST),
         Entry::making("Put a fork around them", forked, Selection::Leg, NOT_IN_A_ROW),
-        Entry::making("Make a procedure of them", procedure, Selection::Procedure, NOT_ONE_LIST),
+        Entry::making("Make a procedure of them", procedure, Selection::Leg, NOT_ONE_LIST),
         Entry::new("Delete them", "Del", create::delete_legs(plan, legs)),
     ]
 }
@@ -237,7 +237,7 @@ fn of_leg(plan: &FlightPlan, leg: &Id) -> Vec<Entry> {
         Entry::shifting("Move down", "Ctrl+Down", create::shift(plan, leg, 1)),
         made("Put into a loop", create::loop_around(plan, one), Selection::Leg),
         made("Fork before it", create::fork_around(plan, one), Selection::Leg),
-        made("Make a procedure of it", create::procedure_of(plan, one), Selection::Procedure),
+        made("Make a procedure of it", create::procedure_of(plan, one), Selection::Leg),
     ];
     if is_loop {
         let edit = create::unloop(plan, leg).ok_or("The loop has no legs");

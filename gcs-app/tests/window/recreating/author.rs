@@ -288,13 +288,14 @@ impl Author {
             self.window.select_row_with((&row, which), Modifiers::COMMAND);
         }
         self.menu(&made[0].clone(), "Make a procedure of them");
-        let new = self.made();
+        let call = self.made();
+        let new = self.window.plan().procedures.last().unwrap().id.clone();
+        self.select(&new);
         self.fill(Subject::Procedure(new), Subject::Procedure(procedure.id.clone()));
         for (made, wanted) in made.into_iter().zip(&procedure.legs) {
             self.select(&made);
             self.fill(Subject::Leg(made), Subject::Leg(wanted.id.clone()));
         }
-        let call = self.window.plan().stage(&id).unwrap().legs[0].id.clone();
         self.menu(&call, "Delete");
     }
 

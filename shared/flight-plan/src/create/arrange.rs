@@ -92,7 +92,7 @@ pub fn fork_around(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     Some((id, Edit::All(std::iter::once(fork).chain(merge).collect())))
 }
 
-/// A procedure of legs of one list, which is called in their place.
+/// A procedure of legs of one list, which is called in their place: the call, and the edit.
 pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     let legs = in_order(plan, legs)?;
     let (list, _) = list_of(plan, legs.first()?)?;
@@ -106,8 +106,8 @@ pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
         bearing_deg: 0.0,
         legs: moved,
     };
-    let id = procedure.id.clone();
-    let call = Call { procedure: id.clone(), arguments: Vec::new(), anchor: None, bearing_deg: None };
+    let call =
+        Call { procedure: procedure.id.clone(), arguments: Vec::new(), anchor: None, bearing_deg: None };
     let caller = Leg {
         id: plan.fresh_id("call"),
         name: String::new(),
@@ -116,6 +116,7 @@ pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
         kind: LegKind::Call(call),
         ..first.as_ref().clone()
     };
+    let id = caller.id.clone();
     let mut edits = vec![Edit::InsertLeg { leg: Box::new(caller), at: Spot::Before(first.id.clone()) }];
     edits.extend(legs.into_iter().map(|leg| Edit::DeleteLeg { leg }));
     edits.push(Edit::Add(Box::new(Thing::Procedure(procedure))));

@@ -3,8 +3,8 @@
 use super::*;
 use crate::template::{Extent, Outline, Template};
 use crate::{
-    Edit, FlightPlan, Id, LegKind, Place, Runway, Spot, StageKind, Thing, Value, VariableValue, ZoneKind,
-    ZoneShape, check,
+    Altitude, AltitudeReference, Call, Edit, FlightPlan, Id, LegKind, Place, Runway, Spot, StageKind, Thing,
+    Value, VariableValue, ZoneKind, ZoneShape, check,
 };
 use aircraft::Profile;
 use geometry::LatLon;
@@ -249,9 +249,12 @@ fn a_number_becomes_a_variable_and_comes_back() {
 fn a_procedure_is_called_at_a_place_and_turned() {
     let plan = made(Template::Patrol);
     let legs = [plan.stages.iter().find(|s| s.kind == StageKind::Mission).unwrap().legs[0].id.clone()];
-    let (id, edit) = procedure_of(&plan, &legs).unwrap();
+    let (caller, edit) = procedure_of(&plan, &legs).unwrap();
     let plan = edit.apply(&plan).unwrap();
-    let made = call(&plan, &id, at(HOME), Some(90.0)).unwrap();
+    let LegKind::Call(Call { procedure: id, .. }) = &plan.leg(&caller).unwrap().leg.kind else {
+        panic!("no call")
+    };
+    let made = call(&plan, id, at(HOME), Some(90.0)).unwrap();
     let LegKind::Call(call_of) = &made.kind else { panic!("no call") };
     assert_eq!(call_of.anchor, Some(at(HOME)));
     assert_eq!(call_of.bearing_deg, Some(Value::Constant(90.0)));
@@ -310,10 +313,11 @@ fn legs_are_copied_moved_and_put_into_loops_forks_and_procedures() {
     let forked = then(Some(fork_around(&plan, &["leg1".into(), "leg2".into()]).unwrap().1));
     assert_eq!((ids(&forked).join(" "), errors(&forked)), ("scan fork1 leg1 leg2 merge".into(), Vec::new()));
     assert!(fork_around(&plan, &["scan".into(), "leg2".into()]).is_none(), "they don't follow each other");
-    let (id, edit) = procedure_of(&plan, &["leg1".into(), "leg2".into()]).unwrap();
+    let (caller, edit) = procedure_of(&plan, &["leg1".into(), "leg2".into()]).unwrap();
+    assert_eq!(caller.as_str(), "call1", "what is drawn next goes behind it");
     let called = then(Some(edit));
     assert_eq!((ids(&called).join(" "), errors(&called)), ("scan call1".into(), Vec::new()));
-    assert_eq!(called.procedure(&id).unwrap().legs.len(), 2);
+    assert_eq!(called.procedures[0].legs.len(), 2);
     let place = Drawn::Place(at(HOME));
     let anchored = leg(&called, &Profile::default(), LegChoice::Call, &place, None, None).unwrap();
     assert!(matches!(anchored.kind, LegKind::Call(ref call) if call.anchor.is_some()));
