@@ -148,9 +148,9 @@ fn fly(wanted: &Wanted, aim: &Aim, plan: &FlightPlan, ground: &Arc<dyn Terrain>)
     let Wanted { what_if, leg, approach, .. } = wanted;
     let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
     let ground_amsl_m = ground.elevation_m(approach.from);
-    let level_amsl_m =
-        level_amsl_m(new_leg::level(plan, aim), home_amsl_m(plan, aim), ground_amsl_m.unwrap_or(0.0));
-    let tried = create::trial(plan, *approach, level_amsl_m, leg);
+    let home_amsl_m = home_amsl_m(plan, aim);
+    let level_amsl_m = level_amsl_m(new_leg::level(plan, aim), home_amsl_m, ground_amsl_m.unwrap_or(0.0));
+    let tried = create::trial(plan, *approach, (level_amsl_m, home_amsl_m), leg);
     let program = match compile(tried, &profile, ground.as_ref()) {
         Ok(program) => Arc::new(program),
         Err(problems) => {

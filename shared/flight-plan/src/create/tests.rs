@@ -269,10 +269,22 @@ fn a_trial_flies_what_can_be_flown_and_refuses_what_cannot() {
     let tried = |to: LatLon| {
         let drawn = Drawn::Place(at(to));
         let tf = leg(&plan, &Profile::default(), LegChoice::Tf, &drawn, Some(way), None).unwrap();
-        errors(&trial(&plan, way, 500.0, &tf))
+        errors(&trial(&plan, way, (500.0, 200.0), &tf))
     };
     assert_eq!(tried(from.destination(230.0, 3000.0)), Vec::<String>::new());
     assert!(!tried(from).is_empty(), "a leg of no length");
+
+    // the procedure's altitude counts from the home of a plan that has a take-off
+    let scan =
+        plan.stages.iter().flat_map(|stage| &stage.legs).find(|leg| leg.kind_name() == "scan").unwrap();
+    let altitude = Some(Altitude { metres: Value::Constant(300.0), reference: AltitudeReference::Home });
+    let plan = Edit::SetAltitude { of: scan.id.clone(), altitude }.apply(&plan).unwrap();
+    let (caller, edit) = procedure_of(&plan, std::slice::from_ref(&scan.id)).unwrap();
+    let plan = edit.apply(&plan).unwrap();
+    let of_trial = trial(&plan, way, (500.0, 200.0), plan.leg(&caller).unwrap().leg);
+    assert_eq!(errors(&of_trial), Vec::<String>::new());
+    let counted = of_trial.procedures[0].legs[0].altitude.clone().unwrap();
+    assert_eq!((counted.metres, counted.reference), (Value::Constant(500.0), AltitudeReference::Amsl));
 }
 
 #[test]

@@ -11,8 +11,14 @@ use std::sync::Arc;
 /// The path is flown so far before the leg begins, metres: it arrives on its course.
 pub const RUN_UP_M: f64 = 1000.0;
 
-/// A plan of nothing but a leg, for the path that arrives there at an altitude; what is done on the leg is left out.
-pub fn trial(plan: &FlightPlan, at: Approach, altitude_amsl_m: f64, leg: &Leg) -> FlightPlan {
+/// A plan of nothing but a leg, for the path that arrives there at an altitude, in a flight from a home of that elevation; what is
+/// done on the leg is left out.
+pub fn trial(
+    plan: &FlightPlan,
+    at: Approach,
+    (altitude_amsl_m, home_amsl_m): (f64, f64),
+    leg: &Leg,
+) -> FlightPlan {
     let level =
         |metres: f64| Altitude { metres: Value::Constant(metres), reference: AltitudeReference::Amsl };
     let tried = Leg {
@@ -33,6 +39,10 @@ pub fn trial(plan: &FlightPlan, at: Approach, altitude_amsl_m: f64, leg: &Leg) -
         ..tried.clone()
     };
     let mut legs = vec![lead_in("trial-end", LegKind::Tf(to(at.from))), tried.clone()];
+    let mut procedures = plan.procedures.clone();
+    // it has no take-off that `home` could count from
+    let called = procedures.iter_mut().flat_map(|procedure| procedure.legs.iter_mut().map(Arc::make_mut));
+    called.chain(&mut legs).for_each(|leg| from_the_sea(leg, home_amsl_m));
     if let Some(course_deg) = at.course_deg {
         let start = at.from.destination(course_deg + 180.0, RUN_UP_M);
         legs.insert(0, lead_in("trial-start", LegKind::If(to(start))));
@@ -55,9 +65,23 @@ pub fn trial(plan: &FlightPlan, at: Approach, altitude_amsl_m: f64, leg: &Leg) -
         fixes: plan.fixes.clone(),
         runways: plan.runways.clone(),
         variables: plan.variables.clone(),
-        procedures: plan.procedures.clone(),
+        procedures,
         stages: vec![stage],
         ..FlightPlan::default()
+    }
+}
+
+/// Counts what counts from home from the sea, also inside of a loop.
+fn from_the_sea(leg: &mut Leg, home_amsl_m: f64) {
+    if let Some(altitude) = leg.altitude.as_mut().filter(|own| own.reference == AltitudeReference::Home) {
+        altitude.reference = AltitudeReference::Amsl;
+        altitude.metres = match &altitude.metres {
+            Value::Constant(metres) => Value::Constant(metres + home_amsl_m),
+            Value::Expression(formula) => Value::Expression(format!("({formula}) + {home_amsl_m:?}").into()),
+        };
+    }
+    if let LegKind::Iterative { body, .. } = &mut leg.kind {
+        body.iter_mut().for_each(|inner| from_the_sea(Arc::make_mut(inner), home_amsl_m));
     }
 }
 
