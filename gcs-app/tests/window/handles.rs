@@ -4,7 +4,7 @@ use super::drawing::choose;
 use super::{SQUARE, Window};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, vec2};
 use flight_plan::create::LegChoice;
-use flight_plan::{Id, LegKind, ScanEntry, TurnDirection, Value, transform};
+use flight_plan::{FlightPlan, Id, LegKind, ScanEntry, TurnDirection, Value, ZoneShape, transform};
 use gcs_app::command::Selection;
 use geometry::LatLon;
 
@@ -255,4 +255,32 @@ fn a_click_with_shift_adds_a_leg_and_takes_it_out() {
     window.steps(2);
     assert_eq!(window.app().view().also.len(), 1);
     assert!(!window.app().view().also.contains(&Selection::Leg("leg2".into())));
+}
+
+/// A zone is its inside, too: one click selects it, one drag moves all of it, and the map stays.
+#[test]
+fn a_zone_is_selected_by_a_click_inside_and_moved_by_a_drag_there() {
+    let zone = r#"<zones><keepOut id="quarry" lat="36.345" lon="-84.215" radius="1500"/></zones><mainPlan"#;
+    let mut window = Window::open(&SQUARE.replacen("<mainPlan", zone, 1));
+    window.until_analysed();
+    let [fix, other] = ["Fix A", "Fix C"].map(|fix| window.centre(fix));
+    let per_deg = (other - fix) / vec2(-84.178238 + 84.159836, 36.305396 - 36.327322);
+    // its own handles are in its middle and at its rim
+    let inside = fix + per_deg * vec2(-84.215 + 84.159836, 36.345 - 36.327322) + vec2(0.0, 28.0);
+    window.click_at(inside);
+    assert_eq!(window.selected(), "quarry");
+    let before = window.plan();
+    window.drag(inside, vec2(20.0, 15.0));
+    let shape = |plan: &FlightPlan| match plan.zone(&"quarry".into()).unwrap().shape {
+        ZoneShape::Circle { centre, radius_m } => (centre, radius_m),
+        ZoneShape::Polygon(_) => panic!("it was a circle"),
+    };
+    let ((from, radius_m), (to, same_m)) = (shape(&before), shape(&window.plan()));
+    assert!(from.distance_m(to) > 50.0 && same_m == radius_m, "{from:?} {to:?}");
+    assert!(window.centre("Fix A").distance(fix) < 1.0, "the map stays");
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+    // beside it nothing is selected
+    window.click_at(inside + vec2(0.0, 1.5 * per_deg.y.abs() * 1500.0 / 111_000.0));
+    assert_eq!(window.selected(), "");
 }

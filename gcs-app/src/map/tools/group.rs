@@ -95,6 +95,19 @@ impl Group {
         true
     }
 
+    /// A drag begins that moves one thing as a whole.
+    pub fn move_one(&mut self, what: Id, from: Pos2, canvas: &Canvas<'_>) {
+        let pivot = canvas.view.geo(from);
+        self.drag = Some(Drag {
+            plan: canvas.scene.document.plan().clone(),
+            set: vec![what],
+            does: Does::Move,
+            from,
+            pivot,
+            motion: Motion::shift(pivot, pivot),
+        });
+    }
+
     /// The pressed grip is dragged; true if there is one.
     pub fn drag(&mut self, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue) -> bool {
         let Some(drag) = &mut self.drag else { return false };

@@ -5,6 +5,7 @@
 //! To add a tool: a file here with a value that implements [`Tool`], and its line in [`all`].
 
 mod bands;
+mod corner;
 mod draw_leg;
 mod emergency;
 mod group;
@@ -23,6 +24,7 @@ mod toolbox;
 mod track;
 mod trial;
 mod typed;
+mod whole;
 
 pub(super) use bands::in_force;
 pub use toolbox::Toolbox;

@@ -2,12 +2,13 @@
 //! between corners, and in the middle of legs, become new ones when they are dragged. A drag is one undo step.
 
 use super::bands;
+use super::corner::remove_corner;
 use super::group::{Group, within};
 use super::handles::{draw, draw_labels, label, near, value};
 use super::pen::{Mark, way};
 use super::pick::{line_under, lines_near, selection};
 use super::snap::{self, snap_but};
-use super::{Canvas, Card, Grip, Pointer, Tool, Touch};
+use super::{Canvas, Card, Grip, Pointer, Tool, Touch, whole};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::guard;
 use crate::map::sketch::{Handle, Handled, Sketch, numbers, radius_edit};
@@ -17,9 +18,7 @@ use crate::theme::Palette;
 use aircraft::Profile;
 use egui::{Align2, Key, Painter, Pos2, Rect, Stroke, vec2};
 use flight_plan::create::{self, Drawn, LegChoice};
-use flight_plan::{
-    Area, Edit, FlightPlan, Id, LegKind, Pattern, Place, Problem, Scan, Spot, Value, VariableValue, ZoneShape,
-};
+use flight_plan::{Edit, FlightPlan, Id, Place, Problem, Spot, Value, VariableValue};
 use geometry::LatLon;
 
 /// The grip's key that is the line under the pointer.
@@ -36,6 +35,8 @@ pub struct Select {
     inserting: Option<(String, Handled)>,
     /// The leg whose line was grabbed.
     line: Option<Id>,
+    /// The zone that is moved as a whole.
+    zone: Option<Id>,
     /// What the last click may have meant.
     among: Vec<Selection>,
     /// The handles around several selected legs.
@@ -109,7 +110,10 @@ impl Tool for Select {
         let grips = shown.map(|(key, handle, at)| Grip { key, name: name(handle), at, first: first(handle) });
         let grips: Vec<Grip> = grips.chain(self.group.grips(canvas)).collect();
         // below the others
-        self.line_grip(&grips, canvas).into_iter().chain(grips).collect()
+        let line = self.line_grip(&grips, canvas);
+        let is_free = line.is_none() && self.inserting.is_none();
+        let zone = whole::grip(self.zone.as_ref(), &grips, canvas).filter(|_| is_free);
+        zone.into_iter().chain(line).chain(grips).collect()
     }
 
     fn hover(&mut self, _at: Option<Pos2>, canvas: &Canvas<'_>) {
@@ -119,12 +123,13 @@ impl Tool for Select {
     }
 
     fn press(&mut self, mut pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
-        self.line = None;
-        if pointer.grip == Some(LINE) {
-            if !pointer.clicks {
-                return self.grab_line(canvas, queue);
+        (self.line, self.zone) = (None, None);
+        if let Some(below @ (LINE | whole::ZONE)) = pointer.grip {
+            match (below, pointer.clicks) {
+                (LINE, false) => return self.grab_line(canvas, queue),
+                (_, false) => return self.grab_zone(canvas),
+                _ => pointer.grip = None,
             }
-            pointer.grip = None;
         }
         let plan = canvas.scene.document.plan();
         let handle = pointer.grip.and_then(|key| canvas.sketch.handles.get(key));
@@ -140,7 +145,10 @@ impl Tool for Select {
             return;
         }
         self.grabbed = handle.filter(|_| !pointer.clicks).cloned();
-        self.among = if pointer.grip.is_none() { lines_near(pointer.at, canvas) } else { Vec::new() };
+        self.among = match pointer.grip {
+            None => whole::or_zone(lines_near(pointer.at, canvas), pointer.at, canvas),
+            Some(_) => Vec::new(),
+        };
         let chosen = handle
             .filter(|_| pointer.clicks && !self.refused)
             .and_then(|handle| numbers::choice(plan, &handle.what));
@@ -197,7 +205,7 @@ impl Tool for Select {
     }
 
     fn release(&mut self, queue: &mut Queue) {
-        self.inserting = None;
+        (self.inserting, self.zone) = (None, None);
         self.group.release();
         (self.grabbed, self.dragged) = (None, None);
         if let Some(edit) = self.landing.take() {
@@ -246,6 +254,15 @@ impl Select {
         self.refused = why.is_some();
         self.line = leg.filter(|_| why.is_none());
         why.into_iter().for_each(|why| queue.view(ViewCommand::Notice(why)));
+    }
+
+    /// A drag begins inside of the selected zone.
+    fn grab_zone(&mut self, canvas: &Canvas<'_>) {
+        self.zone = canvas.pointer.and_then(|at| whole::selected(at, canvas));
+        self.refused = self.zone.is_none();
+        if let (Some(zone), Some(at)) = (&self.zone, canvas.pointer) {
+            self.group.move_one(zone.clone(), at, canvas);
+        }
     }
 
     /// What is near where a handle is dragged; nothing that moves with it. Numbers and marks don't snap.
@@ -333,38 +350,6 @@ fn line_name(leg: &Id, canvas: &Canvas<'_>) -> String {
 /// Not there yet: it is when it is dragged.
 fn is_mark(handle: &Handle) -> bool {
     matches!(handle.what, Handled::Ghost { .. } | Handled::Between { .. })
-}
-
-/// Removes a corner, unless too few would be left.
-pub fn remove_corner(plan: &FlightPlan, corner: &Handled, queue: &mut Queue) {
-    let Handled::Corner { leg, hole, corner } = corner else { return };
-    let (have, least, what) = points_of(plan, leg, *hole);
-    if have <= least {
-        let why = format!("{what} has at least {least} points: delete the whole of it instead.");
-        return queue.view(ViewCommand::Notice(why));
-    }
-    queue.edit(Edit::RemoveCorner { leg: leg.clone(), hole: *hole, corner: *corner });
-}
-
-/// How many points a ring or route has, how many it must have, and what it is.
-fn points_of(plan: &FlightPlan, of: &Id, hole: Option<usize>) -> (usize, usize, &'static str) {
-    if let Some(ZoneShape::Polygon(corners)) = plan.zone(of).map(|zone| &zone.shape) {
-        return (corners.len(), 3, "A zone");
-    }
-    match plan.leg(of).map(|context| &context.leg.kind) {
-        Some(LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. })) => {
-            (route.len(), 2, "A line")
-        }
-        Some(
-            LegKind::Scan(Scan { area: Area::Polygon { corners, holes }, .. })
-            | LegKind::Pattern(Pattern::Contour { area: Area::Polygon { corners, holes }, .. }),
-        ) => {
-            let ring = hole.map_or(Some(corners), |hole| holes.get(hole));
-            (ring.map_or(0, Vec::len), 3, "An area")
-        }
-        // of a variable: the edit counts them
-        _ => (usize::MAX, 3, "An area"),
-    }
 }
 
 /// The edit that moves what a handle stands for.

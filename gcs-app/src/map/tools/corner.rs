@@ -1,0 +1,37 @@
+//! Corners of outlines and routes, as they are removed.
+
+use crate::command::{Queue, ViewCommand};
+use crate::map::sketch::Handled;
+use flight_plan::{Area, Edit, FlightPlan, Id, LegKind, Pattern, Scan, ZoneShape};
+
+/// Removes a corner, unless too few would be left.
+pub fn remove_corner(plan: &FlightPlan, corner: &Handled, queue: &mut Queue) {
+    let Handled::Corner { leg, hole, corner } = corner else { return };
+    let (have, least, what) = points_of(plan, leg, *hole);
+    if have <= least {
+        let why = format!("{what} has at least {least} points: delete the whole of it instead.");
+        return queue.view(ViewCommand::Notice(why));
+    }
+    queue.edit(Edit::RemoveCorner { leg: leg.clone(), hole: *hole, corner: *corner });
+}
+
+/// How many points a ring or route has, how many it must have, and what it is.
+fn points_of(plan: &FlightPlan, of: &Id, hole: Option<usize>) -> (usize, usize, &'static str) {
+    if let Some(ZoneShape::Polygon(corners)) = plan.zone(of).map(|zone| &zone.shape) {
+        return (corners.len(), 3, "A zone");
+    }
+    match plan.leg(of).map(|context| &context.leg.kind) {
+        Some(LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. })) => {
+            (route.len(), 2, "A line")
+        }
+        Some(
+            LegKind::Scan(Scan { area: Area::Polygon { corners, holes }, .. })
+            | LegKind::Pattern(Pattern::Contour { area: Area::Polygon { corners, holes }, .. }),
+        ) => {
+            let ring = hole.map_or(Some(corners), |hole| holes.get(hole));
+            (ring.map_or(0, Vec::len), 3, "An area")
+        }
+        // of a variable: the edit counts them
+        _ => (usize::MAX, 3, "An area"),
+    }
+}
