@@ -266,3 +266,26 @@ fn a_click_on_what_covers_the_map_goes_through_or_is_explained() {
     window.click_at(status);
     assert_eq!(window.plan().all_legs().len(), legs + 1);
 }
+
+/// A corner of a zone that is drawn to the centre line lies in the final; a leg there is on it.
+#[test]
+fn a_zone_keeps_off_the_centre_line_that_legs_are_drawn_to() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let is_on_line = |window: &mut Window, tool: Key| {
+        window.press(tool);
+        let runway = window.plan().runways[0].clone();
+        let [fix, other] = ["A", "C"].map(|fix| window.plan().fix(&fix.into()).unwrap().position);
+        let [at, to] = ["Fix A", "Fix C"].map(|fix| window.centre(fix));
+        let before = runway.threshold.destination(runway.heading_deg + 180.0, 1500.0);
+        let share = vec2(
+            ((before.lon_deg - fix.lon_deg) / (other.lon_deg - fix.lon_deg)) as f32,
+            ((before.lat_deg - fix.lat_deg) / (other.lat_deg - fix.lat_deg)) as f32,
+        );
+        window.harness.hover_at(at + (to - at) * share + vec2(0.0, 4.0));
+        window.steps(3);
+        window.paints("centre line of R05")
+    };
+    assert!(is_on_line(&mut window, Key::T));
+    assert!(!is_on_line(&mut window, Key::Z));
+}

@@ -1,7 +1,7 @@
 //! What all drawing has in common: places are clicked one after the other until the figure is whole.
 
 use super::Canvas;
-use super::snap::{self, snap};
+use super::snap::{self, snap_but};
 use super::trial::is_at_rest;
 use crate::map::polyline::{self, Style};
 use crate::map::text;
@@ -60,12 +60,14 @@ pub struct Pen {
     rests: bool,
     /// What is wrong with it as it is.
     fault: Option<&'static str>,
+    /// Its places are never drawn to the lines of runways.
+    is_off_lines: bool,
 }
 
 impl Pen {
     /// With nothing drawn yet.
     pub fn new(figure: Figure) -> Self {
-        Self { figure, marks: Vec::new(), pointer: None, rests: false, fault: None }
+        Self { figure, marks: Vec::new(), pointer: None, rests: false, fault: None, is_off_lines: false }
     }
 
     /// What it draws.
@@ -76,8 +78,18 @@ impl Pen {
     /// Draws another figure from now on.
     pub fn set_figure(&mut self, figure: Figure) {
         if figure != self.figure {
-            *self = Self::new(figure);
+            *self = Self { is_off_lines: self.is_off_lines, ..Self::new(figure) };
         }
+    }
+
+    /// What is not flown keeps off the lines of runways: a corner there lies in the final.
+    pub fn off_lines(self) -> Self {
+        Self { is_off_lines: true, ..self }
+    }
+
+    /// The place under the pointer, or what is near there.
+    pub fn snap(&self, at: Pos2, canvas: &Canvas<'_>) -> Mark {
+        snap_but(at, canvas, &|on, _| self.is_off_lines && snap::is_line(on))
     }
 
     /// How many places were clicked.
@@ -87,7 +99,7 @@ impl Pen {
 
     /// Follows the pointer.
     pub fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
-        self.pointer = at.map(|at| snap(at, canvas)).filter(|mark| mark.at.is_valid());
+        self.pointer = at.map(|at| self.snap(at, canvas)).filter(|mark| mark.at.is_valid());
         let step = self.marks.last().zip(self.pointer.as_ref());
         self.rests = step.is_some_and(|(last, pointer)| is_at_rest(last.at, pointer.at, canvas));
         let ring: Vec<Pos2> = self.places().map(|at| canvas.view.place(at)).collect();

@@ -16,6 +16,14 @@ const SNAP: f32 = 12.0;
 /// The line of a runway goes on so far beyond its threshold, metres.
 const LINE_M: f64 = 15_000.0;
 
+/// What a place on the line of a runway is called, before that.
+const CENTRE_LINE: &str = "centre line of ";
+
+/// What a place is called is one on the line of a runway.
+pub fn is_line(on: &str) -> bool {
+    on.starts_with(CENTRE_LINE)
+}
+
 /// The place under the pointer: what is near there, or the ground.
 pub fn snap(at: Pos2, canvas: &Canvas<'_>) -> Mark {
     snap_but(at, canvas, &|_, _| false)
@@ -85,14 +93,14 @@ fn line_of(runway: &Runway, at: LatLon) -> Option<Mark> {
     }
     let back_deg = if along_m < 0.0 { 180.0 } else { 0.0 };
     let on = runway.threshold.destination(runway.heading_deg + back_deg, along_m.abs());
-    Some(Mark { on: Some(format!("centre line of {}", runway.id)), ..Mark::at(on) })
+    Some(Mark { on: Some(format!("{CENTRE_LINE}{}", runway.id)), ..Mark::at(on) })
 }
 
 /// A ring around what a click would take, and its name; along a line, the line.
 pub fn paint(painter: &Painter, mark: &Mark, canvas: &Canvas<'_>, p: &Palette) {
     let Some(on) = &mark.on else { return };
     let at = canvas.view.place(mark.at);
-    let runway = on.strip_prefix("centre line of ");
+    let runway = on.strip_prefix(CENTRE_LINE);
     let runway = runway.and_then(|id| canvas.scene.document.plan().runway(&id.into()));
     if let Some(runway) = runway {
         let from = canvas.view.place(runway.threshold);

@@ -1,7 +1,7 @@
 //! Fixes, runways and zones.
 
 use super::pen::{Figure, Mark, Pen};
-use super::{Canvas, Card, Tool, Touch};
+use super::{Canvas, Card, Pointer, Tool, Touch};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::panels::Scene;
 use crate::panels::field::{self, Change};
@@ -133,7 +133,7 @@ pub struct DrawZone {
 
 impl Default for DrawZone {
     fn default() -> Self {
-        Self { pen: Pen::new(Figure::Ring), kind: ZoneKind::KeepOut, floor: None, ceiling: None }
+        Self { pen: Pen::new(Figure::Ring).off_lines(), kind: ZoneKind::KeepOut, floor: None, ceiling: None }
     }
 }
 
@@ -220,6 +220,10 @@ impl Tool for DrawZone {
 
     fn typed_from(&self) -> Option<Option<LatLon>> {
         Some(self.pen.last())
+    }
+
+    fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
+        self.put(self.pen.snap(pointer.at, canvas), canvas, queue);
     }
 
     fn put(&mut self, mark: Mark, canvas: &Canvas<'_>, queue: &mut Queue) {
