@@ -77,6 +77,19 @@ fn with_drawn_way(height: f32) -> Window {
 }
 
 #[test]
+fn what_is_drawn_goes_into_the_branch_that_is_selected() {
+    let mut window = with_drawn_way(800.0);
+    window.select_row(("▸ Way 2", 0));
+    window.press(Key::O);
+    assert!(window.shows("on “Way 2” from fork1"));
+    let at = window.centre("Map") + vec2(-60.0, 60.0);
+    window.click_at(at);
+    window.click_at(at + vec2(30.0, 0.0));
+    let drawn = Id::new(&window.selected());
+    assert_eq!(ways(&window)[2], format!("fork1 on>side3 way2>{drawn}"));
+}
+
+#[test]
 fn a_leg_is_dragged_out_of_a_branch_into_the_stage_and_back() {
     let mut window = with_drawn_way(1400.0);
     let both = ["side1", "side2", "fork1 on>side3 way2>leg1", "leg1", "leg2", "side3", "side4"];

@@ -75,7 +75,7 @@ impl DrawLeg {
 
     /// Where the leg goes.
     fn aim(&self, scene: &Scene<'_>) -> Option<Aim> {
-        new_leg::aim(scene.document.plan(), scene.view.selection.as_ref(), &self.side)
+        new_leg::aim_of(scene, &self.side)
     }
 
     fn complete(&mut self, marks: Vec<Mark>, canvas: &Canvas<'_>, queue: &mut Queue) {

@@ -83,6 +83,17 @@ pub fn aim(plan: &FlightPlan, selected: Option<&Selection>, side: &Side) -> Opti
     stage.map(|stage| Aim::Spot(Spot::EndOf(stage.id.clone())))
 }
 
+/// Where a new leg goes that is drawn on this side of what is selected.
+pub fn aim_of(scene: &Scene<'_>, side: &Side) -> Option<Aim> {
+    aim(scene.document.plan(), scene.view.selection.as_ref(), &meant(scene, side))
+}
+
+/// Of a branch that is selected its beginning, unless another side is chosen.
+pub fn meant(scene: &Scene<'_>, side: &Side) -> Side {
+    let branch = scene.selected_branch().filter(|_| *side == Side::Behind);
+    branch.map_or_else(|| side.clone(), |of| Side::Way(Way::Branch(of.branch)))
+}
+
 fn beside(leg: &Leg, side: &Side) -> Aim {
     let side = if Side::of(leg).contains(side) { side } else { &Side::Behind };
     Aim::Spot(match side {
@@ -150,7 +161,7 @@ pub fn choose_side(ui: &mut Ui, scene: &Scene<'_>, side: &mut Side) {
     let (plan, selected) = (scene.document.plan(), scene.view.selection.as_ref());
     let Some(Selection::Leg(id)) = selected else { return };
     let Some(leg) = plan.any_leg(id) else { return };
-    let shown = words(&beside(leg, side), plan);
+    let shown = words(&beside(leg, &meant(scene, side)), plan);
     let choice = ComboBox::from_id_salt("side").selected_text(&shown).show_ui(ui, |ui| {
         for other in Side::of(leg) {
             let name = words(&beside(leg, &other), plan);

@@ -60,7 +60,7 @@ impl PlaceProcedure {
     /// Beside the selected leg; a procedure that is selected is meant to be placed, not to be drawn into.
     fn aim(&self, scene: &Scene<'_>) -> Option<Aim> {
         let selected = scene.view.selection.as_ref().filter(|s| !matches!(s, Selection::Procedure(_)));
-        new_leg::aim(scene.document.plan(), selected, &self.side)
+        new_leg::aim(scene.document.plan(), selected, &new_leg::meant(scene, &self.side))
     }
 
     /// The call with its anchor and, if there are two places, its bearing.

@@ -56,7 +56,7 @@ impl Track {
     /// Where the next leg goes.
     fn aim(&self, scene: &Scene<'_>) -> Option<Aim> {
         let behind = self.drawn.last().map(|id| Aim::Spot(Spot::After(id.clone())));
-        behind.or_else(|| new_leg::aim(scene.document.plan(), scene.view.selection.as_ref(), &self.side))
+        behind.or_else(|| new_leg::aim_of(scene, &self.side))
     }
 
     /// What a click would add, or why it could not be flown.
