@@ -9,6 +9,7 @@ mod inbox;
 mod keys;
 mod layout;
 mod links;
+mod making;
 mod messages;
 mod orders;
 mod press;

@@ -2,19 +2,15 @@
 
 use super::App;
 use super::links::gateway_label;
-use crate::airfields::Ground;
 use crate::command::{
     Command, DocumentCommand, FlyCommand, LinkCommand, Replacement, Selection, ViewCommand,
 };
 use crate::document::Document;
 use crate::guide::Answer;
 use crate::link::Call;
-use crate::state::{LOOK_AHEAD, Proposal, Vehicle, VehicleName};
-use aircraft::Profile;
+use crate::state::{LOOK_AHEAD, Level, Proposal, Vehicle, VehicleName};
 use flight_exec::Command as PlanCommand;
-use flight_plan::template::Outline;
-use flight_plan::{Edit, Id, Place, Thing, create};
-use geometry::LatLon;
+use flight_plan::Id;
 
 impl App {
     /// Carries out a command; one to a vehicle goes to `shown`, the one that was drawn when it was given.
@@ -50,10 +46,12 @@ impl App {
                 let done = self.add_runway(threshold, end, both);
                 self.tell(done);
             }
-            DocumentCommand::BringHome { runway, outwards } => {
-                let done = self.bring_home(&runway, &outwards);
-                self.tell(done);
-            }
+            DocumentCommand::BringHome { runway, outwards } => match self.bring_home(&runway, &outwards) {
+                Ok(unnamed) => {
+                    unnamed.into_iter().for_each(|text| self.toasts.add(now_s, Level::Info, text));
+                }
+                refused => self.tell(refused.map(drop)),
+            },
             DocumentCommand::Dropped(path) => self.files.sort_dropped(path),
             DocumentCommand::TakeImport => self.take_import(now_s),
             DocumentCommand::AddImport => self.add_import(now_s),
@@ -137,59 +135,6 @@ impl App {
             Replacement::Open(path) => self.files.open(path),
             Replacement::Quit => self.leaving = true,
         }
-    }
-
-    /// A step that can be undone, like any other.
-    fn create(&mut self, mut outline: Outline) {
-        let profile = Profile::by_name(&outline.aircraft).unwrap_or_default();
-        let ground = self.ground(outline.runway.threshold);
-        // the form has shown who knows it
-        if ground == Ground::Unknown {
-            self.tell_ground(ground);
-        }
-        outline.runway.elevation_amsl_m = ground.amsl_m().round();
-        self.document.replace(outline.plan(&profile, self.layers.ground().as_ref()));
-        self.map.fit();
-    }
-
-    fn ground(&self, at: LatLon) -> Ground {
-        Ground::of(self.layers.ground().as_ref(), at)
-    }
-
-    fn tell_ground(&mut self, ground: Ground) {
-        self.view.notice = Some(format!("The ground is {}", ground.words(self.view.units)));
-    }
-
-    fn add_runway(&mut self, threshold: LatLon, end: LatLon, both: bool) -> Result<(), String> {
-        let ways = [(threshold, end), (end, threshold)];
-        let mut plan = self.document.plan().as_ref().clone();
-        let mut edits = Vec::new();
-        let mut made = None;
-        for (threshold, end) in ways.into_iter().take(if both { 2 } else { 1 }) {
-            let ground = self.ground(threshold);
-            if !matches!(ground, Ground::Elevations(_)) {
-                self.tell_ground(ground);
-            }
-            let runway = create::runway(&plan, threshold, end, ground.amsl_m());
-            made = made.or_else(|| Some(runway.id.clone()));
-            // the second is called as nothing is then
-            plan.runways.push(runway.clone());
-            edits.push(Edit::Add(Box::new(Thing::Runway(runway))));
-        }
-        self.document.edit(&Edit::All(edits))?;
-        self.view.select(made.map(Selection::Runway));
-        Ok(())
-    }
-
-    fn bring_home(&mut self, runway: &Id, outwards: &[Place]) -> Result<(), String> {
-        let plan = self.document.plan().clone();
-        let Some(runway) = plan.runway(runway) else { return Ok(()) };
-        let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
-        let ground = self.layers.ground().as_ref();
-        let (id, edit) = create::emergency_plan(&plan, runway, outwards, &profile, ground);
-        self.document.edit(&edit)?;
-        self.view.select(Some(Selection::Emergency(id)));
-        Ok(())
     }
 
     fn change_view(&mut self, command: ViewCommand, now_s: f64) {

@@ -167,6 +167,10 @@ fn a_way_home_is_made_for_any_runway() {
     assert_eq!(errors(&plan), Vec::<String>::new());
     let ids: Vec<&str> = plan.emergency_plans.iter().map(|e| e.id.as_str()).collect();
     assert_eq!(ids, ["return", "return2", "return3"]);
+    let names: Vec<&str> = plan.emergency_plans.iter().map(|e| e.name.as_str()).collect();
+    let runways = plan.runways.iter().map(|runway| format!("Return to {}", runway.id));
+    let [first, second]: [String; 2] = runways.collect::<Vec<_>>().try_into().unwrap();
+    assert_eq!(names, [first.as_str(), &second, &format!("{first} (2)")], "told apart");
     let finals = plan.fixes.iter().filter(|f| f.id.as_str().starts_with("FINAL")).count();
     assert_eq!(finals, 2, "one is used again");
     assert_eq!(plan.emergency.by_cause, [(None, "return".into())], "it has one already");

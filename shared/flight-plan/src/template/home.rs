@@ -63,8 +63,16 @@ pub(crate) fn bring_home(
         lead_through(arrival, id, outwards.get(over.len()..).unwrap_or_default());
     }
     stages.iter_mut().for_each(|stage| raise(stage, runway.elevation_amsl_m - datum_m, reference));
-    let name = format!("Return to {}", runway.id);
+    let name = name(plan, runway);
     (made, EmergencyPlan { id: id.clone(), name, runway: runway.id.clone(), stages })
+}
+
+/// Another one to the same runway is told from the first by its number.
+fn name(plan: &FlightPlan, runway: &Runway) -> String {
+    let first = format!("Return to {}", runway.id);
+    let is_free = |name: &String| plan.emergency_plans.iter().all(|other| other.name != *name);
+    let others = (2..).map(|number| format!("{first} ({number})"));
+    std::iter::once(first.clone()).chain(others).find(is_free).unwrap_or_default()
 }
 
 /// The first of some places that are drawn outwards, as far as they are on the centre line and nearer than the final begins, with their
