@@ -41,6 +41,8 @@ pub struct Guide {
     pub search: Option<Search>,
     /// The card was closed.
     pub closed: bool,
+    /// A plan was made of it. Undo leads back to these answers, another new mission begins without them.
+    pub is_made: bool,
 }
 
 /// A text that says no place, or several.
@@ -139,6 +141,7 @@ impl Default for Guide {
             drawing: Some(Drawing::Place),
             search: None,
             closed: false,
+            is_made: false,
         }
     }
 }
@@ -176,8 +179,11 @@ impl Guide {
         self.threshold.is_some_and(|at| at.distance_m(landing.threshold) < 1.0) && off_deg.abs() < 1.0
     }
 
-    /// Opens the card again; what was answered before stays.
+    /// Opens the card again; what was answered before stays, unless it has become a plan: then only the aircraft is the same.
     pub fn open(&mut self) {
+        if self.is_made {
+            *self = Self { aircraft: std::mem::take(&mut self.aircraft), ..Self::default() };
+        }
         self.closed = false;
         self.drawing = self.threshold.is_none().then_some(Drawing::Place);
     }
@@ -275,6 +281,18 @@ mod tests {
         {
             assert_eq!(runway_name(heading_deg), name, "{heading_deg}");
         }
+    }
+
+    #[test]
+    fn another_mission_begins_without_the_places_of_the_last() {
+        let mut guide = Guide { aircraft: "foam-wing".into(), ..Guide::default() };
+        guide.take(Answer::Place(HERE));
+        guide.open();
+        assert_eq!(guide.threshold, Some(HERE), "it was only closed");
+        guide.is_made = true;
+        guide.open();
+        assert_eq!((guide.threshold, guide.is_made, guide.aircraft.as_str()), (None, false, "foam-wing"));
+        assert_eq!(guide.drawing, Some(Drawing::Place));
     }
 
     #[test]

@@ -12,6 +12,8 @@ impl App {
     /// A step that can be undone, like any other.
     pub(super) fn create(&mut self, mut outline: Outline) {
         let profile = Profile::by_name(&outline.aircraft).unwrap_or_default();
+        // what was wrong with the answers is over
+        self.view.notice = None;
         let ground = self.ground(outline.runway.threshold);
         // the form has shown who knows it
         if ground == Ground::Unknown {
@@ -19,6 +21,7 @@ impl App {
         }
         outline.runway.elevation_amsl_m = ground.amsl_m().round();
         self.document.replace(outline.plan(&profile, self.layers.ground().as_ref()));
+        self.view.guide.is_made = true;
         self.map.fit();
     }
 

@@ -239,6 +239,8 @@ impl App {
     fn answer(&mut self, answer: Answer) {
         if let Some(at) = self.view.guide.new_place(&answer) {
             self.map.begin_at(at);
+            // what was typed before is no longer what is wrong
+            self.view.notice = None;
         }
         self.view.guide.take(answer);
     }

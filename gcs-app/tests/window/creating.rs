@@ -312,6 +312,7 @@ fn plan_with_unsaved_changes_gives_way_only_when_told_to() {
     window.press_ctrl(Key::N);
     window.click("Discard the changes");
     assert!(stages(&window) == 0 && !window.shows("has unsaved changes"));
+    assert_eq!(guide(&window).threshold, None, "the next mission may be elsewhere");
     window.press_ctrl(Key::N);
     assert!(!window.shows("has unsaved changes"), "there is nothing to be lost");
 }
