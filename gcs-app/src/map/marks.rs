@@ -108,18 +108,26 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// The way out after the alarm: after an engine failure the glide, and fainter the plan as it would be flown with an engine.
+/// The way out after the alarm: after an engine failure the glide, else the alternate; and fainter the other one.
 pub fn draw_diversion(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
     let Some(found) = scene.diversion() else { return };
     let [chosen, other] = found.ways().map(|way| Vec::from_iter(way.iter().map(|point| point.position)));
-    way(painter, view, &other, Stroke::new(1.2, p.weak), p);
-    way(painter, view, &chosen, Stroke::new(2.6, p.text), p);
+    way(painter, view, &other, (Stroke::new(1.2, p.weak), Style::Dashed), p);
+    way(painter, view, &chosen, way_out(found, p), p);
     if let Some(end) = chosen.last() {
         let at = view.place(*end);
         if !reaches(found) {
             cross(painter, at, p.warning, p);
         }
         text::on_plate(painter, at + vec2(12.0, 6.0), &label(found, scene.document.plan()), 11.5, p);
+    }
+}
+
+/// As the legend has it: white dashes are a glide.
+fn way_out(found: &Diversion, p: &Palette) -> (Stroke, Style) {
+    match found.glided {
+        Some(_) => (Stroke::new(2.6, p.text), Style::Dashed),
+        None => (Stroke::new(3.0, p.contingency), Style::Dotted),
     }
 }
 
@@ -134,9 +142,9 @@ fn label(found: &Diversion, flown: &FlightPlan) -> String {
     format!("{}: {plan}, {reach}", cause_name(found.cause))
 }
 
-fn way(painter: &Painter, view: &View, places: &[LatLon], stroke: Stroke, p: &Palette) {
+fn way(painter: &Painter, view: &View, places: &[LatLon], (stroke, style): (Stroke, Style), p: &Palette) {
     let line: Vec<Mercator> = places.iter().map(|at| (*at).into()).collect();
-    polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, Style::Dashed, p.halo);
+    polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, style, p.halo);
 }
 
 #[cfg(test)]

@@ -304,9 +304,12 @@ fn draw_diversion(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette
     let Some(found) = scene.diversion() else { return };
     let place = |q: &GlidePoint| pos2(axes.x(found.time_s + q.time_s), axes.y(q.altitude_amsl_m));
     let [chosen, other] = found.ways().map(|way| Vec::from_iter(way.iter().map(place)));
-    for (path, stroke) in [(other, Stroke::new(1.2, p.weak)), (chosen, Stroke::new(2.2, p.text))] {
-        painter.extend(Shape::dashed_line(&path, stroke, 8.0, 5.0));
-    }
+    painter.extend(Shape::dashed_line(&other, Stroke::new(1.2, p.weak), 8.0, 5.0));
+    // as on the map: white dashes are a glide
+    painter.extend(match found.glided {
+        Some(_) => Shape::dashed_line(&chosen, Stroke::new(2.2, p.text), 8.0, 5.0),
+        None => Shape::dotted_line(&chosen, p.contingency, 6.0, 1.5),
+    });
 }
 
 fn draw_cursor(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
