@@ -2,7 +2,7 @@
 
 use super::kin::Kin;
 use super::polyline::{self, Style};
-use super::sketch::{Circle, Sketch};
+use super::sketch::{Circle, Line, Sketch};
 use super::text;
 use super::view::{Mercator, View};
 use crate::chart::labels::Labels;
@@ -78,7 +78,12 @@ pub fn draw_ways(
         let parts = polyline::visible_parts(&points, view);
         let stroke = Stroke::new(if selected { 2.2 } else { 1.4 }, p.accent);
         polyline::draw(painter, &parts, stroke, Style::Dashed, p.halo);
-        for line in way.lines.iter().filter(|line| is_looked_at(scene, &line.leg)) {
+        // of the fork itself what leads to the first leg of the way, not what leads back from the last
+        let is_meant = |(number, line): &(usize, &Line)| match line.leg == way.fork {
+            true => false,
+            false => is_looked_at(scene, &line.leg) || (selected && *number == 0),
+        };
+        for (_, line) in way.lines.iter().enumerate().filter(is_meant) {
             let parts = polyline::visible_parts(&[line.from.into(), line.to.into()], view);
             polyline::draw(painter, &parts, Stroke::new(3.2, p.text), Style::Dashed, p.halo);
         }

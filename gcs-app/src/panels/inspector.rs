@@ -128,7 +128,7 @@ fn heading(ui: &mut Ui, scene: &Scene<'_>, draft: &Draft) {
     }
     let rest = beside(name, &kind, id);
     ui.horizontal(|ui| {
-        ui.label(RichText::new(name).size(15.0).strong());
+        ui.add(egui::Label::new(RichText::new(name).size(15.0).strong()).truncate());
         ui.add(egui::Label::new(RichText::new(rest).color(p.weak)).truncate());
     });
 }

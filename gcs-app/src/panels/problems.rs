@@ -241,7 +241,9 @@ fn inside(
         ui.horizontal(|ui| {
             ui.add_space(20.0);
             let button = ui.small_button("Fix");
-            button.on_hover_ui(|ui| remedy(ui, document.plan(), fix)).clicked()
+            let button = button.on_hover_ui(|ui| remedy(ui, document.plan(), fix));
+            // the next one comes under the pointer: the second click of a double click is not meant for it
+            button.clicked() && !button.double_clicked() && !button.triple_clicked()
         })
         .inner
     })

@@ -155,12 +155,17 @@ fn round_step(range: f64, marks: f64, steps: &[f64]) -> f64 {
     steps.iter().copied().find(|s| range / s <= marks).or(steps.last().copied()).unwrap_or(1.0)
 }
 
+/// The lowest mark that is not below `low`; never `-0`.
+fn first_mark(low: f64, step: f64) -> f64 {
+    (low / step).ceil() * step + 0.0
+}
+
 fn draw_axes(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     let font = FontId::proportional(10.5);
     let unit = scene.units().altitude();
     let (low, high) = (unit.from_si(axes.low_m), unit.from_si(axes.high_m));
     let step = round_step(high - low, 5.0, &[50., 100., 200., 250., 500., 1000., 2000., 5000., 10_000.]);
-    let mut value = (low / step).ceil() * step;
+    let mut value = first_mark(low, step);
     while value < high {
         let y = axes.y(unit.to_si(value));
         painter.hline(axes.plot.x_range(), y, Stroke::new(1.0, p.line));
@@ -333,4 +338,16 @@ fn draw_cursor(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     let plate = Rect::from_min_size(pos2(x, axes.plot.top() + 4.0), galley.size()).expand2(vec2(5.0, 3.0));
     painter.rect(plate, 4.0, p.card, Stroke::new(1.0, p.line), egui::StrokeKind::Outside);
     painter.galley(plate.min + vec2(5.0, 3.0), galley, p.text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::first_mark;
+
+    #[test]
+    fn no_mark_of_the_axis_is_minus_nought() {
+        for (low, mark) in [(-30.0, "0"), (0.0, "0"), (-60.0, "-50"), (20.0, "50")] {
+            assert_eq!(format!("{:.0}", first_mark(low, 50.0)), mark, "{low}");
+        }
+    }
 }

@@ -233,7 +233,8 @@ impl Table {
             .min_scrolled_height(0.0)
             .cell_layout(egui::Layout::left_to_right(Align::Center))
             .column(egui_extras::Column::initial(120.0).at_least(60.0).clip(true))
-            .column(egui_extras::Column::initial(150.0).at_least(60.0).clip(true))
+            // an altitude with where it is from is the longest text: it has what room there is
+            .column(egui_extras::Column::remainder().at_least(150.0).clip(true))
             .column(egui_extras::Column::initial(90.0).at_least(50.0).clip(true))
             .column(egui_extras::Column::initial(44.0).at_least(36.0))
             .column(egui_extras::Column::initial(68.0).at_least(44.0))

@@ -135,7 +135,10 @@ pub struct Label {
 pub fn label(handle: &Handle, at: Pos2, canvas: &Canvas<'_>, first: bool) -> Option<Label> {
     let (id, offset, anchor) = match &handle.what {
         Handled::Fix(id) | Handled::Waypoint(id) => (id, vec2(9.0, -1.0), Align2::LEFT_CENTER),
-        Handled::Centre(id) => (id, vec2(0.0, 9.0), Align2::CENTER_TOP),
+        // a zone has its name inside
+        Handled::Centre(id) if canvas.scene.document.plan().zone(id).is_none() => {
+            (id, vec2(0.0, 9.0), Align2::CENTER_TOP)
+        }
         _ => return None,
     };
     Some(Label { at: at + offset, anchor, text: canvas.scene.document.label(id).to_owned(), first })

@@ -340,7 +340,7 @@ pub fn inherited_number(
     };
     ui.scope(|ui| {
         ui.set_max_width(ui.available_width() - OWN_WIDTH);
-        ui.add(egui::Label::new(RichText::new(from).size(12.0).color(weak)).truncate()).on_hover_text(from);
+        ui.add(egui::Label::new(RichText::new(from).size(12.0).color(weak)).truncate());
     });
     match field::small_button(ui, "✏", &page.name(&format!("Own {}", label.to_lowercase()))) {
         true => field::Change::Set(value.clone()),
