@@ -340,7 +340,7 @@ impl MapState {
             // a value the document's variable does not take belongs to another version of it
             let _ = variables.set(plan, &v.name.clone().convert(), v.value.clone().convert());
         }
-        self.sketch = Sketch::new(plan, &variables);
+        self.sketch = Sketch::new(plan, &variables, &self.sketch);
         self.items = items::Items::default();
         self.sketched = Some((version, live.cloned()));
         self.ways_of = None;

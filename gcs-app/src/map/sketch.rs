@@ -8,21 +8,23 @@ pub mod numbers;
 pub mod photos;
 mod placed;
 mod radius;
+mod reader;
 mod ruler;
 mod ways;
 
 pub use handle::{Handle, Handled};
 pub use placed::Placed;
 pub use radius::{bound_radius, radius_edit};
+use reader::Reader;
 pub use ways::Way;
 
 use crate::forecast::Forecast;
 use flight_plan::{
     Area, Env, FlightPlan, FlightState, Id, Leg, LegKind, Pattern, Place, Scan, Section, Value,
-    VariableValue, Variables, Zone, ZoneShape, expression,
+    VariableValue, Variables, Zone, ZoneShape,
 };
 use geometry::LatLon;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A circle on the ground.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,8 +57,12 @@ pub struct Sketch {
     pub handles: Vec<Handle>,
     /// Straight legs whose ends are known.
     pub lines: Vec<Line>,
+    /// How long each of them is, metres, and where its middle is.
+    middles: Vec<(f64, LatLon)>,
     /// Scans and orbits.
     pub circles: Vec<Circle>,
+    /// Where they have a handle in their middle.
+    centres: HashSet<[u64; 2]>,
     /// Polygons to be scanned: whose, and their rings, the outer one first.
     pub polygons: Vec<(Id, Vec<Vec<LatLon>>)>,
     /// The main plan's places in order, stage by stage.
@@ -89,11 +95,12 @@ pub struct PlacedVariable {
 }
 
 impl Sketch {
-    /// Of a plan whose variables have these values.
-    pub fn new(plan: &FlightPlan, variables: &Variables) -> Self {
+    /// Of a plan whose variables have these values. `former`: what stayed where it was there is not worked out again.
+    pub fn new(plan: &FlightPlan, variables: &Variables, former: &Self) -> Self {
         let home = plan.home().or(plan.runways.first()).map_or(LatLon::new(0.0, 0.0), |r| r.threshold);
         let fixes = plan.fixes.iter().rev().map(|fix| (&fix.id, fix.position)).collect();
-        let reader = Reader { plan, fixes, env: Env { variables, flight: FlightState::on_ground(home) } };
+        let env = Env { variables, flight: FlightState::on_ground(home) };
+        let reader = Reader { plan, fixes, env, former };
         let mut sketch = Self { variables: placed_variables(plan, variables), ..Self::default() };
         for fix in plan.fixes.iter().filter(|f| f.position.is_valid()) {
             sketch.handles.push(Handle { what: Handled::Fix(fix.id.clone()), at: fix.position });
@@ -109,7 +116,7 @@ impl Sketch {
         sketch.add_variables();
         sketch.ways = ways::of(&arrivals, &reader);
         sketch.called = ways::called(&reader);
-        sketch.placed = Placed::of(&sketch.handles, &sketch.lines);
+        sketch.placed = Placed::of(&sketch, former);
         sketch
     }
 
@@ -148,9 +155,16 @@ impl Sketch {
         let is_straight = matches!(leg.kind, LegKind::Tf(_) | LegKind::Df { .. });
         let ends = from.zip(reader.place_of(leg)).filter(|_| is_straight);
         let Some((from, to)) = ends else { return };
-        let (gap_m, at) = placed::middle(from, to);
+        let (gap_m, at) = reader.former.middle(self.lines.len(), from, to);
         self.handles.push(Handle { what: Handled::Between { leg: leg.id.clone(), gap_m: gap_m as u32 }, at });
         self.lines.push(Line { leg: leg.id.clone(), from, to });
+        self.middles.push((gap_m, at));
+    }
+
+    /// How long a line is, metres, and its middle: as it was, if that line had these ends.
+    fn middle(&self, line: usize, from: LatLon, to: LatLon) -> (f64, LatLon) {
+        let was = self.lines.get(line).filter(|line| (line.from, line.to) == (from, to));
+        was.and_then(|_| self.middles.get(line).copied()).unwrap_or_else(|| placed::middle(from, to))
     }
 
     fn add_zone(&mut self, zone: &Zone) {
@@ -238,8 +252,7 @@ impl Sketch {
         }
         self.note_radius(centre, source_m, reader);
         // circles around the same place share one handle: the first one's
-        let taken = self.handles.iter().any(|h| matches!(h.what, Handled::Centre(_)) && h.at == at);
-        if !taken {
+        if self.centres.insert([at.lat_deg, at.lon_deg].map(f64::to_bits)) {
             self.handles.push(Handle { what: Handled::Centre(leg.id.clone()), at });
         }
         self.handles
@@ -330,63 +343,37 @@ fn placed_variables(plan: &FlightPlan, variables: &Variables) -> Vec<PlacedVaria
         .collect()
 }
 
-/// Reads places and numbers with the variables as they are.
-struct Reader<'a> {
-    plan: &'a FlightPlan,
-    fixes: HashMap<&'a Id, LatLon>,
-    env: Env<'a>,
-}
-
-impl Reader<'_> {
-    fn place(&self, place: &Place) -> Option<LatLon> {
-        let at = match place {
-            Place::Fix(id) => *self.fixes.get(id)?,
-            Place::Position(Value::Constant(at)) => *at,
-            Place::Position(Value::Expression(source)) => {
-                expression::compile(source, self.plan).ok()?.position(&self.env).ok()?
-            }
-        };
-        at.is_valid().then_some(at)
-    }
-
-    fn place_of(&self, leg: &Leg) -> Option<LatLon> {
-        leg.place().and_then(|place| self.place(place))
-    }
-
-    fn polygon(&self, source: &str) -> Option<Vec<LatLon>> {
-        expression::compile(source, self.plan).ok()?.polygon(&self.env).ok()
-    }
-
-    fn number(&self, value: &Value<f64>) -> Option<f64> {
-        match value {
-            Value::Constant(number) => Some(*number),
-            Value::Expression(source) => expression::compile(source, self.plan).ok()?.number(&self.env).ok(),
-        }
-    }
-
-    fn line_of(&self, leg: &Leg, line: &mut Vec<LatLon>) {
-        if let LegKind::Scan(Scan { area: Area::Polygon { corners, .. }, .. }) = &leg.kind {
-            line.extend(corners.first().filter(|c| c.is_valid()));
-        }
-        line.extend(leg.place().and_then(|p| self.place(p)));
-        leg.body().iter().for_each(|inner| self.line_of(inner, line));
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use flight_plan::Edit;
 
     #[test]
     fn variables_that_are_a_place_have_the_radius_that_goes_with_them() {
         let plan = flight_plan::read(crate::assets::FIRE_WATCH.as_bytes()).plan;
         let mut variables = Variables::initial(&plan);
-        let placed = |variables: &Variables| Sketch::new(&plan, variables).variables;
+        let placed = |variables: &Variables| Sketch::new(&plan, variables, &Sketch::default()).variables;
         let fire = LatLon::new(36.25, -84.26);
         let expected =
             |radius_m| [PlacedVariable { name: "fire_centre".into(), at: fire, radius_m: Some(radius_m) }];
         assert_eq!(placed(&variables), expected(350.0));
         variables.set(&plan, &"fire_radius".into(), VariableValue::Number(430.0)).unwrap();
         assert_eq!(placed(&variables), expected(430.0), "as it is in flight");
+    }
+
+    #[test]
+    fn a_sketch_that_goes_on_from_the_former_one_is_that_of_the_plan() {
+        let mut plan = flight_plan::read(crate::assets::FIRE_WATCH.as_bytes()).plan;
+        let mut former = Sketch::default();
+        let leg = plan.all_legs().iter().find(|c| c.leg.place().is_some()).unwrap().leg.id.clone();
+        let moved = |lon| Edit::MoveWaypoint { leg: leg.clone(), to: LatLon::new(36.3, lon) };
+        let fix = Edit::MoveFix { fix: plan.fixes[0].id.clone(), to: LatLon::new(36.35, -84.2) };
+        for edit in [moved(-84.2), moved(-84.21), fix, Edit::DeleteLeg { leg: leg.clone() }] {
+            plan = edit.apply(&plan).unwrap();
+            let variables = Variables::initial(&plan);
+            let sketch = Sketch::new(&plan, &variables, &former);
+            assert_eq!(sketch, Sketch::new(&plan, &variables, &Sketch::default()), "{edit:?}");
+            former = sketch;
+        }
     }
 }

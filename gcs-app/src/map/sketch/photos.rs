@@ -70,6 +70,9 @@ impl Spot {
 
 /// Those of a leg.
 pub(super) fn of(leg: &Leg, reader: &Reader<'_>) -> Vec<Photos> {
+    if leg.actions.is_empty() {
+        return Vec::new();
+    }
     let field = leg.numbers().into_iter().find(|(name, _)| *name == "fieldOfView");
     let across_deg =
         field.and_then(|(_, value)| reader.number(value?)).filter(|deg| (1.0..179.0).contains(deg));

@@ -1,6 +1,6 @@
 //! Where the places of a sketch are on the map: projected once, for they are looked for in every frame.
 
-use super::{Handle, Line};
+use super::Sketch;
 use crate::map::view::Mercator;
 use geometry::{LatLon, LocalFrame, local};
 
@@ -14,13 +14,27 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// Of these.
-    pub fn of(handles: &[Handle], lines: &[Line]) -> Self {
+    /// Of a sketch; what is where it was in the former one is not projected again.
+    pub(super) fn of(sketch: &Sketch, former: &Sketch) -> Self {
+        let known = former.handles.iter().zip(&former.placed.handles).map(|(handle, at)| (handle.at, *at));
+        let handles = sketch.handles.iter().zip(known.map(Some).chain(std::iter::repeat(None)));
+        let known = former.lines.iter().zip(&former.placed.lines);
+        let lines = sketch.lines.iter().zip(known.map(Some).chain(std::iter::repeat(None)));
         Self {
-            handles: handles.iter().map(|handle| handle.at.into()).collect(),
-            lines: lines.iter().map(|line| [line.from.into(), line.to.into()]).collect(),
+            handles: handles.map(|(handle, known)| place(handle.at, known)).collect(),
+            lines: lines
+                .map(|(line, known)| {
+                    let ends = known.map(|(was, [from, to])| [(was.from, *from), (was.to, *to)]);
+                    [place(line.from, ends.map(|[from, _]| from)), place(line.to, ends.map(|[_, to]| to))]
+                })
+                .collect(),
         }
     }
+}
+
+/// A place on the map, if that is known of a place: of the same one.
+fn place(at: LatLon, known: Option<(LatLon, Mercator)>) -> Mercator {
+    known.filter(|(was, _)| *was == at).map_or_else(|| at.into(), |(_, place)| place)
 }
 
 /// How far it is between two places, in metres, and the place in the middle.

@@ -294,7 +294,7 @@ mod tests {
     fn sketch() -> Sketch {
         let reading = flight_plan::read(PLAN);
         assert!(!reading.has_errors(), "{:?}", reading.problems);
-        Sketch::new(&reading.plan, &Variables::initial(&reading.plan))
+        Sketch::new(&reading.plan, &Variables::initial(&reading.plan), &Sketch::default())
     }
 
     #[test]
