@@ -1,9 +1,12 @@
 //! The plan being edited: immutable states, undo and redo over all of them, and its file.
 
+pub(crate) mod changed;
+mod names;
+
 use crate::command::Selection;
 use crate::files::Stamp;
 use flight_plan::{Edit, FlightPlan, History, Id, Problem, in_names};
-use std::collections::BTreeMap;
+use names::Names;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -20,9 +23,7 @@ pub struct Document {
     reading_problems: Vec<Problem>,
     /// Not everything in its file could be read.
     is_partial: bool,
-    kinds: BTreeMap<Id, &'static str>,
-    /// Of the parts that have one: many are asked for in each frame.
-    names: BTreeMap<Id, String>,
+    names: Names,
     version: u64,
     /// Edits so far, without steps back and forth.
     edits: u64,
@@ -58,8 +59,7 @@ impl Document {
             text: None,
             is_partial: reading_problems.iter().any(Problem::is_error),
             reading_problems,
-            kinds: BTreeMap::new(),
-            names: BTreeMap::new(),
+            names: Names::default(),
             version: 0,
             edits: 0,
             id: 0,
@@ -170,24 +170,24 @@ impl Document {
     }
     /// What a leg is called in the document; empty for one that is not there.
     pub fn kind_name(&self, leg: &Id) -> &'static str {
-        self.kinds.get(leg).copied().unwrap_or_default()
+        self.names.kind(leg).unwrap_or_default()
     }
 
     /// What people call a part of the plan: its name, else its identifier.
     pub fn label<'a>(&'a self, id: &'a Id) -> &'a str {
-        self.names.get(id).map_or(id.as_str(), String::as_str)
+        self.names.name(id).unwrap_or(id.as_str())
     }
 
     /// A sentence about the plan, with names in the place of the identifiers that stand in it as `` `id` ``.
     pub fn in_names(&self, sentence: &str) -> String {
-        in_names(sentence, |id| self.names.get(id).map(String::as_str))
+        in_names(sentence, |id| self.names.name(id))
     }
 
     /// The leg of the document that a flown one stands for: that of the procedure, where it was made by a call.
     pub fn written(&self, flown: &Id) -> Id {
         let text = flown.as_str();
         let inner = text.match_indices('.').filter_map(|(dot, _)| text.get(dot + 1..)).map(Id::new);
-        let mut made = inner.filter(|_| !self.kinds.contains_key(flown));
+        let mut made = inner.filter(|_| self.names.kind(flown).is_none());
         made.find(|id| self.plan().procedure_leg(id).is_some()).unwrap_or_else(|| flown.clone())
     }
 
@@ -288,9 +288,7 @@ impl Document {
         if self.version > 0 {
             self.reading_problems.clear();
         }
-        let legs = self.history.plan().all_legs();
-        self.kinds = legs.iter().map(|c| (c.leg.id.clone(), c.leg.kind_name())).collect();
-        self.names = self.history.plan().named().map(|(id, name)| (id.clone(), name.to_owned())).collect();
+        self.names.refresh(self.history.plan());
         // versions are never used twice, not even by another document of this run
         self.version = next_version();
     }
