@@ -1,5 +1,6 @@
 //! The plan as a tree: stages, legs, loop bodies, branches, emergency plans, and what they use.
 
+mod alike;
 pub mod alternates;
 mod drag;
 mod drop;
@@ -25,12 +26,15 @@ use rows::{Row, rows};
 pub use rows::{leg_tag, title};
 pub use search::focus as focus_search;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// The tree; its rows are worked out again only when the plan or what is folded changes.
 #[derive(Debug, Default)]
 pub struct Tree {
     rows: Vec<Row>,
+    /// Of this version of the plan; `None`: they have to be made anew, whatever it is.
     version: Option<u64>,
+    plan: Arc<FlightPlan>,
     folded: BTreeSet<String>,
     /// What is searched for, as it was typed.
     sought: String,
@@ -127,8 +131,15 @@ impl Tree {
         if self.version == Some(scene.document.version()) {
             return;
         }
+        let plan = scene.document.plan();
+        let is_same = self.version.is_some() && alike::have_same_rows(&self.plan, plan);
+        self.plan = plan.clone();
+        if is_same {
+            (self.version, self.stays) = (Some(scene.document.version()), false);
+            return;
+        }
         let had_focus = self.has_focus(ui);
-        let rows = self.rows_of(scene.document.plan());
+        let rows = self.rows_of(plan);
         let before = std::mem::replace(&mut self.rows, rows);
         // what legs were made into stands far away from them
         self.stays = match &scene.view.selection {

@@ -302,7 +302,7 @@ pub fn title(name: &str, id: &str) -> String {
 }
 
 /// Everything that a walk over them visits.
-fn expressions(walk: impl FnOnce(&mut dyn FnMut(&Arc<str>, Use))) -> Vec<Arc<str>> {
+pub(super) fn expressions(walk: impl FnOnce(&mut dyn FnMut(&Arc<str>, Use))) -> Vec<Arc<str>> {
     let mut found = Vec::new();
     walk(&mut |source, _| found.push(source.clone()));
     found
@@ -366,7 +366,7 @@ pub fn leg_tag(kind: &LegKind) -> &'static str {
     }
 }
 
-fn leg_detail(kind: &LegKind) -> String {
+pub(super) fn leg_detail(kind: &LegKind) -> String {
     use flight_plan::Value;
     let (count, until) = match kind {
         LegKind::Iterative { count, until, .. } => (count.as_ref(), until),
