@@ -23,6 +23,8 @@ pub struct Forecaster {
     terrain: Arc<dyn Terrain>,
     /// What came out last.
     last: Shared,
+    /// What came out before that the window may still show: it is dropped here, where no frame waits for that.
+    former: Vec<Shared>,
 }
 
 /// What the flights of a rehearsal have in common besides the aircraft.
@@ -48,7 +50,7 @@ impl Forecaster {
     pub fn new(profile: Profile, terrain: Arc<dyn Terrain>) -> Self {
         let world = World { winds: Wind::CALM.into(), energy_share: 1.0, decisions: BTreeMap::new() };
         let rehearsal = Rehearsal::new(profile.clone(), terrain.clone(), world.winds, options());
-        Self { rehearsal, profile, world, terrain, last: Shared::default() }
+        Self { rehearsal, profile, world, terrain, last: Shared::default(), former: Vec::new() }
     }
 
     /// What would become of the last flight after an alarm.
@@ -100,7 +102,8 @@ impl Forecaster {
             outline: Outline::default(),
         };
         forecast.prepare(&self.last);
-        self.last = Arc::new(forecast);
+        self.former.retain(|former| Arc::strong_count(former) > 1);
+        self.former.push(std::mem::replace(&mut self.last, Arc::new(forecast)));
         Ok(self.last.clone())
     }
 }
