@@ -127,7 +127,8 @@ fn million_points() {
         passages: (0..LEGS).map(passage).collect(),
         ..Forecast::default()
     });
-    window.run_steps(5);
+    window.step();
+    until(&mut window, |_| true);
     let path: Vec<LatLon> = (0..POINTS).map(at).collect();
     let times = pan(&mut window);
     report("pan over a path of a million points", times.into_iter(), naive(&window, &path), 16.0);
@@ -229,15 +230,17 @@ fn open(text: &str) -> Harness<'static, App> {
     window
 }
 
-/// Draws until something is found out, and a little on.
+/// Draws until something is found out, and on until all of it is drawn.
 fn until(window: &mut Harness<'_, App>, is_so: impl Fn(&App) -> bool) {
     let deadline = Instant::now() + Duration::from_secs(300);
-    while !is_so(window.state()) {
+    while !is_so(window.state()) || window.state().is_busy() {
         assert!(Instant::now() < deadline, "the plan was not analysed");
         window.step();
         std::thread::sleep(Duration::from_millis(5));
+        if is_so(window.state()) {
+            window.run_steps(5);
+        }
     }
-    window.run_steps(5);
 }
 
 /// The window as it opens, before anything was found out about its plan.

@@ -8,6 +8,7 @@ mod beginning;
 mod bench;
 mod coverage;
 mod left_out;
+mod line;
 mod outline;
 mod preview;
 mod reviewer;
@@ -17,7 +18,8 @@ mod worker;
 pub use aboard::Aboard;
 pub use coverage::Coverage;
 pub use left_out::LeftOut;
-pub use outline::{Heights, Line, Outline, Places};
+pub use line::Line;
+pub use outline::{Heights, Outline, Places};
 pub use told::{Clearance, clearance, told};
 pub use worker::{Analysis, Question, Worker};
 
@@ -117,9 +119,17 @@ impl Forecast {
     pub fn waypoint_places(&self) -> &Places {
         self.outline.waypoints(self.waypoints.iter().map(|waypoint| waypoint.position.into()))
     }
-    /// The path as it is drawn in views of an octave; `None`: no map has that.
+    /// The path as it is drawn in views of an octave, as soon as that is worked out.
     pub fn line(&self, octave: i32) -> Option<&Line> {
-        self.outline.line(&self.points, octave)
+        self.outline.line(octave)
+    }
+    /// The nearest octave for which it is worked out, and the path for that.
+    pub fn line_near(&self, octave: i32) -> Option<(i32, &Line)> {
+        self.outline.line_near(octave)
+    }
+    /// Works out the line for an octave: of a long path that takes longer than a frame.
+    pub fn work_out_line(&self, octave: i32) {
+        self.outline.work_out_line(&self.points, octave);
     }
     /// Between which heights path and ground are from a time on.
     pub fn heights_from(&self, from_s: f64) -> Heights {

@@ -23,15 +23,15 @@ pub fn look(reach: Option<Reach>, p: &Palette) -> (Stroke, Style) {
 /// The path in parts that end alike, each with the first point of the next so that the line has no gap.
 pub fn parts<'a>(points: &'a [Point], coverage: &Coverage) -> Vec<(Option<Reach>, &'a [Point])> {
     let reach = |point: &Point| coverage.at(point.time_s).map(|(reach, _)| reach);
-    let mut parts = Vec::new();
+    let reaches: Vec<Option<Reach>> = points.iter().map(reach).collect();
     let mut first = 0;
-    for part in points.chunk_by(|a, b| reach(a) == reach(b)) {
-        let end = first + part.len();
-        let with_next = points.get(first..(end + 1).min(points.len())).unwrap_or(part);
-        parts.push((part.first().and_then(reach), with_next));
+    let parts = reaches.chunk_by(|a, b| a == b).filter_map(|same| {
+        let end = first + same.len();
+        let with_next = points.get(first..(end + 1).min(points.len()));
         first = end;
-    }
-    parts
+        same.first().copied().zip(with_next)
+    });
+    parts.collect()
 }
 
 /// A line of some look, in a picture without a halo.

@@ -13,6 +13,7 @@ pub mod furniture;
 pub mod graticule;
 pub mod guard;
 mod items;
+mod kept;
 mod kin;
 mod left_out;
 pub mod marks;
@@ -154,7 +155,7 @@ impl MapState {
 
     /// It waits for the result of work on another thread.
     pub fn is_busy(&self) -> bool {
-        self.tools.is_busy() || self.pastes.is_reading()
+        self.tools.is_busy() || self.pastes.is_reading() || self.path.is_busy()
     }
 
     /// Puts a tool to use.

@@ -1,5 +1,6 @@
 //! The path that will be flown and the waypoints that will be sent.
 
+use super::kept::Kept;
 use super::polyline::{self, Style};
 use super::sketch::Sketch;
 use super::text;
@@ -7,69 +8,208 @@ use super::view::{Mercator, View};
 use crate::chart;
 use crate::chart::labels::{self, Labels};
 use crate::command::{PreviewCommand, Queue, Selection};
-use crate::forecast::{Forecast, Point};
+use crate::forecast::{Coverage, Line, Passage, Point};
+use crate::jobs::{Taken, Task};
 use crate::map::coverage;
 use crate::panels::{Scene, bar, decision};
 use crate::theme::Palette;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
 use flight_plan::Id;
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
-/// The layer; keeps what it drew of the path until view or forecast change.
+/// The layer; keeps what it drew of the path until scale or forecast change.
 #[derive(Debug, Default)]
 pub struct Layer {
-    of: Option<(u64, View)>,
-    parts: Vec<Vec<Pos2>>,
+    /// Of which path and octave, in which look.
+    path: Kept<(u64, Option<i32>, Look)>,
+    /// Of which path, as far as what was known of its alarms.
+    covered: Kept<(u64, u64, Color32)>,
+    /// Of which path, with which errors.
+    faulty: Kept<(u64, u64, u64, Color32)>,
+    looked_at: Kept<LookedAt>,
+    waypoints: Kept<(u64, Color32)>,
+    /// The line that is worked out on another thread.
+    line: Option<Task<()>>,
 }
+
+/// Colours and style of a line.
+type Look = (Color32, Style, Color32);
 
 /// Screen points per metre from which single waypoints are drawn.
 const WAYPOINTS_FROM: f64 = 0.015;
 /// About the width of a waypoint, screen points.
 const MARK: f32 = 7.0;
+/// The line of a path with no more points is worked out within a frame.
+const AT_ONCE: usize = 10_000;
 
 impl Layer {
+    /// A line is being worked out on another thread.
+    pub fn is_busy(&self) -> bool {
+        self.line.is_some()
+    }
+
     /// Draws the forecast; where there is none, the plan's places as a draft.
     pub fn draw(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, sketch: &Sketch, p: &Palette) {
         let forecast = scene.forecast();
-        let (_, standing) = bar::plan_state(scene);
+        self.tend(view, scene);
         if forecast.points.is_empty() || forecast.is_beginning {
             draft(painter, view, sketch, colour(scene, p), p);
         }
         if forecast.points.is_empty() {
             return;
         }
-        let of = Some((scene.analysis.forecast_version, *view));
-        if self.of != of {
-            (self.of, self.parts) = (of, visible(forecast, view));
+        match scene.analysis.coverage().filter(|_| scene.view.coverage && scene.out_of_date().is_none()) {
+            Some(known) => self.draw_covered(painter, view, scene, known, p),
+            None => self.draw_path(painter, view, scene, p),
         }
+        let analysis = scene.analysis;
+        let of = (analysis.forecast_version, scene.document.version(), analysis.found, p.warning);
+        self.faulty.draw(
+            painter,
+            view,
+            |made| *made == of,
+            |wide| {
+                let faulty = scene.faulty();
+                (of, highlight(wide, scene, (p.warning, p), |passage| faulty.contains(&passage.leg)))
+            },
+        );
+        self.draw_looked_at(painter, view, scene, p);
+        if view.points_per_metre() > WAYPOINTS_FROM {
+            let of = (analysis.forecast_version, p.accent);
+            self.waypoints.draw(painter, view, |made| *made == of, |wide| (of, waypoints(wide, scene, p)));
+        }
+    }
+
+    fn draw_path(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+        let (_, standing) = bar::plan_state(scene);
         // a draft that differs from what is aboard is dashed
         let is_draft = standing == bar::Standing::Draft && scene.vehicle.active_hash().is_some();
         let style = if is_draft { Style::Dashed } else { Style::Solid };
-        match scene.analysis.coverage().filter(|_| scene.view.coverage) {
-            Some(known) if scene.out_of_date().is_none() => {
-                for (reach, part) in coverage::parts(&forecast.points, known) {
+        let (octave, line) = line(view, scene);
+        let of = (scene.analysis.forecast_version, octave, (colour(scene, p), style, p.halo));
+        self.path.draw(
+            painter,
+            view,
+            |made| *made == of,
+            |wide| {
+                let (colour, style, halo) = of.2;
+                let near = wide.area(wide.rect.expand(polyline::BESIDE));
+                let seen = |part: &[Mercator]| match style {
+                    Style::Solid => polyline::seen_parts(part, wide),
+                    _ => polyline::visible_parts(part, wide),
+                };
+                let parts: Vec<Vec<Pos2>> =
+                    line.into_iter().flat_map(|line| line.parts(near)).flat_map(seen).collect();
+                (of, polyline::shapes(&parts, Stroke::new(2.0, colour), style, halo))
+            },
+        );
+    }
+
+    /// Has the line for a view worked out, if it is not known: that of a long path on another thread.
+    fn tend(&mut self, view: &View, scene: &Scene<'_>) {
+        let (path, octave) = (&scene.analysis.forecast, view.octave());
+        let ended = self.line.as_ref().map(Task::take).filter(|taken| *taken != Taken::NotYet);
+        self.line.take_if(|_| ended.is_some());
+        if path.line(octave).is_some() || self.line.is_some() {
+            return;
+        }
+        // also where there was no thread for it
+        if path.points.len() <= AT_ONCE || ended == Some(Taken::Failed) {
+            return path.work_out_line(octave);
+        }
+        let path = path.clone();
+        self.line = Some(Task::begin(scene.layers.wake(), move || path.work_out_line(octave)));
+    }
+
+    /// In the look of how alarms would end.
+    fn draw_covered(
+        &mut self,
+        painter: &Painter,
+        view: &View,
+        scene: &Scene<'_>,
+        known: &Coverage,
+        p: &Palette,
+    ) {
+        let of = (scene.analysis.forecast_version, scene.analysis.found, p.halo);
+        self.covered.draw(
+            painter,
+            view,
+            |made| *made == of,
+            |wide| {
+                let mut shapes = Vec::new();
+                for (reach, part) in coverage::parts(&scene.forecast().points, known) {
                     let line: Vec<Mercator> = part.iter().map(|q| q.position.into()).collect();
                     let (stroke, style) = coverage::look(reach, p);
-                    polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, style, p.halo);
+                    shapes.extend(polyline::shapes(
+                        &polyline::visible_parts(&line, wide),
+                        stroke,
+                        style,
+                        p.halo,
+                    ));
                 }
-            }
-            _ => polyline::draw(painter, &self.parts, Stroke::new(2.0, colour(scene, p)), style, p.halo),
-        }
-        let faulty = scene.faulty();
-        highlight(painter, view, scene, (p.warning, p), |leg, _| faulty.contains(leg));
-        highlight(painter, view, scene, (p.text, p), |leg, stage| is_looked_at(scene, leg, stage));
-        if view.points_per_metre() > WAYPOINTS_FROM {
-            waypoints(painter, view, scene, p);
-        }
+                (of, shapes)
+            },
+        );
+    }
+
+    /// A stronger line along what is selected, or pointed out.
+    fn draw_looked_at(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+        self.looked_at.draw(
+            painter,
+            view,
+            |made| made.is_still(scene, p),
+            |wide| {
+                let looked_at = LookedAt::of(scene, p);
+                let ids = looked_at.ids();
+                let wanted = |passage: &Passage| ids.contains(&passage.leg) || ids.contains(&passage.stage);
+                let shapes =
+                    if ids.is_empty() { Vec::new() } else { highlight(wide, scene, (p.text, p), wanted) };
+                drop(ids);
+                (looked_at, shapes)
+            },
+        );
     }
 }
 
-/// A line so far out of view may still be seen, screen points.
-const BESIDE: f32 = 20.0;
+/// The line for a view, and its octave; until it is worked out, the nearest one that is.
+fn line<'a>(view: &View, scene: &Scene<'a>) -> (Option<i32>, Option<&'a Line>) {
+    scene.forecast().line_near(view.octave()).map_or((None, None), |(of, line)| (Some(of), Some(line)))
+}
 
-fn visible(forecast: &Forecast, view: &View) -> Vec<Vec<Pos2>> {
-    let parts = forecast.line(view.octave()).map(|line| line.parts(view.area(view.rect.expand(BESIDE))));
-    parts.into_iter().flatten().flat_map(|part| polyline::visible_parts(part, view)).collect()
+/// What is looked at of a path.
+#[derive(Debug)]
+struct LookedAt {
+    forecast: u64,
+    colour: Color32,
+    selection: Option<Selection>,
+    also: BTreeSet<Selection>,
+    pointed: Option<Id>,
+}
+
+impl LookedAt {
+    fn of(scene: &Scene<'_>, p: &Palette) -> Self {
+        Self {
+            forecast: scene.analysis.forecast_version,
+            colour: p.text,
+            selection: scene.view.selection.clone(),
+            also: scene.view.also.clone(),
+            pointed: scene.view.pointed.clone(),
+        }
+    }
+
+    fn is_still(&self, scene: &Scene<'_>, p: &Palette) -> bool {
+        let view = scene.view;
+        (self.forecast, self.colour) == (scene.analysis.forecast_version, p.text)
+            && (&self.selection, &self.also, &self.pointed) == (&view.selection, &view.also, &view.pointed)
+    }
+
+    /// Of legs and stages.
+    fn ids(&self) -> HashSet<&Id> {
+        let together = self.selection.as_ref().is_some_and(Selection::is_in_sets);
+        let selected = self.selection.iter().chain(&self.also).filter(|_| together);
+        let flown = selected.filter(|what| matches!(what, Selection::Leg(_) | Selection::Stage(_)));
+        flown.map(Selection::id).chain(&self.pointed).collect()
+    }
 }
 
 /// Grey, when it is out of date.
@@ -83,41 +223,30 @@ fn draft(painter: &Painter, view: &View, sketch: &Sketch, colour: Color32, p: &P
     polyline::draw(painter, &parts, Stroke::new(2.0, colour), Style::Dashed, p.halo);
 }
 
-/// Selected, or pointed out.
-fn is_looked_at(scene: &Scene<'_>, leg: &Id, stage: &Id) -> bool {
-    let pointed = scene.view.pointed.as_ref();
-    let selected = match &scene.view.selection {
-        Some(selected) if selected.is_in_sets() => {
-            scene.is_selected(&Selection::Leg(leg.clone()))
-                || scene.is_selected(&Selection::Stage(stage.clone()))
-        }
-        _ => false,
-    };
-    selected || pointed == Some(leg) || pointed == Some(stage)
-}
-
-/// A stronger line along passages of some legs (and their stages).
+/// A stronger line along some passages.
 fn highlight(
-    painter: &Painter,
     view: &View,
     scene: &Scene<'_>,
     (colour, p): (Color32, &Palette),
-    wanted: impl Fn(&Id, &Id) -> bool,
-) {
+    wanted: impl Fn(&Passage) -> bool,
+) -> Vec<Shape> {
     let forecast = scene.forecast();
-    for passage in forecast.passages.iter().filter(|passage| wanted(&passage.leg, &passage.stage)) {
+    let passages = forecast.passages.iter().filter(|passage| wanted(passage));
+    let shapes = passages.flat_map(|passage| {
         let line: Vec<Mercator> =
             forecast.part(passage).unwrap_or_default().iter().map(|q| q.position.into()).collect();
         let parts = polyline::visible_parts(&line, view);
-        polyline::draw(painter, &parts, Stroke::new(3.2, colour), Style::Solid, p.halo);
-    }
+        polyline::shapes(&parts, Stroke::new(3.2, colour), Style::Solid, p.halo)
+    });
+    shapes.collect()
 }
 
-fn waypoints(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+fn waypoints(view: &View, scene: &Scene<'_>, p: &Palette) -> Vec<Shape> {
     let forecast = scene.forecast();
     let places = forecast.waypoint_places();
     let mut taken: HashSet<(i32, i32)> = HashSet::new();
     let mut last: Option<Pos2> = None;
+    let mut shapes = Vec::new();
     for index in places.within(view.area(view.rect.expand(MARK))) {
         let (Some(waypoint), Some(at)) = (forecast.waypoints.get(index), places.at.get(index)) else {
             continue;
@@ -129,12 +258,18 @@ fn waypoints(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
             continue;
         }
         last = Some(at);
-        if waypoint.fly_over {
-            text::disc(painter, at, 3.4, p.halo, Stroke::new(1.6, p.accent));
-        } else {
-            text::disc(painter, at, 2.4, p.accent, Stroke::new(1.0, p.halo));
-        }
+        shapes.extend(match waypoint.fly_over {
+            true => disc(at, 3.4, p.halo, Stroke::new(1.6, p.accent)),
+            false => disc(at, 2.4, p.accent, Stroke::new(1.0, p.halo)),
+        });
     }
+    shapes
+}
+
+/// What [`text::disc`] draws where nothing is faint.
+fn disc(at: Pos2, radius: f32, fill: Color32, edge: Stroke) -> [Shape; 2] {
+    let half = edge.width / 2.0;
+    [Shape::circle_filled(at, radius + half, edge.color), Shape::circle_filled(at, radius - half, fill)]
 }
 
 /// Where each branch of the decision that is asked for leads; the default's is the stronger line.

@@ -5,16 +5,27 @@ use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 
 /// The parts of a line that are near the screen, with at most about one vertex per screen point.
 pub fn visible_parts(line: &[Mercator], view: &View) -> Vec<Vec<Pos2>> {
-    parts(line.iter().map(|m| view.screen(*m)), view.rect)
+    parts(line.iter().map(|m| view.screen(*m)), far_around(view.rect))
 }
 
 /// As [`visible_parts`], of a line in screen points.
 pub fn visible(line: &[Pos2], screen: Rect) -> Vec<Vec<Pos2>> {
-    parts(line.iter().copied(), screen)
+    parts(line.iter().copied(), far_around(screen))
 }
 
-fn parts(line: impl ExactSizeIterator<Item = Pos2>, screen: Rect) -> Vec<Vec<Pos2>> {
-    let near = screen.expand(screen.width().max(screen.height()));
+/// As [`visible_parts`], but no more than is seen: dashes would begin elsewhere as the map is moved.
+pub fn seen_parts(line: &[Mercator], view: &View) -> Vec<Vec<Pos2>> {
+    parts(line.iter().map(|m| view.screen(*m)), view.rect.expand(BESIDE))
+}
+
+/// A line so far out of view may still be seen, screen points.
+pub const BESIDE: f32 = 20.0;
+
+fn far_around(screen: Rect) -> Rect {
+    screen.expand(screen.width().max(screen.height()))
+}
+
+fn parts(line: impl ExactSizeIterator<Item = Pos2>, near: Rect) -> Vec<Vec<Pos2>> {
     let last = line.len();
     let mut parts = Vec::new();
     let mut part: Vec<Pos2> = Vec::new();
@@ -72,23 +83,24 @@ pub enum Style {
 
 /// Draws line parts with a halo, so that they can be read on any ground.
 pub fn draw(painter: &Painter, parts: &[Vec<Pos2>], stroke: Stroke, style: Style, halo: Color32) {
-    if style != Style::Dotted {
-        for part in parts {
-            let halo = Stroke::new(stroke.width + 2.5, halo.gamma_multiply(0.55));
-            painter.add(Shape::line(part.clone(), halo));
-        }
-    }
+    painter.extend(shapes(parts, stroke, style, halo));
+}
+
+/// The same as shapes.
+pub fn shapes(parts: &[Vec<Pos2>], stroke: Stroke, style: Style, halo: Color32) -> Vec<Shape> {
+    let around = Stroke::new(stroke.width + 2.5, halo.gamma_multiply(0.55));
+    let haloed: &[Vec<Pos2>] = if style == Style::Dotted { &[] } else { parts };
+    let mut shapes: Vec<Shape> = haloed.iter().map(|part| Shape::line(part.clone(), around)).collect();
     for part in parts {
         match style {
-            Style::Solid => {
-                painter.add(Shape::line(part.clone(), stroke));
-            }
-            Style::Dashed => painter.extend(Shape::dashed_line(part, stroke, 9.0, 6.0)),
+            Style::Solid => shapes.push(Shape::line(part.clone(), stroke)),
+            Style::Dashed => shapes.extend(Shape::dashed_line(part, stroke, 9.0, 6.0)),
             Style::Dotted => {
-                painter.extend(Shape::dotted_line(part, stroke.color, 6.0, stroke.width * 0.75));
+                shapes.extend(Shape::dotted_line(part, stroke.color, 6.0, stroke.width * 0.75));
             }
         }
     }
+    shapes
 }
 
 /// Between two points of a line that is kept for a zoom there is at least this way, screen points.

@@ -2,7 +2,7 @@
 //! Mercator projection; a view then is one scale and one shift, in double precision, so that
 //! nothing trembles at high zoom.
 
-use egui::{Pos2, Rect, pos2};
+use egui::{Pos2, Rect, Vec2, pos2};
 use geometry::LatLon;
 use std::f64::consts::PI;
 use walkers::{Projector, lat_lon};
@@ -97,6 +97,17 @@ impl View {
     /// How often the scale has doubled: views of the same octave differ by less than a factor of two.
     pub fn octave(&self) -> i32 {
         self.scale.max(1.0).log2().floor() as i32
+    }
+
+    /// How far what stands still on the ground has moved on the screen since another view; `None`: it is seen at another scale.
+    pub fn moved_since(&self, before: &Self) -> Option<Vec2> {
+        let here = |view: &Self| view.screen(self.centre);
+        (self.scale == before.scale).then(|| here(self) - here(before))
+    }
+
+    /// With more around it, screen points.
+    pub fn with_more(&self, around: f32) -> Self {
+        Self { rect: self.rect.expand(around), ..*self }
     }
 
     /// On the screen.
