@@ -274,7 +274,9 @@ fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     let forecast = scene.forecast();
     match scene.analysis.coverage().filter(|_| scene.view.coverage && scene.out_of_date().is_none()) {
         Some(known) => {
-            for (reach, part) in coverage::parts(&forecast.points, known) {
+            // what is narrower than a column is not seen
+            let seen: Vec<Point> = thinned(axes, forecast).cloned().collect();
+            for (reach, part) in coverage::parts(&seen, known) {
                 let path: Vec<Pos2> = part.iter().map(|point| axes.place(point)).collect();
                 coverage::line(painter, &path, coverage::look(reach, p));
             }
