@@ -12,7 +12,7 @@ use std::sync::Arc;
 impl App {
     /// Takes in all that has come since the last frame, and asks for what is wanted next.
     pub(super) fn drain(&mut self, ctx: &egui::Context) {
-        let now = Now::read(ctx);
+        let now = self.now(ctx);
         let now_s = now.window_s;
         self.drain_links(now);
         self.drain_worker(ctx);
@@ -101,7 +101,7 @@ impl App {
         // one that was drawn here, or is shown as it is aboard, was not brought
         let is_brought = !document.is_nobodys() && !document.can_undo();
         if is_brought && self.view.selection.is_none() {
-            let first = problems::first_in_error(&self.scene(Now::read(ctx)));
+            let first = problems::first_in_error(&self.scene(self.now(ctx)));
             self.view.select(first);
         }
     }

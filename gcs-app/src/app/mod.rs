@@ -1,6 +1,7 @@
 //! The window. `logic` drains what the workers found out, `ui` draws and then carries out what was
 //! asked for. Nothing here waits for file, network or computation.
 
+mod clock;
 mod file_name;
 mod filing;
 mod focus;
@@ -19,6 +20,7 @@ mod remembered;
 mod screenshot;
 mod window;
 
+pub use clock::TimeOfDay;
 pub(crate) use orders::plan_label;
 pub use screenshot::Screenshot;
 pub use window::{Options, WindowError, has_display, run};
@@ -42,6 +44,7 @@ use crate::shelf::Shelf;
 use crate::state::{Toasts, Vehicle, VehicleName, Vehicles};
 use crate::story::{Chapter, Story};
 use crate::theme;
+use clock::Now;
 use remembered::Remembered;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -84,6 +87,7 @@ pub struct App {
     keeper: Option<Keeper>,
     /// The vehicle whose plan aboard the document is, and the document's version.
     mirrored: Option<(VehicleName, u64)>,
+    time_of_day: TimeOfDay,
     /// When the aircraft were looked at last, seconds of the window's clock.
     looked_s: f64,
     /// The window closes, whatever was not saved.
@@ -107,26 +111,6 @@ impl std::fmt::Debug for App {
 
 /// Ages on the screen are refreshed at least so often while a vehicle is connected.
 const REFRESH: Duration = Duration::from_millis(100);
-/// The time of a frame. Only the app looks at clocks; state and panels get the time as an argument.
-#[derive(Debug, Clone, Copy)]
-struct Now {
-    /// The window's clock, seconds.
-    window_s: f64,
-    /// The time of day.
-    utc: jiff::Timestamp,
-}
-
-impl Now {
-    fn read(ctx: &egui::Context) -> Self {
-        Self { window_s: ctx.input(|i| i.time), utc: jiff::Timestamp::now() }
-    }
-
-    /// Until the clock in the bar shows another time, and what is known is older by as much: a clock of seconds, or of minutes.
-    fn until_next(&self, unit_s: i64) -> Duration {
-        let past_ms = self.utc.as_millisecond().rem_euclid(unit_s * 1000);
-        Duration::from_millis((unit_s * 1000 - past_ms).unsigned_abs())
-    }
-}
 
 impl App {
     /// A ground station that talks through `links` and flies over `terrain`.
@@ -175,6 +159,7 @@ impl App {
             connections: remembered.connections,
             keeper: None,
             mirrored: None,
+            time_of_day: jiff::Timestamp::now,
             looked_s: f64::NEG_INFINITY,
             leaving: false,
             after_saving: None,
@@ -336,13 +321,13 @@ impl eframe::App for App {
         } else if !ctx.input(|i| i.viewport().minimized.unwrap_or(false)) {
             // the clock goes on, and without a link values grow old just the same; where no vehicle was heard, there are none
             let unit_s = if self.vehicles.any_heard() { 1 } else { 60 };
-            ctx.request_repaint_after(Now::read(ctx).until_next(unit_s));
+            ctx.request_repaint_after(self.now(ctx).until_next(unit_s));
         }
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        let now = Now::read(&ctx);
+        let now = self.now(&ctx);
         let typed_ahead = std::mem::take(&mut self.typed_ahead);
         ctx.input_mut(|input| drop(input.events.splice(0..0, typed_ahead)));
         self.play(&ctx);

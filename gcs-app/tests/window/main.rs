@@ -117,7 +117,9 @@ impl Window {
         let builder = Harness::builder().with_size(size).with_step_dt(step_s);
         let harness = builder.renderer(Raster::default()).build_eframe(move |creation| {
             creation.storage = storage;
-            App::new(creation, document, links, ground).unwrap()
+            let mut app = App::new(creation, document, links, ground).unwrap();
+            app.tell_time_by(|| jiff::Timestamp::constant(1_790_000_000, 0));
+            app
         });
         Self { harness, far, gestures: 0 }
     }
@@ -144,24 +146,42 @@ impl Window {
         let deadline = Instant::now() + Duration::from_secs(20);
         while self.app().is_busy() {
             assert!(Instant::now() < deadline, "something in the background does not end");
-            self.harness.step();
-            std::thread::yield_now();
+            self.wait();
             if !self.app().is_busy() {
                 // what came of it is drawn
-                self.harness.run_steps(2);
+                (0..2).for_each(|_| self.wait());
             }
         }
     }
 
-    /// Draws until something is so; the workers behind the window take their time.
+    /// Draws until something is so; the workers behind the window take their time, its clock stands still meanwhile.
     fn until(&mut self, what: &str, condition: impl Fn(&App) -> bool) {
         let deadline = Instant::now() + Duration::from_secs(20);
         while !condition(self.app()) {
             assert!(Instant::now() < deadline, "waited in vain: {what}");
-            self.harness.step();
-            std::thread::yield_now();
+            self.wait();
         }
         self.steps(2);
+    }
+
+    /// A frame in which no time passes: how long a worker takes is not to be seen.
+    fn wait(&mut self) {
+        let held = self.harness.input_mut().time;
+        self.stop_clock(0.0);
+        self.harness.step();
+        self.harness.input_mut().time = held;
+        std::thread::yield_now();
+    }
+
+    /// From so many seconds from now on no time passes, until [`Self::start_clock`].
+    fn stop_clock(&mut self, in_s: f64) {
+        let now_s = self.harness.ctx.input(|i| i.time);
+        self.harness.input_mut().time = Some(now_s + in_s);
+    }
+
+    /// A frame takes its time again.
+    fn start_clock(&mut self) {
+        self.harness.input_mut().time = None;
     }
 
     /// The present version was checked, hashed and previewed.

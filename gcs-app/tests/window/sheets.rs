@@ -1,5 +1,4 @@
 //! The pictures of every state without a vehicle, at every size in both themes: a sheet each, kept in `tests/pictures/states`.
-//! What a vehicle says grows old while its pictures are made: its states are looked at by their rectangles.
 
 use super::states::{SIZES, THEMES, Widget, examine, opened, placed, widgets};
 use super::{SQUARE, Window, states};
@@ -10,16 +9,8 @@ use pictures::Sheet;
 /// It lists what lies in a folder of this machine, and its path: no picture of it is kept.
 const WITHOUT_PICTURE: &str = "file dialog";
 
-/// What the window looks like now, without the clock.
-fn picture(window: &mut Window) -> RgbaImage {
-    let mut picture = window.harness.render().unwrap();
-    widgets(window).iter().filter(|w| is_clock(w)).for_each(|clock| erase(&mut picture, clock.rect));
-    picture
-}
-
-fn is_clock(widget: &Widget) -> bool {
-    widget.name.ends_with('Z') && widget.name.contains(':')
-}
+/// Longer than what comes into sight takes for it, seconds.
+const SETTLED_S: f64 = 0.2;
 
 /// A cross, a plus or one digit: no more than a faint dot there.
 fn is_a_dot(widget: &Widget) -> bool {
@@ -39,14 +30,17 @@ fn erase(picture: &mut RgbaImage, rect: Rect) {
 /// A row for each size, the dark one before the light one.
 fn in_all(state: &str, window: &mut Window, found: &mut Vec<String>) {
     let mut sheet = Sheet::default();
+    // nothing grows older from picture to picture
+    window.stop_clock(SETTLED_S);
     for size in SIZES {
         window.harness.set_size(size);
         sheet.begin_row();
         for theme in THEMES {
             examine(state, size, theme, window, found);
-            sheet.add(&picture(window));
+            sheet.add(&window.harness.render().unwrap());
         }
     }
+    window.start_clock();
     found.extend(check(&sheet, state).err());
     window.harness.set_size(vec2(1280.0, 800.0));
     window.steps(2);
@@ -92,10 +86,10 @@ fn a_widget_that_is_gone_is_seen_on_a_sheet() {
     for theme in THEMES {
         window.harness.input_mut().system_theme = Some(theme);
         window.steps(2);
-        let whole = picture(&mut window);
+        let whole = window.harness.render().unwrap();
         let kept = sheet_of(&whole);
         let all = widgets(&window);
-        let shown = placed(&all).into_iter().filter(|w| w.seen == w.rect && !is_clock(w) && !is_a_dot(w));
+        let shown = placed(&all).into_iter().filter(|w| w.seen == w.rect && !is_a_dot(w));
         let unseen = shown.filter(|gone| {
             let mut without = whole.clone();
             erase(&mut without, gone.rect);

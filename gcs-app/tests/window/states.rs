@@ -317,6 +317,8 @@ pub fn flight(look: Look) {
             ("log", |w| tab(w, "Log")),
             ("services", |w| tab(w, "Services")),
             ("alarms", |w| {
+                w.receive_position(false);
+                w.receive_attitude();
                 let alarm = |id: &str, severity| Alarm {
                     id: id.into(),
                     severity,

@@ -33,7 +33,10 @@ fn flies(window: &mut Window) {
 /// What it looks like when it is done, compared with the picture that is kept.
 fn done(window: &mut Window, task: &str) {
     window.until_analysed();
-    window.until("messages that go by themselves", |app| app.toasts().iter().next().is_none());
+    while window.app().toasts().iter().next().is_some() {
+        // messages go by themselves
+        window.steps(10);
+    }
     window.steps(30);
     window.picture(&format!("task-{task}"));
 }
