@@ -8,18 +8,76 @@ pub struct Labels {
     window: Room,
     /// Points that should stay visible.
     clear: Vec<Point>,
-    taken: Vec<Room>,
+    taken: Grid,
+}
+
+/// Side of a cell of the grid.
+const CELL: f32 = 64.0;
+/// So many cells are side by side; the last one goes on beyond that.
+const MOST_CELLS: usize = 128;
+
+/// Rooms by the cells of a window in which they are: what is looked for is found among its neighbours. What lies outside is in
+/// the cells at the edge.
+#[derive(Debug)]
+struct Grid {
+    window: Room,
+    columns: usize,
+    cells: Vec<Vec<Room>>,
+}
+
+impl Grid {
+    fn new(window: Room) -> Self {
+        let cells = |length: f32| ((length / CELL) as usize + 1).min(MOST_CELLS);
+        let (columns, rows) = (cells(window.right - window.left), cells(window.bottom - window.top));
+        Self { window, columns, cells: vec![Vec::new(); columns * rows] }
+    }
+
+    /// Column and row of a place.
+    fn cell(&self, (x, y): Point) -> (usize, usize) {
+        let (column, row) = ((x - self.window.left) / CELL, (y - self.window.top) / CELL);
+        // what is negative is 0
+        let rows = self.cells.len() / self.columns;
+        ((column as usize).min(self.columns - 1), (row as usize).min(rows - 1))
+    }
+
+    /// Column and row of each cell that a room is in.
+    fn cells(&self, room: &Room) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let ((left, top), (right, bottom)) =
+            (self.cell((room.left, room.top)), self.cell((room.right, room.bottom)));
+        (top..=bottom).flat_map(move |row| (left..=right).map(move |column| (column, row)))
+    }
+
+    fn add(&mut self, room: Room) {
+        for (column, row) in self.cells(&room) {
+            if let Some(cell) = self.cells.get_mut(row * self.columns + column) {
+                cell.push(room);
+            }
+        }
+    }
+
+    /// Those that a room meets, each once.
+    fn met<'a>(&'a self, room: &'a Room) -> impl Iterator<Item = &'a Room> {
+        self.cells(room).flat_map(move |cell| {
+            let (column, row) = cell;
+            let rooms = self.cells.get(row * self.columns + column).into_iter().flatten();
+            // in the cell where what they have in common begins
+            rooms.filter(move |taken| {
+                let corner = (taken.left.max(room.left), taken.top.max(room.top));
+                taken.meets(room) && self.cell(corner) == cell
+            })
+        })
+    }
 }
 
 impl Labels {
     /// Nothing written yet, in a window.
     pub fn new(window: Room) -> Self {
-        Self { window, clear: Vec::new(), taken: Vec::new() }
+        Self { window, clear: Vec::new(), taken: Grid::new(window) }
     }
 
     /// Something stands here.
     pub fn take(&mut self, room: Room) {
-        self.taken.push(room);
+        self.taken.add(room);
     }
 
     /// A line that should not be written over.
@@ -34,7 +92,7 @@ impl Labels {
 
     /// Nothing stands there yet.
     pub fn is_free(&self, room: &Room) -> bool {
-        self.taken_below(room) == 0
+        self.taken.met(room).next().is_none()
     }
 
     /// Of the middles given, the first at which a text of this size covers least; none if it is outside everywhere.
@@ -46,11 +104,7 @@ impl Labels {
 
     /// How much would be covered: another name counts as much as a long piece of the path.
     fn covers(&self, room: &Room) -> usize {
-        self.taken_below(room) * 1000 + self.clear.iter().filter(|at| room.contains(**at)).count()
-    }
-
-    fn taken_below(&self, room: &Room) -> usize {
-        self.taken.iter().filter(|taken| taken.meets(room)).count()
+        self.taken.met(room).count() * 1000 + self.clear.iter().filter(|at| room.contains(**at)).count()
     }
 }
 
@@ -119,6 +173,24 @@ mod tests {
         assert!(x < 380.0);
         assert_eq!(labels.best(&beside((600.0, 150.0), SIZE), SIZE), None);
         assert_eq!(labels.best(&along(&[(9.0, 9.0)], SIZE), SIZE), None, "a point is no line");
+    }
+
+    #[test]
+    fn each_room_that_is_met_counts_once_wherever_it_is() {
+        let mut labels = labels();
+        let rooms: Vec<Room> = (0..200)
+            .map(|n| {
+                let (x, y) = ((n * 37 % 560) as f32 - 80.0, (n * 91 % 460) as f32 - 80.0);
+                Room::about((x, y), ((n * 13 % 170) as f32, (n * 7 % 90) as f32))
+            })
+            .collect();
+        rooms.iter().for_each(|room| labels.take(*room));
+        for room in &rooms {
+            let room = room.grown(3.0);
+            let met = rooms.iter().filter(|taken| taken.meets(&room)).count();
+            assert_eq!(labels.taken.met(&room).count(), met, "{room:?}");
+        }
+        assert!(labels.is_free(&Room::about((-900.0, 150.0), SIZE)), "far outside");
     }
 
     #[test]
