@@ -1,13 +1,13 @@
 //! The aircraft, where it was, and what it flies next.
 
+use super::names::{self, Ground, Name, Names, Rank};
 use super::polyline::{self, Cached, Style};
-use super::text;
 use super::view::{Mercator, View};
 use crate::panels::Scene;
 use crate::state::VehicleName;
 use crate::theme::Palette;
 use crate::units;
-use egui::{Color32, Painter, Pos2, Shape, Stroke, Vec2, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 
 /// The layer; keeps the decimated trail until view or trail change.
 #[derive(Debug, Default)]
@@ -58,7 +58,7 @@ fn diamond(painter: &Painter, at: Pos2, p: &Palette) {
 }
 
 /// The aircraft symbol along its heading, with height and speed; hollow when its position has expired.
-pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, names: &mut Names, p: &Palette) {
     let Some(position) = &scene.vehicle.position else { return };
     let v = &position.value;
     let at = view.place(v.position);
@@ -70,13 +70,18 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
     let expired = position.is_expired(scene.now_s);
     symbol(painter, at, heading as f32, if expired { Color32::TRANSPARENT } else { p.active }, p);
     let u = scene.units();
-    let label = if expired {
+    let text = if expired {
         format!("last seen {} ago", units::age(position.age_s(scene.now_s)))
     } else {
         format!("{} AMSL · {}", u.altitude().show(v.altitude_amsl_m), u.speed().show(v.ground_speed_mps))
     };
-    text::on_plate(painter, at + vec2(16.0, 10.0), &label, 12.0, p);
+    names.keep_clear(Rect::from_center_size(at, Vec2::splat(COVERED)));
+    let (rank, spots) = (Rank::Aircraft, names::corners(at, vec2(12.0, 9.0)));
+    names.ask(painter, Name { rank, spots, text, size: 12.0, colour: p.text, ground: Ground::Plate });
 }
+
+/// Side of the square that no name covers, screen points.
+const COVERED: f32 = 22.0;
 
 /// A plan view of an aeroplane, pointing up, about 26 points long.
 const OUTLINE: [[f32; 2]; 3] = [[0.0, -14.0], [2.6, -4.0], [2.0, 11.0]];

@@ -35,12 +35,12 @@ impl Layer {
         }
     }
 
-    /// Draws names of countries, cities and airports.
-    pub fn draw_names(&self, painter: &Painter, view: &View, p: &Palette) {
-        let Ok(map) = assets::basemap() else { return };
-        let mut placed = Labels::new(view.rect.into());
-        draw_countries(painter, map, view, &mut placed, p);
-        places::draw(painter, view, &mut placed, p);
+    /// Names of countries, cities and airports, where there is room beside what is written already.
+    pub fn names(&self, painter: &Painter, view: &View, placed: &mut Labels, p: &Palette) -> Vec<Shape> {
+        let Ok(map) = assets::basemap() else { return Vec::new() };
+        let mut shapes = countries(painter, map, view, placed, p);
+        places::add(painter, view, placed, &mut shapes, p);
+        shapes
     }
 
     fn build(&mut self, map: &Basemap, view: &View, p: &Palette) {
@@ -94,7 +94,8 @@ fn corners_of(corners: &[Pos2], [a, b, c]: [u32; 3]) -> Option<[Pos2; 3]> {
 }
 
 /// Names of countries big enough on the screen, without overlaps.
-fn draw_countries(painter: &Painter, map: &Basemap, view: &View, placed: &mut Labels, p: &Palette) {
+fn countries(painter: &Painter, map: &Basemap, view: &View, placed: &mut Labels, p: &Palette) -> Vec<Shape> {
+    let mut shapes = Vec::new();
     let most = (view.points_per_metre() * 4.0e6).clamp(4.0, 300.0) as u32;
     for label in map.labels().iter().filter(|l| l.rank < most) {
         let at = view.place(label.position);
@@ -104,8 +105,9 @@ fn draw_countries(painter: &Painter, map: &Basemap, view: &View, placed: &mut La
         let galley = painter.layout_no_wrap(label.name.clone(), FontId::proportional(11.5), p.weak);
         let rect = Align2::CENTER_CENTER.anchor_size(at, galley.size());
         if placed.is_free(&rect.expand(4.0).into()) {
-            painter.galley(rect.min, galley, p.weak);
+            shapes.push(Shape::galley(rect.min, galley, p.weak));
             placed.take(rect.into());
         }
     }
+    shapes
 }

@@ -5,7 +5,7 @@ use crate::command::{PreviewCommand, Queue, ViewCommand};
 use crate::map::{coverage, view::View};
 use crate::panels::{Scene, problems, what_if};
 use crate::theme::{self, Palette};
-use egui::{Align2, Area, Id, Margin, RichText, Ui, vec2};
+use egui::{Align2, Area, Id, Margin, Rect, RichText, Ui, vec2};
 
 /// Widest chip, the room below for the sources of the map and the one beside for the arrow to the north, screen points.
 const WIDTH: f32 = 330.0;
@@ -16,7 +16,7 @@ const BESIDE: f32 = 44.0;
 pub fn show(ui: &Ui, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
     let corner = view.rect.right_bottom() - vec2(BESIDE, BELOW);
     let width = WIDTH.min(view.rect.width() - 170.0 - BESIDE).max(160.0);
-    let area = Area::new(Id::unique("map chips")).fixed_pos(corner).pivot(Align2::RIGHT_BOTTOM);
+    let area = Area::new(area_id()).fixed_pos(corner).pivot(Align2::RIGHT_BOTTOM);
     area.constrain_to(view.rect).show(ui.ctx(), |ui| {
         ui.set_max_width(width);
         let p = theme::of(ui);
@@ -24,6 +24,15 @@ pub fn show(ui: &Ui, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
         world(ui, scene, queue);
         standing(ui, scene, p, queue);
     });
+}
+
+fn area_id() -> Id {
+    Id::unique("map chips")
+}
+
+/// Where they were in the last frame.
+pub fn shown(ctx: &egui::Context) -> Option<Rect> {
+    ctx.memory(|memory| memory.area_rect(area_id()))
 }
 
 fn chip(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {

@@ -1,15 +1,15 @@
 //! What is seen on the pictures that are taken along legs: a footprint for each, and how much of it the next one shows again.
 
+use super::names::{self, Ground, Name, Names, Rank};
 use super::sketch::Sketch;
 use super::sketch::photos::{Photos, Spot, USUAL_ACROSS_DEG};
-use super::text;
 use super::view::View;
 use crate::command::Selection;
 use crate::forecast::{Forecast, Point};
 use crate::panels::Scene;
 use crate::theme::Palette;
 use crate::units::Units;
-use egui::{Align2, Painter, Pos2, Shape, Stroke, vec2};
+use egui::{Painter, Pos2, Shape, Stroke, vec2};
 use flight_plan::{Act, Edit, Id, Leg, LegAction, Trigger, Value};
 use geometry::LatLon;
 use std::collections::HashMap;
@@ -75,7 +75,14 @@ fn every_m(forecast: &Forecast, leg: &Id) -> f64 {
 }
 
 /// Draws them, where they are large enough to be seen.
-pub fn draw(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<'_>, p: &Palette) {
+pub fn draw(
+    painter: &Painter,
+    view: &View,
+    sketch: &Sketch,
+    scene: &Scene<'_>,
+    names: &mut Names,
+    p: &Palette,
+) {
     let mut left = MOST;
     for photos in &sketch.photos {
         let selected = scene.is_selected(&Selection::Leg(photos.leg.clone()));
@@ -93,10 +100,10 @@ pub fn draw(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<'_>, 
             }
         }
         if let Some(footprint) = first.filter(|_| selected) {
-            let (words, is_covered) = words(photos, &footprint, scene.units());
+            let (text, is_covered) = words(photos, &footprint, scene.units());
             let colour = if is_covered { p.text } else { p.caution };
-            let at = view.place(footprint.at) + vec2(14.0, 14.0);
-            text::haloed(painter, at, Align2::LEFT_TOP, &words, 12.0, colour, p);
+            let (rank, spots) = (Rank::Selected, names::corners(view.place(footprint.at), vec2(14.0, 14.0)));
+            names.ask(painter, Name { rank, spots, text, size: 12.0, colour, ground: Ground::Halo });
         }
     }
 }

@@ -1,6 +1,8 @@
 //! What lies on the map's edge: scale, sources, legend, and the buttons.
 
+use super::chips;
 use super::graticule::{Round, round_length};
+use super::names::Names;
 use super::text;
 use super::tools::Toolbox;
 use super::view::View;
@@ -34,8 +36,8 @@ const SOURCES: f32 = 16.0;
 /// Length of the scale bar with its label, screen points.
 const SCALE: f32 = 170.0;
 
-/// Draws scale bar, legend and sources; there are so many tools.
-pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, p: &Palette) {
+/// Draws scale bar, legend and sources, and keeps names clear of them and of the buttons; there are so many tools.
+pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, names: &mut Names, p: &Palette) {
     let corner = view.rect.right_bottom() - vec2(6.0, 4.0);
     let sources = std::iter::once(assets::ATTRIBUTION.to_owned()).chain(scene.layers.attributions());
     let sources = sources.collect::<Vec<_>>().join(" · ");
@@ -43,15 +45,38 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, p: 
     // above the sources where these reach over to it
     let lift = if named.left() < view.rect.left() + SCALE { SOURCES } else { 0.0 };
     let map = view.rect.with_max_y(view.rect.bottom() - lift);
-    scale(painter, view, map, scene.units(), p);
+    let scale = scale(painter, view, map, scene.units(), p);
+    let (toolbar, buttons) = (toolbar_at(view.rect, tools), buttons_at(view.rect, scene));
+    for taken in [named, scale, toolbar, buttons] {
+        names.keep_clear(taken);
+    }
     if map.width() >= NARROW {
         // beside the tools where they reach down to it
-        let (reach, columns) = (12.0 + TOOL * tools as f32, tools.div_ceil(in_column(view.rect)));
-        let is_beside = columns > 1 || reach > map.height() - LEGEND;
-        let aside = if is_beside { 8.0 + TOOL * columns as f32 } else { 0.0 };
-        legend(painter, map.with_min_x(map.left() + aside), p);
+        let is_beside = toolbar.bottom() > map.bottom() - LEGEND;
+        let aside = if is_beside { toolbar.right() - 4.0 - map.left() } else { 0.0 };
+        names.keep_clear(legend(painter, map.with_min_x(map.left() + aside), p));
     }
-    north(painter, view.rect.right_bottom() - vec2(26.0, 44.0), p);
+    let needle = view.rect.right_bottom() - vec2(26.0, 44.0);
+    let north_at = Rect::from_min_max(needle - vec2(8.0, 30.0), needle + vec2(8.0, 0.0));
+    // up is north, with or without it: the buttons are needed more
+    if !north_at.intersects(buttons) {
+        north(painter, needle, p);
+        names.keep_clear(north_at);
+    }
+    let over_map = [said(painter.ctx(), view.rect), chips::shown(painter.ctx())];
+    over_map.into_iter().flatten().for_each(|rect| names.keep_clear(rect));
+}
+
+/// What the tools take of the map.
+fn toolbar_at(map: Rect, tools: usize) -> Rect {
+    let (columns, rows) = (tools.div_ceil(in_column(map)), tools.min(in_column(map)));
+    Rect::from_min_size(map.left_top() + vec2(12.0, 12.0), TOOL * vec2(columns as f32, rows as f32))
+}
+
+/// What the buttons at the right edge take of it.
+fn buttons_at(map: Rect, scene: &Scene<'_>) -> Rect {
+    let more = usize::from(map.width() < NARROW) + usize::from(scene.vehicle.position.is_some());
+    Rect::from_min_size(map.right_top() + vec2(-44.0, 12.0), vec2(34.0, TOOL * (3 + more) as f32))
 }
 
 /// North is up.
@@ -80,8 +105,8 @@ pub fn pointer(ui: &mut Ui, view: &View, at: Option<Pos2>, scene: &Scene<'_>) {
     line.add(egui::Label::new(text).selectable(false));
 }
 
-/// A bar of a round length, up to 90 points long.
-fn scale(painter: &Painter, view: &View, map: Rect, units: Units, p: &Palette) {
+/// A bar of a round length, up to 90 points long. Returns where it is.
+fn scale(painter: &Painter, view: &View, map: Rect, units: Units, p: &Palette) -> Rect {
     let (unit, length) = round_length(units, 90.0 / view.points_per_metre(), Round::Down);
     let points = (unit.to_si(length) * view.points_per_metre()) as f32;
     let start = map.left_bottom() + vec2(12.0, -12.0);
@@ -90,7 +115,8 @@ fn scale(painter: &Painter, view: &View, map: Rect, units: Units, p: &Palette) {
         painter.line_segment([start, end], Stroke::new(width, colour));
     }
     let label = format!("{length} {}", unit.symbol);
-    text::haloed(painter, end + vec2(6.0, 0.0), Align2::LEFT_CENTER, &label, 11.0, p.text, p);
+    let named = text::haloed(painter, end + vec2(6.0, 0.0), Align2::LEFT_CENTER, &label, 11.0, p.text, p);
+    named | Rect::from_two_pos(start, end)
 }
 
 /// Draws a line of some style from here to there.
@@ -123,11 +149,13 @@ const LINES: [(&str, Line); 7] = [
 /// Size of what they take, screen points.
 const LINES_SIZE: Vec2 = vec2(112.0, 16.0 * LINES.len() as f32);
 
-fn legend(painter: &Painter, map: Rect, p: &Palette) {
+/// Returns where it is.
+fn legend(painter: &Painter, map: Rect, p: &Palette) -> Rect {
     let origin = map.left_bottom() + vec2(12.0, -30.0 - LINES_SIZE.y);
     let plate = Rect::from_min_size(origin, LINES_SIZE).expand2(vec2(6.0, 2.0));
     painter.rect_filled(plate, 4.0, p.panel.gamma_multiply(0.8));
     draw_lines(painter, origin, p);
+    plate
 }
 
 fn draw_lines(painter: &Painter, origin: Pos2, p: &Palette) {
@@ -153,7 +181,7 @@ fn legend_button(ui: &mut Ui) {
 /// Buttons at the map's right edge.
 pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &mut Queue) {
     let map = ui.min_rect();
-    let area = Rect::from_min_size(map.right_top() + vec2(-44.0, 12.0), vec2(34.0, 190.0));
+    let area = buttons_at(map, scene);
     let mut column = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt("map buttons"));
     column.spacing_mut().item_spacing.y = 4.0;
     if button(&mut column, "+", "Zoom in", false).clicked() {
@@ -179,10 +207,10 @@ pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &m
 pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut Queue) {
     let map = ui.min_rect();
     let cards: Vec<_> = tools.cards().collect();
-    let columns = cards.chunks(in_column(map));
-    let beside_tools = 16.0 + TOOL * columns.len() as f32;
+    let toolbar = toolbar_at(map, cards.len());
+    let beside_tools = toolbar.right() + 4.0 - map.left();
     let mut shown = Rect::NOTHING;
-    for (index, cards) in columns.enumerate() {
+    for (index, cards) in cards.chunks(in_column(map)).enumerate() {
         let corner = map.left_top() + vec2(12.0 + TOOL * index as f32, 12.0);
         let area = Rect::from_min_size(corner, vec2(34.0, map.height().max(40.0)));
         let salt = ("map tools", index);
@@ -223,8 +251,12 @@ fn said_by_tool() -> egui::Id {
 
 /// What is left of the map below what the tool in use says.
 pub fn below_tool(ctx: &egui::Context, map: Rect) -> Rect {
-    let said = ctx.data(|data| data.get_temp::<Rect>(said_by_tool())).filter(|said| map.intersects(*said));
-    said.map_or(map, |said| map.with_min_y(said.bottom()))
+    said(ctx, map).map_or(map, |said| map.with_min_y(said.bottom()))
+}
+
+/// Where the tool in use says something on the map.
+fn said(ctx: &egui::Context, map: Rect) -> Option<Rect> {
+    ctx.data(|data| data.get_temp::<Rect>(said_by_tool())).filter(|said| map.intersects(*said))
 }
 
 /// So many tools are in a column: there is a second one where the map is too low for one.

@@ -1,12 +1,12 @@
 //! Legs that the aircraft would leave out: a broken grey line where they would be, so that nobody takes them for removed.
 
+use super::names::{self, Ground, Name, Names, Rank};
 use super::polyline::{self, Style};
-use super::text;
 use super::view::{Mercator, View};
 use crate::forecast::LeftOut;
 use crate::panels::Scene;
 use crate::theme::Palette;
-use egui::{Align2, Painter, Pos2, Stroke, vec2};
+use egui::{Painter, Pos2, Stroke, vec2};
 use flight_plan::Id;
 use geometry::LatLon;
 
@@ -16,6 +16,7 @@ pub fn draw(
     view: &View,
     scene: &Scene<'_>,
     place_of: impl Fn(&Id) -> Option<LatLon>,
+    names: &mut Names,
     p: &Palette,
 ) {
     for together in scene.forecast().left_out.chunk_by(|a, b| a.before == b.before) {
@@ -25,8 +26,9 @@ pub fn draw(
         polyline::draw(painter, &parts, Stroke::new(2.0, p.weak), Style::Dashed, p.halo);
         let on_screen: Vec<Pos2> = places.iter().map(|at| view.place(*at)).collect();
         if let Some(middle) = polyline::middle(&on_screen).filter(|at| view.is_near(*at)) {
-            let at = middle + vec2(6.0, 6.0);
-            text::haloed(painter, at, Align2::LEFT_TOP, &words(together, scene), 11.5, p.weak, p);
+            let (rank, spots) = (Rank::Way, names::corners(middle, vec2(6.0, 6.0)));
+            let text = words(together, scene);
+            names.ask(painter, Name { rank, spots, text, size: 11.5, colour: p.weak, ground: Ground::Halo });
         }
     }
 }

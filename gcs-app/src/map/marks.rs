@@ -1,8 +1,8 @@
 //! Marks on the path: where a preview ends early, where a plan is wrong, and the way out after an alarm.
 
+use super::names::{self, Ground, Name, Names, Rank};
 use super::polyline::{self, Style};
 use super::sketch::{Line, Sketch, Way};
-use super::text;
 use super::view::{Mercator, View};
 use crate::panels::what_if::{cause_name, reach_name};
 use crate::panels::{Scene, problems};
@@ -68,18 +68,19 @@ pub fn draw_failures(
     view: &View,
     scene: &Scene<'_>,
     (error_at, others): (Option<LatLon>, &[LatLon]),
+    names: &mut Names,
     p: &Palette,
 ) {
     others.iter().for_each(|at| cross(painter, view.place(*at), p.warning, p));
     let end = scene.forecast().points.last().zip(scene.forecast().cut_short.as_ref());
     if let Some((end, why)) = end.filter(|_| scene.analysis.no_forecast.is_none()) {
-        failure(painter, view.place(end.position), why, p);
+        failure(painter, view.place(end.position), why, names, p);
     }
     // what has no place of its own is wrong where the path ends
     let ends = scene.forecast().points.last().filter(|_| scene.forecast().is_beginning);
     if let Some((problem, at)) = first_error(scene).zip(error_at.or(ends.map(|end| end.position))) {
         let why = scene.document.plan().in_names(&problem.message);
-        failure(painter, view.place(at), &why, p);
+        failure(painter, view.place(at), &why, names, p);
     }
 }
 
@@ -88,10 +89,15 @@ pub fn selection_of(problem: &Problem, scene: &Scene<'_>) -> Option<crate::comma
     problems::find(scene.document, problem.subject.as_ref()?)
 }
 
-fn failure(painter: &Painter, at: Pos2, why: &str, p: &Palette) {
+fn failure(painter: &Painter, at: Pos2, why: &str, names: &mut Names, p: &Palette) {
     cross(painter, at, p.warning, p);
-    // below the name of what is there
-    text::on_plate(painter, at + vec2(12.0, 10.0), &shortened(why), 11.5, p);
+    ask_words(painter, at, shortened(why), names, p);
+}
+
+/// Below the name of what is there.
+fn ask_words(painter: &Painter, at: Pos2, text: String, names: &mut Names, p: &Palette) {
+    let (rank, spots) = (Rank::Fault, names::corners(at, vec2(8.0, 9.0)));
+    names.ask(painter, Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Plate });
 }
 
 fn cross(painter: &Painter, at: Pos2, colour: Color32, p: &Palette) {
@@ -109,7 +115,7 @@ fn shortened(text: &str) -> String {
 }
 
 /// The way out after the alarm: after an engine failure the glide, else the alternate; and fainter the other one.
-pub fn draw_diversion(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+pub fn draw_diversion(painter: &Painter, view: &View, scene: &Scene<'_>, names: &mut Names, p: &Palette) {
     let Some(found) = scene.diversion() else { return };
     let [chosen, other] = found.ways().map(|way| Vec::from_iter(way.iter().map(|point| point.position)));
     way(painter, view, &other, (Stroke::new(1.2, p.weak), Style::Dashed), p);
@@ -119,7 +125,7 @@ pub fn draw_diversion(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Pal
         if !reaches(found) {
             cross(painter, at, p.warning, p);
         }
-        text::on_plate(painter, at + vec2(12.0, 6.0), &label(found, scene.document.plan()), 11.5, p);
+        ask_words(painter, at, label(found, scene.document.plan()), names, p);
     }
 }
 
@@ -159,7 +165,7 @@ mod tests {
             <intersection id="f" default="on"><branch id="on" next="z"/><branch id="close" next="look"/></intersection>
             <TF id="look" lat="46.1" lon="9.1"/><TF id="z" lat="46.2" lon="9.0"/></stage></mainPlan></flightPlan>"#;
         let plan = flight_plan::read(plan).plan;
-        let sketch = Sketch::new(&plan, &flight_plan::Variables::initial(&plan));
+        let sketch = Sketch::new(&plan, &flight_plan::Variables::initial(&plan), &Sketch::default());
         let at = LatLon::new;
         let found = |lat, lon, fork: &str| {
             let branch = Some((fork.into(), "close".into()));

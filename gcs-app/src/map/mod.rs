@@ -6,6 +6,7 @@ pub mod basemap;
 mod chips;
 pub mod clipboard;
 pub mod coverage;
+mod draw;
 pub mod drawings;
 pub mod footprints;
 pub mod foreseen;
@@ -18,6 +19,7 @@ mod kin;
 mod left_out;
 pub mod marks;
 mod menu;
+mod names;
 pub mod navigate;
 pub mod path;
 pub mod places;
@@ -32,22 +34,21 @@ mod variables;
 pub mod view;
 pub mod zones;
 
-use crate::command::{Clip, Queue, Selection, ViewCommand};
+use crate::command::{Clip, Queue, ViewCommand};
 use crate::layers::Opened;
 use crate::panels::{Scene, field, start};
-use crate::theme::{self, Palette};
 use crate::tiles::{Reader, Relief};
-use egui::{DragPanButtons, Painter, Pos2, Role, Ui};
+use egui::{DragPanButtons, Pos2, Ui};
+use flight_plan::Variables;
 use flight_plan::create::Way;
-use flight_plan::{Id, Variables};
 use geometry::LatLon;
 use rasters::Raster;
 use sketch::Sketch;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use terrain::Terrain;
+use tools::Toolbox;
 use tools::new_leg::Side;
-use tools::{Canvas, Toolbox};
 use usal::contract::PlanVariables;
 use view::View;
 use walkers::{Map, MapMemory, lat_lon};
@@ -195,19 +196,6 @@ impl MapState {
         self.rasters.get(&layer).map_or(0, Raster::pictures)
     }
 
-    /// The relief, then the maps from the lowest to the uppermost.
-    fn draw_rasters(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, dark: bool) {
-        if let Some(relief) = &mut self.relief {
-            relief.draw(painter, view, 1.0, dark);
-        }
-        self.rasters.retain(|id, _| scene.layers.iter().any(|layer| layer.id == *id));
-        for layer in scene.layers.iter().rev().filter(|layer| layer.kept.shown) {
-            if let Some(raster) = self.rasters.get_mut(&layer.id) {
-                raster.draw(painter, view, layer.kept.opacity, dark);
-            }
-        }
-    }
-
     /// Draws the map and takes what the operator does on it.
     pub fn show(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         self.sketch(scene);
@@ -251,81 +239,6 @@ impl MapState {
         furniture::buttons(ui, &mut memory, scene, queue);
         furniture::toolbar(ui, &mut self.tools, scene, queue);
         self.memory = memory;
-    }
-
-    fn draw(
-        &mut self,
-        ui: &mut Ui,
-        response: &egui::Response,
-        (view, pointer): (&View, Option<Pos2>),
-        scene: &Scene<'_>,
-        queue: &mut Queue,
-    ) {
-        response.widget_info(|| egui::WidgetInfo::labeled(Role::Canvas, true, "Map"));
-        let p = theme::of(ui);
-        let painter = ui.painter_at(view.rect);
-        self.draw_ground(&painter, view, scene, ui.visuals().dark_mode, p);
-        self.draw_plan(&painter, view, scene, p);
-        self.draw_faults(&painter, view, scene, p);
-        path::move_cursor(response, view, scene, queue);
-        let snaps = !ui.input(|i| i.modifiers.alt);
-        let canvas = Canvas { view, sketch: &self.sketch, scene, pointer, snaps };
-        self.items.run(ui, &canvas, !self.tools.offers_handles(), queue);
-        let asked = self.tools.run(ui, response, &canvas, queue, p);
-        self.menu.run(ui, asked, &canvas, queue);
-        variables::take_dropped(ui, &canvas, queue);
-        if let Some(clip) = self.clip.take() {
-            clipboard::carry_out(clip, ui, &canvas, queue);
-        }
-        clipboard::run(ui, &mut self.menu, &mut self.pastes, &canvas, queue);
-        path::draw_cursor(&painter, view, scene, p);
-        start::draw(&painter, view, scene, p);
-        aircraft::draw(&painter, view, scene, p);
-        furniture::draw(&painter, view, scene, self.tools.cards().count(), p);
-        chips::show(ui, view, scene, queue);
-        // over what can be grabbed, too
-        let over = ui.rect_contains_pointer(view.rect).then(|| ui.ctx().pointer_hover_pos()).flatten();
-        furniture::pointer(ui, view, over, scene);
-    }
-
-    fn draw_ground(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, dark: bool, p: &Palette) {
-        self.basemap.draw(painter, view, p);
-        self.draw_rasters(painter, view, scene, dark);
-        self.basemap.draw_names(painter, view, p);
-        if scene.view.edge.graticule {
-            graticule::draw(painter, view, p);
-        }
-        if scene.view.edge.rings {
-            graticule::draw_rings(painter, view, scene, p);
-        }
-    }
-
-    /// The plan, the paths that will be, would be and were flown.
-    fn draw_plan(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
-        let kin = kin::Kin::of(scene);
-        zones::draw(painter, view, scene, &kin, p);
-        plan::draw_areas(painter, view, &self.sketch, (scene, &kin), p);
-        variables::draw(painter, view, &self.sketch, scene, p);
-        plan::draw_emergencies(painter, view, &self.sketch, (scene, &kin), p);
-        footprints::draw(painter, view, &self.sketch, scene, p);
-        plan::draw_ways(painter, view, &self.sketch, (scene, &kin), p);
-        self.path.draw(painter, view, scene, &self.sketch, p);
-        let place_of_leg = |id: &Id| self.place_of(&Selection::Leg(id.clone()), scene.document.plan());
-        left_out::draw(painter, view, scene, place_of_leg, p);
-        self.aircraft.draw_trail(painter, view, scene, p);
-        foreseen::draw(painter, view, scene, p);
-        aircraft::draw_ahead(painter, view, scene, p);
-        path::draw_decision(painter, view, scene, p);
-        plan::draw_runways(painter, view, scene.document.plan(), p);
-        marks::draw_diversion(painter, view, scene, p);
-    }
-
-    fn draw_faults(&self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
-        marks::draw_off_plan(painter, view, scene, &self.sketch, p);
-        let place = |problem| self.place_of_problem(problem, scene);
-        let error_at = marks::first_error(scene).and_then(place);
-        let others: Vec<LatLon> = marks::off_path(scene).filter_map(place).collect();
-        marks::draw_failures(painter, view, scene, (error_at, &others), p);
     }
 
     /// Places the plan anew, when it or the variables aboard have changed.

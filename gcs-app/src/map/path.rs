@@ -1,19 +1,17 @@
 //! The path that will be flown and the waypoints that will be sent.
 
 use super::kept::Kept;
+use super::names::{self, Ground, Name, Names, Rank};
 use super::polyline::{self, Style};
 use super::sketch::Sketch;
-use super::text;
 use super::view::{Mercator, View};
-use crate::chart;
-use crate::chart::labels::{self, Labels};
 use crate::command::{PreviewCommand, Queue, Selection};
 use crate::forecast::{Coverage, Line, Passage, Point};
 use crate::jobs::{Taken, Task};
 use crate::map::coverage;
 use crate::panels::{Scene, bar, decision};
 use crate::theme::Palette;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, pos2, vec2};
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use flight_plan::Id;
 use std::collections::{BTreeSet, HashSet};
 
@@ -266,16 +264,15 @@ fn waypoints(view: &View, scene: &Scene<'_>, p: &Palette) -> Vec<Shape> {
     shapes
 }
 
-/// What [`text::disc`] draws where nothing is faint.
+/// What [`disc`](super::text::disc) draws where nothing is faint.
 fn disc(at: Pos2, radius: f32, fill: Color32, edge: Stroke) -> [Shape; 2] {
     let half = edge.width / 2.0;
     [Shape::circle_filled(at, radius + half, edge.color), Shape::circle_filled(at, radius - half, fill)]
 }
 
 /// Where each branch of the decision that is asked for leads; the default's is the stronger line.
-pub fn draw_decision(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+pub fn draw_decision(painter: &Painter, view: &View, scene: &Scene<'_>, names: &mut Names, p: &Palette) {
     let Some((request, _)) = decision::open(scene) else { return };
-    let mut named = Labels::new(view.rect.into());
     for (number, option) in (1..).zip(&request.options) {
         let line: Vec<Mercator> = option.preview.iter().map(|at| (*at).into()).collect();
         let is_default = request.default.as_ref() == Some(&option.branch);
@@ -283,23 +280,11 @@ pub fn draw_decision(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Pale
         let style = if is_default { Style::Solid } else { Style::Dashed };
         polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, style, p.halo);
         let places: Vec<Pos2> = option.preview.iter().map(|at| view.place(*at)).collect();
-        name_branch(painter, &places, &format!("{number} {}", option.label), &mut named, p);
-    }
-}
-
-/// Beside the middle of its way (at its end is the name of a fix), or where no other branch has its name.
-fn name_branch(painter: &Painter, way: &[Pos2], name: &str, named: &mut Labels, p: &Palette) {
-    const SIZE: f32 = 12.0;
-    let Some(middle) = polyline::middle(way) else { return };
-    let size = painter.layout_no_wrap(name.into(), FontId::proportional(SIZE), p.active).size();
-    let beside = middle + vec2(6.0 + size.x / 2.0, -6.0 - size.y / 2.0);
-    let line: Vec<chart::Point> = way.iter().map(|at| (at.x, at.y)).collect();
-    let room = (size.x, size.y);
-    let others = labels::along(&line, room).into_iter().chain(labels::beside((middle.x, middle.y), room));
-    let middles: Vec<chart::Point> = std::iter::once((beside.x, beside.y)).chain(others).collect();
-    if let Some((x, y)) = named.best(&middles, room) {
-        let rect = text::haloed(painter, pos2(x, y), Align2::CENTER_CENTER, name, SIZE, p.active, p);
-        named.take(rect.into());
+        // beside the middle of its way: at its end is the name of a fix
+        let Some(middle) = polyline::middle(&places) else { continue };
+        let (rank, spots) = (Rank::Selected, names::corners_above(middle, vec2(6.0, 6.0)));
+        let text = format!("{number} {}", option.label);
+        names.ask(painter, Name { rank, spots, text, size: 12.0, colour: p.active, ground: Ground::Halo });
     }
 }
 

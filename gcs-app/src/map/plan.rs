@@ -1,15 +1,14 @@
 //! The plan's areas, runways and emergency plans.
 
 use super::kin::Kin;
+use super::names::{self, Ground, Name, Names, Rank};
 use super::polyline::{self, Style};
 use super::sketch::{Circle, Line, Sketch};
-use super::text;
 use super::view::{Mercator, View};
-use crate::chart::labels::Labels;
 use crate::command::Selection;
 use crate::panels::Scene;
 use crate::theme::Palette;
-use egui::{Align2, Painter, Pos2, Shape, Stroke, vec2};
+use egui::{Painter, Pos2, Shape, Stroke, vec2};
 use flight_plan::{FlightPlan, Id};
 
 /// Areas to be scanned and orbits.
@@ -67,9 +66,9 @@ pub fn draw_ways(
     view: &View,
     sketch: &Sketch,
     (scene, kin): (&Scene<'_>, &Kin),
+    names: &mut Names,
     p: &Palette,
 ) {
-    let mut placed = Labels::new(painter.clip_rect().into());
     for way in &sketch.ways {
         let selected = is_selected(scene, &way.fork);
         let of = way.lines.iter().map(|line| &line.leg).find(|leg| kin.has(leg)).unwrap_or(&way.fork);
@@ -89,12 +88,11 @@ pub fn draw_ways(
         }
         let Some(first) = way.lines.first() else { continue };
         let (from, to) = (view.place(first.from), view.place(first.to));
-        let at = from + (to - from) * 0.5 + vec2(0.0, 6.0);
-        let name = if way.is_default { format!("{} (default)", way.label) } else { way.label.clone() };
-        let size = vec2(name.chars().count() as f32 * 6.5, 13.0);
-        let is_free = placed.is_free(&Align2::CENTER_TOP.anchor_size(at, size).into());
-        if (selected || from.distance(to) > 140.0) && view.is_near(at) && is_free {
-            placed.take(text::haloed(painter, at, Align2::CENTER_TOP, &name, 11.5, p.text, p).into());
+        let at = from + (to - from) * 0.5;
+        if (selected || from.distance(to) > 140.0) && view.is_near(at) {
+            let text = if way.is_default { format!("{} (default)", way.label) } else { way.label.clone() };
+            let (rank, spots) = (Rank::Way.or_selected(selected), names::below(at, 6.0));
+            names.ask(painter, Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Halo });
         }
     }
 }
@@ -110,6 +108,7 @@ pub fn draw_emergencies(
     view: &View,
     sketch: &Sketch,
     (scene, kin): (&Scene<'_>, &Kin),
+    names: &mut Names,
     p: &Palette,
 ) {
     let in_force = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency_in_force.as_ref());
@@ -122,21 +121,16 @@ pub fn draw_emergencies(
         let parts = polyline::visible_parts(&points, view);
         polyline::draw(&painter, &parts, Stroke::new(width, p.contingency), Style::Dotted, p.halo);
         if let (true, Some(first)) = (emphasised, line.first()) {
-            text::haloed(
-                &painter,
-                view.place(*first) + vec2(8.0, -8.0),
-                Align2::LEFT_BOTTOM,
-                &format!("⚑ {}", scene.document.plan().label(id)),
-                12.0,
-                p.contingency,
-                p,
-            );
+            let (rank, spots) = (Rank::Selected, names::corners_above(view.place(*first), vec2(8.0, 8.0)));
+            let text = format!("⚑ {}", scene.document.plan().label(id));
+            let colour = p.contingency;
+            names.ask(&painter, Name { rank, spots, text, size: 12.0, colour, ground: Ground::Halo });
         }
     }
 }
 
 /// Runways: their true length and direction, with the threshold and the name.
-pub fn draw_runways(painter: &Painter, view: &View, plan: &FlightPlan, p: &Palette) {
+pub fn draw_runways(painter: &Painter, view: &View, plan: &FlightPlan, names: &mut Names, p: &Palette) {
     for runway in plan.runways.iter().filter(|r| r.threshold.is_valid() && r.heading_deg.is_finite()) {
         let (start, end) = (
             view.place(runway.threshold),
@@ -154,14 +148,8 @@ pub fn draw_runways(painter: &Painter, view: &View, plan: &FlightPlan, p: &Palet
         painter.line_segment([start, end], Stroke::new(4.0, p.text));
         let across = (end - start).normalized().rot90() * 7.0;
         painter.line_segment([start - across, start + across], Stroke::new(2.0, p.text));
-        text::haloed(
-            painter,
-            start - (end - start).normalized() * 8.0,
-            Align2::CENTER_TOP,
-            runway.id.as_str(),
-            12.0,
-            p.text,
-            p,
-        );
+        let at = start - (end - start).normalized() * 8.0;
+        let (rank, spots, text) = (Rank::Place, names::below(at, 0.0), runway.id.as_str().into());
+        names.ask(painter, Name { rank, spots, text, size: 12.0, colour: p.text, ground: Ground::Halo });
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::chart::Room;
 use crate::theme::Palette;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, vec2};
 
 /// Text with a halo, readable on any ground. Returns where it is.
 pub fn haloed(
@@ -35,16 +35,15 @@ pub fn disc(painter: &Painter, at: Pos2, radius: f32, fill: Color32, edge: Strok
     painter.circle_filled(at, radius - edge.width / 2.0, fill);
 }
 
-/// Text on a plate, readable over other names too; kept within the map.
-pub fn on_plate(painter: &Painter, at: Pos2, text: &str, size: f32, p: &Palette) {
+/// Text on a plate, so far from the plate's edge, readable over other names too.
+pub fn on_plate(painter: &Painter, plate: Rect, edge: Vec2, text: &str, size: f32, p: &Palette) {
     let galley = painter.layout_no_wrap(text.into(), FontId::proportional(size), p.text);
-    let plate = within(Rect::from_min_size(at, galley.size()).expand2(vec2(4.0, 1.0)), painter.clip_rect());
     painter.rect_filled(plate, 3.0, p.panel.gamma_multiply(0.8));
-    painter.galley(plate.min + vec2(4.0, 1.0), galley, p.text);
+    painter.galley(plate.min + edge, galley, p.text);
 }
 
 /// Moved so far that nothing of it is outside.
-fn within(rect: Rect, map: Rect) -> Rect {
+pub fn within(rect: Rect, map: Rect) -> Rect {
     let left = rect.left().min(map.right() - rect.width()).max(map.left());
     let top = rect.top().min(map.bottom() - rect.height()).max(map.top());
     Rect::from_min_size(Pos2::new(left, top), rect.size())

@@ -1,7 +1,7 @@
 //! Variables of the plan that are a place: where they are now, with their radius where they have one.
 
+use super::names::{self, Ground, Name, Names, Rank};
 use super::sketch::{PlacedVariable, Sketch};
-use super::text;
 use super::tools::Canvas;
 use super::tools::pick::things_near;
 use super::view::View;
@@ -9,7 +9,7 @@ use crate::command::{Queue, Selection, ViewCommand};
 use crate::panels::Scene;
 use crate::panels::binding::DraggedVariable;
 use crate::theme::{self, Palette};
-use egui::{Align2, DragAndDrop, Painter, Pos2, Shape, Stroke, Ui, vec2};
+use egui::{DragAndDrop, Painter, Pos2, Shape, Stroke, Ui, vec2};
 use flight_plan::Id;
 use flight_plan::create::place_binding;
 
@@ -22,14 +22,27 @@ const MARK: f32 = 6.0;
 const WIDEST: f32 = 20_000.0;
 
 /// Every variable that is a place.
-pub fn draw(painter: &Painter, view: &View, sketch: &Sketch, scene: &Scene<'_>, p: &Palette) {
+pub fn draw(
+    painter: &Painter,
+    view: &View,
+    sketch: &Sketch,
+    scene: &Scene<'_>,
+    names: &mut Names,
+    p: &Palette,
+) {
     for variable in &sketch.variables {
         let selected = scene.is_selected(&Selection::Variable(variable.name.clone()));
-        draw_one(painter, view, variable, selected, p);
+        draw_one(painter, view, variable, (selected, &mut *names), p);
     }
 }
 
-fn draw_one(painter: &Painter, view: &View, variable: &PlacedVariable, selected: bool, p: &Palette) {
+fn draw_one(
+    painter: &Painter,
+    view: &View,
+    variable: &PlacedVariable,
+    (selected, names): (bool, &mut Names),
+    p: &Palette,
+) {
     let at = view.place(variable.at);
     let width = if selected { 2.4 } else { 1.6 };
     let radius = variable.radius_m.map_or(0.0, |radius_m| (radius_m * view.points_per_metre()) as f32);
@@ -44,8 +57,10 @@ fn draw_one(painter: &Painter, view: &View, variable: &PlacedVariable, selected:
     let corners = vec![corner(0.0, -1.0), corner(1.0, 0.0), corner(0.0, 1.0), corner(-1.0, 0.0)];
     painter.add(Shape::convex_polygon(corners, p.caution, Stroke::new(width, p.halo)));
     // clear of what is flown around it
-    let above = at - vec2(0.0, radius.max(MARK) + 3.0);
-    text::haloed(painter, above, Align2::CENTER_BOTTOM, &name(&variable.name), 11.5, p.text, p);
+    let [right, left, above, below] = names::beside(at, radius.max(MARK) + 3.0);
+    let (rank, spots, text) =
+        (Rank::Place.or_selected(selected), [above, below, right, left], name(&variable.name));
+    names.ask(painter, Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Halo });
 }
 
 /// A variable whose row is dragged onto a leg's place gives that place.

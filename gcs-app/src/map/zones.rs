@@ -1,8 +1,8 @@
 //! Zones: hatched in red where the flight must not be, a double line around where it must stay.
 
 use super::kin::Kin;
+use super::names::{Ground, Name, Names, Rank, Spot};
 use super::polyline::{self, Style};
-use super::text;
 use super::view::View;
 use crate::chart::Point;
 use crate::chart::zones::{self as chart, Surface, ZoneStyle};
@@ -16,7 +16,13 @@ use geometry::LatLon;
 use std::convert::Infallible;
 
 /// Every zone of the plan.
-pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, kin: &Kin, p: &Palette) {
+pub fn draw(
+    painter: &Painter,
+    view: &View,
+    (scene, kin): (&Scene<'_>, &Kin),
+    names: &mut Names,
+    p: &Palette,
+) {
     let faulty = scene.faulty();
     for zone in &scene.document.plan().zones {
         let selected = scene.is_selected(&Selection::Zone(zone.id.clone()));
@@ -25,58 +31,69 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, kin: &Kin, p: &Pa
             (_, ZoneKind::KeepOut) => (kin.painter(painter, &zone.id), p.warning.gamma_multiply(FORBIDDEN)),
             (_, ZoneKind::KeepIn) => (kin.painter(painter, &zone.id), p.contingency),
         };
-        draw_zone(&painter, view, zone, (selected, colour), scene.units(), p);
+        if let Some(seen) = draw_zone(&painter, view, zone, (selected, colour), p) {
+            ask_name(&painter, view, zone, (seen, selected, colour), label(zone, scene.units()), names);
+        }
     }
 }
 
 /// How much of the red of a fault is left for where the flight must not be.
 const FORBIDDEN: f32 = 0.75;
 
-/// `colour`: all of the red, where the path breaks it.
+/// `colour`: all of the red, where the path breaks it. Returns what is in view of it, if it is large enough for a name.
 fn draw_zone(
     painter: &Painter,
     view: &View,
     zone: &Zone,
     (selected, colour): (bool, Color32),
-    units: Units,
     p: &Palette,
-) {
+) -> Option<Rect> {
     let ring: Vec<Point> = chart::outline(zone).iter().map(|at| view.place(*at).into()).collect();
     let bounds = Rect::from_points(&ring.iter().map(|at| Pos2::from(*at)).collect::<Vec<_>>());
     if ring.len() < 3 || !bounds.intersects(view.rect) {
-        return;
+        return None;
     }
     let seen = bounds.intersect(view.rect);
     chart::paint(&mut Screen { painter, view }, &ring, &style(zone.kind, selected, colour, p), seen.into());
-    if bounds.width() > 40.0 {
-        let corners: Vec<Pos2> = match &zone.shape {
-            ZoneShape::Polygon(corners) => corners.iter().map(|at| view.place(*at)).collect(),
-            ZoneShape::Circle { .. } => Vec::new(),
-        };
-        let text = label(zone, units);
-        let galley = painter.layout_no_wrap(text.clone(), FontId::proportional(LABEL), colour);
-        let (at, anchor) = label_at(seen, galley.size(), &corners);
-        text::haloed(painter, at, anchor, &text, LABEL, colour, p);
-    }
+    (bounds.width() > 40.0).then_some(seen)
+}
+
+fn ask_name(
+    painter: &Painter,
+    view: &View,
+    zone: &Zone,
+    (seen, selected, colour): (Rect, bool, Color32),
+    text: String,
+    names: &mut Names,
+) {
+    let corners: Vec<Pos2> = match &zone.shape {
+        ZoneShape::Polygon(corners) => corners.iter().map(|at| view.place(*at)).collect(),
+        ZoneShape::Circle { .. } => Vec::new(),
+    };
+    let galley = painter.layout_no_wrap(text.clone(), FontId::proportional(LABEL), colour);
+    let (rank, spots) = (Rank::Zone.or_selected(selected), spots(seen, galley.size(), &corners));
+    names.ask(painter, Name { rank, spots, text, size: LABEL, colour, ground: Ground::Halo });
 }
 
 /// Size of a zone's name, points.
 const LABEL: f32 = 11.5;
 
-/// The name of a zone is at its upper edge, its middle or its lower edge: where it is clear of the corners and of what tools write
-/// beside them.
-fn label_at(seen: Rect, size: Vec2, corners: &[Pos2]) -> (Pos2, Align2) {
+/// The name of a zone is at its upper edge, its middle, its lower edge or above it: rather where it is clear of the corners and of
+/// what tools write beside them.
+fn spots(seen: Rect, size: Vec2, corners: &[Pos2]) -> [Spot; 4] {
     let beside = |corner: &Pos2| Rect::from_min_max(*corner - vec2(12.0, 12.0), *corner + vec2(160.0, 30.0));
-    let places = [
+    let mut spots = [
         (seen.center_top() + vec2(0.0, 4.0), Align2::CENTER_TOP),
         (seen.center(), Align2::CENTER_CENTER),
         (seen.center_bottom() - vec2(0.0, 4.0), Align2::CENTER_BOTTOM),
+        (seen.center_top() - vec2(0.0, 4.0), Align2::CENTER_BOTTOM),
     ];
     let is_clear = |(at, anchor): &(Pos2, Align2)| {
         let rect = anchor.anchor_size(*at, size);
         corners.iter().all(|corner| !beside(corner).intersects(rect))
     };
-    places.into_iter().find(is_clear).unwrap_or(places[0])
+    spots.sort_by_key(|spot| !is_clear(spot));
+    spots
 }
 
 /// A line on the map and the colour of its halo.
@@ -170,12 +187,12 @@ mod tests {
         let corners =
             |rect: Rect| [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom()];
         let wide = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 300.0));
-        assert_eq!(label_at(wide, size, &corners(wide)).1, Align2::CENTER_TOP);
+        assert_eq!(spots(wide, size, &corners(wide))[0].1, Align2::CENTER_TOP);
         let narrow = Rect::from_min_size(pos2(0.0, 0.0), vec2(200.0, 150.0));
-        assert_eq!(label_at(narrow, size, &corners(narrow)).1, Align2::CENTER_CENTER);
-        assert_eq!(label_at(narrow, size, &[]).1, Align2::CENTER_TOP, "a circle has no corners");
+        assert_eq!(spots(narrow, size, &corners(narrow))[0].1, Align2::CENTER_CENTER);
+        assert_eq!(spots(narrow, size, &[])[0].1, Align2::CENTER_TOP, "a circle has no corners");
         // too small for all of it: where it always was
         let small = Rect::from_min_size(pos2(0.0, 0.0), vec2(60.0, 40.0));
-        assert_eq!(label_at(small, size, &corners(small)).1, Align2::CENTER_TOP);
+        assert_eq!(spots(small, size, &corners(small))[0].1, Align2::CENTER_TOP);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Window;
 use egui::epaint::{ColorMode, TextShape};
-use egui::{Color32, Rect, Shape};
+use egui::{Color32, Order, Rect, Shape};
 use egui_kittest::kittest::Queryable;
 
 /// The texts of a shape.
@@ -77,6 +77,45 @@ impl Window {
             }
         }
         places
+    }
+
+    /// Cards, menus and messages, wherever they are.
+    fn areas(&self) -> Vec<Rect> {
+        self.harness.ctx.memory(|memory| {
+            let layers = memory.layer_ids().filter(|layer| layer.order != Order::Background);
+            let shown = layers.filter(|layer| memory.areas().is_visible(layer));
+            shown.filter_map(|layer| memory.area_rect(layer.id)).collect()
+        })
+    }
+
+    /// Texts on the map that lie over one another; a halo lies beside its own, and what is under a card can't be seen.
+    pub fn names_over_each_other(&self) -> Vec<String> {
+        let Some(map) = self.harness.query_all_by_label("Map").next().map(|node| node.rect()) else {
+            return Vec::new();
+        };
+        let shapes = self.harness.output().shapes.iter();
+        let on_map = shapes.filter(|clipped| clipped.clip_rect.expand(0.5).contains_rect(map));
+        let on_map = on_map.filter(|clipped| map.expand(0.5).contains_rect(clipped.clip_rect));
+        let texts = on_map.flat_map(|clipped| texts(&clipped.shape));
+        let rect_of = |text: &TextShape| text.galley.rect.translate(text.pos.to_vec2()).intersect(map);
+        let areas = self.areas();
+        let is_covered = |rect: &Rect| areas.iter().any(|area| area.intersects(*rect));
+        let mut names: Vec<(&str, Rect)> = Vec::new();
+        for (text, rect) in texts.map(|text| (text.galley.text(), rect_of(text))) {
+            let is_halo = |(name, at): &(&str, Rect)| *name == text && at.min.distance(rect.min) < 3.0;
+            if rect.is_positive() && !is_covered(&rect) && !names.iter().any(is_halo) {
+                names.push((text, rect));
+            }
+        }
+        let mut found = Vec::new();
+        for (i, (a, at)) in names.iter().enumerate() {
+            let over =
+                names.iter().skip(i + 1).filter(|(_, other)| at.shrink(1.5).intersects(other.shrink(1.5)));
+            found.extend(
+                over.map(|(b, other)| format!("names over each other: {a:?} {at} and {b:?} {other}")),
+            );
+        }
+        found
     }
 
     /// The smallest plate that is painted behind something.

@@ -1,6 +1,7 @@
 //! A flight in a small window, or one that shows everything larger: what nobody flies without is in sight.
 
 use super::emergency::in_emergency;
+use super::flying::flying;
 use super::vehicle::position;
 use super::{SQUARE, Window};
 use egui::vec2;
@@ -31,6 +32,19 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
         assert!(!window.shows("Coverage of the whole path"), "{size}");
         window.click("What if");
         assert!(window.shows("Coverage of the whole path"), "{size}: it was asked for");
+    }
+}
+
+#[test]
+fn the_compass_lies_under_no_button() {
+    let (mut window, _) = flying();
+    window.harness.set_size(vec2(960.0, 600.0));
+    window.steps(3);
+    let buttons = ["Follow the aircraft", "What the lines mean"];
+    for north in window.places_of(|text| text == "N") {
+        for button in buttons.map(|button| window.harness.get_by_label(button).rect()) {
+            assert!(!button.intersects(north), "{button} {north}");
+        }
     }
 }
 

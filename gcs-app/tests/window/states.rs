@@ -75,6 +75,7 @@ fn faults(window: &Window) -> Vec<String> {
     faults.extend(cut_off(&widgets, screen));
     faults.extend(overlapping(&widgets));
     faults.extend(cut_texts(window, &widgets));
+    faults.extend(window.names_over_each_other());
     faults
 }
 

@@ -3,8 +3,8 @@
 use super::Canvas;
 use super::pen::length;
 use super::pick::selection;
-use crate::chart::labels::Labels;
 use crate::command::Selection;
+use crate::map::names::{self, Ground, Name, Rank, Spot};
 use crate::map::sketch::{Handle, Handled, numbers};
 use crate::map::text;
 use crate::theme::Palette;
@@ -56,7 +56,7 @@ pub fn draw_faint(painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
         draw(&painter, at, handle, false, false, p);
         labels.extend(label(handle, at, canvas, false));
     }
-    draw_labels(&painter, labels, p);
+    draw_labels(&painter, labels, canvas, p);
 }
 
 /// What a handle that is hovered or dragged has come to.
@@ -71,7 +71,7 @@ pub fn value(handle: &Handle, at: Pos2, canvas: &Canvas<'_>) -> Option<Label> {
         what if what.is_choice() => what.name(canvas.scene.document),
         _ => return None,
     };
-    Some(Label { at: at + vec2(11.0, -9.0), anchor: Align2::LEFT_BOTTOM, text, first: true })
+    Some(Label { rank: Rank::Selected, spots: names::corners_above(at, vec2(11.0, 9.0)), text })
 }
 
 /// Shapes say what a handle is: triangle a fix, circle a waypoint, cross a centre, square a rim or corner.
@@ -125,34 +125,29 @@ pub fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: b
 
 /// A name beside a handle.
 pub struct Label {
-    at: Pos2,
-    anchor: Align2,
+    rank: Rank,
+    spots: [Spot; 4],
     text: String,
-    /// Drawn whatever is there already.
-    first: bool,
 }
 
+/// The name of a fix or a leg; `first`: it is selected or under the pointer. A zone has its own.
 pub fn label(handle: &Handle, at: Pos2, canvas: &Canvas<'_>, first: bool) -> Option<Label> {
-    let (id, offset, anchor) = match &handle.what {
-        Handled::Fix(id) | Handled::Waypoint(id) => (id, vec2(9.0, -1.0), Align2::LEFT_CENTER),
-        // a zone has its name inside
+    let (id, rank, spots) = match &handle.what {
+        Handled::Fix(id) => (id, Rank::Place, names::beside(at, 9.0)),
+        Handled::Waypoint(id) => (id, Rank::Leg, names::beside(at, 9.0)),
         Handled::Centre(id) if canvas.scene.document.plan().zone(id).is_none() => {
-            (id, vec2(0.0, 9.0), Align2::CENTER_TOP)
+            (id, Rank::Leg, names::below(at, 9.0))
         }
         _ => return None,
     };
-    Some(Label { at: at + offset, anchor, text: canvas.scene.document.label(id).to_owned(), first })
+    let text = canvas.scene.document.label(id).to_owned();
+    Some(Label { rank: rank.or_selected(first), spots, text })
 }
 
-/// Names that do not overlap; what is selected or under the pointer comes first.
-pub fn draw_labels(painter: &Painter, mut labels: Vec<Label>, p: &Palette) {
-    labels.sort_by_key(|l| !l.first);
-    let mut placed = Labels::new(painter.clip_rect().into());
-    for label in labels {
-        let size = vec2(label.text.chars().count() as f32 * 7.0, 13.0);
-        let rect = label.anchor.anchor_size(label.at, size);
-        if label.first || placed.is_free(&rect.into()) {
-            placed.take(text::haloed(painter, label.at, label.anchor, &label.text, 12.0, p.text, p).into());
-        }
+/// Asks for them.
+pub fn draw_labels(painter: &Painter, labels: Vec<Label>, canvas: &Canvas<'_>, p: &Palette) {
+    let mut names = canvas.names.borrow_mut();
+    for Label { rank, spots, text } in labels {
+        names.ask(painter, Name { rank, spots, text, size: 12.0, colour: p.text, ground: Ground::Halo });
     }
 }

@@ -29,6 +29,7 @@ mod whole;
 pub(super) use bands::in_force;
 pub use toolbox::Toolbox;
 
+use super::names::Names;
 use super::sketch::Sketch;
 use super::view::View;
 use crate::command::{Queue, Selection};
@@ -39,6 +40,7 @@ use geometry::LatLon;
 use new_leg::Side;
 use pen::Mark;
 use snap::snap;
+use std::cell::RefCell;
 
 /// All tools, in the order of the toolbar. The first one is in use unless another one is chosen.
 fn all() -> Vec<Box<dyn Tool>> {
@@ -88,6 +90,8 @@ pub struct Canvas<'a> {
     pub pointer: Option<Pos2>,
     /// What is drawn near a fix means the fix; Alt holds that off.
     pub snaps: bool,
+    /// Where the names of the plan's places are asked for.
+    pub names: &'a RefCell<Names>,
 }
 
 /// Something that can be grabbed.

@@ -235,7 +235,7 @@ impl Tool for Select {
             labels.extend(label(handle, at, canvas, selected || touch.hovered == Some(key)));
             labels.extend(value(handle, at, canvas).filter(|_| hot));
         }
-        draw_labels(painter, labels, p);
+        draw_labels(painter, labels, canvas, p);
         if let Some(handle) = touch.dragged.and_then(|key| canvas.sketch.handles.get(key)) {
             self.paint_drag(painter, handle, canvas, p);
         }
