@@ -4,7 +4,7 @@ use super::chips;
 use super::graticule::{Round, round_length};
 use super::names::Names;
 use super::text;
-use super::tools::Toolbox;
+use super::tools::{Card, Toolbox};
 use super::view::View;
 use crate::assets;
 use crate::command::{Queue, ViewCommand};
@@ -46,7 +46,7 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, nam
     let lift = if named.left() < view.rect.left() + SCALE { SOURCES } else { 0.0 };
     let map = view.rect.with_max_y(view.rect.bottom() - lift);
     let scale = scale(painter, view, map, scene.units(), p);
-    let (toolbar, buttons) = (toolbar_at(view.rect, tools), buttons_at(view.rect, scene));
+    let (toolbar, buttons) = (toolbar_at(view.rect, tools, scene), buttons_at(view.rect, scene));
     for taken in [named, scale, toolbar, buttons] {
         names.keep_clear(taken);
     }
@@ -68,8 +68,9 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, nam
 }
 
 /// What the tools take of the map.
-fn toolbar_at(map: Rect, tools: usize) -> Rect {
-    let (columns, rows) = (tools.div_ceil(in_column(map)), tools.min(in_column(map)));
+fn toolbar_at(map: Rect, tools: usize, scene: &Scene<'_>) -> Rect {
+    let shown = if are_folded(map, tools, scene) { 1 } else { tools };
+    let (columns, rows) = (shown.div_ceil(in_column(map)), shown.min(in_column(map)));
     Rect::from_min_size(map.left_top() + vec2(12.0, 12.0), TOOL * vec2(columns as f32, rows as f32))
 }
 
@@ -77,6 +78,11 @@ fn toolbar_at(map: Rect, tools: usize) -> Rect {
 fn buttons_at(map: Rect, scene: &Scene<'_>) -> Rect {
     let more = usize::from(map.width() < NARROW) + usize::from(scene.vehicle.position.is_some());
     Rect::from_min_size(map.right_top() + vec2(-44.0, 12.0), vec2(34.0, TOOL * (3 + more) as f32))
+}
+
+/// In flight a map is for looking: on a small one, where the tools need more than one column, they are behind one button.
+fn are_folded(map: Rect, tools: usize, scene: &Scene<'_>) -> bool {
+    scene.vehicle.is_airborne() && map.width() < NARROW && tools > in_column(map)
 }
 
 /// North is up.
@@ -207,22 +213,22 @@ pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &m
 pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut Queue) {
     let map = ui.min_rect();
     let cards: Vec<_> = tools.cards().collect();
-    let toolbar = toolbar_at(map, cards.len());
+    let toolbar = toolbar_at(map, cards.len(), scene);
     let beside_tools = toolbar.right() + 4.0 - map.left();
     let mut shown = Rect::NOTHING;
-    for (index, cards) in cards.chunks(in_column(map)).enumerate() {
-        let corner = map.left_top() + vec2(12.0 + TOOL * index as f32, 12.0);
-        let area = Rect::from_min_size(corner, vec2(34.0, map.height().max(40.0)));
-        let salt = ("map tools", index);
-        let mut column = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt(salt));
-        column.spacing_mut().item_spacing.y = 4.0;
-        for (card, in_use) in cards {
-            let name = format!("{} ({})", card.name, card.key.name());
-            if button(&mut column, card.symbol, &name, *in_use).clicked() {
-                queue.view(ViewCommand::Tool(card.id));
-            }
+    if are_folded(map, cards.len(), scene) {
+        let mut folded = ui.new_child(egui::UiBuilder::new().max_rect(toolbar).id_salt("folded tools"));
+        shown = folded_tools(&mut folded, &cards, queue);
+    } else {
+        for (index, cards) in cards.chunks(in_column(map)).enumerate() {
+            let corner = map.left_top() + vec2(12.0 + TOOL * index as f32, 12.0);
+            let area = Rect::from_min_size(corner, vec2(34.0, map.height().max(40.0)));
+            let salt = ("map tools", index);
+            let mut column = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt(salt));
+            column.spacing_mut().item_spacing.y = 4.0;
+            cards.iter().for_each(|card| tool_button(&mut column, card, queue));
+            shown |= column.min_rect();
         }
-        shown |= column.min_rect();
     }
     tour::mark(ui.ctx(), tour::TOOLS, shown);
     let Some(status) = tools.status(scene) else {
@@ -243,6 +249,31 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
         }
     });
     ui.data_mut(|data| data.insert_temp(said_by_tool(), chip.min_rect()));
+}
+
+/// A tool's card, and whether it is in use.
+type ToolCard = (&'static Card, bool);
+
+fn tool_button(ui: &mut Ui, (card, in_use): &ToolCard, queue: &mut Queue) {
+    let name = format!("{} ({})", card.name, card.key.name());
+    if button(ui, card.symbol, &name, *in_use).clicked() {
+        queue.view(ViewCommand::Tool(card.id));
+    }
+}
+
+/// A button that shows the tool in use, and all of them when it is pressed. Returns where it is.
+fn folded_tools(ui: &mut Ui, cards: &[ToolCard], queue: &mut Queue) -> Rect {
+    /// So many are in a row.
+    const ROW: usize = 4;
+    let in_use = cards.iter().find(|(_, in_use)| *in_use).or(cards.first()).map(|(card, _)| *card);
+    let symbol = in_use.map_or("", |card| card.symbol);
+    let response = button(ui, symbol, "Tools of the map", false);
+    Popup::menu(&response).show(|ui| {
+        for row in cards.chunks(ROW) {
+            ui.horizontal(|ui| row.iter().for_each(|card| tool_button(ui, card, queue)));
+        }
+    });
+    response.rect
 }
 
 fn said_by_tool() -> egui::Id {

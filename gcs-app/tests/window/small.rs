@@ -35,6 +35,28 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
     }
 }
 
+/// The tool in use.
+fn tool(window: &Window) -> &'static str {
+    window.app().map().tool_cards().into_iter().find(|(_, in_use)| *in_use).unwrap().0.id
+}
+
+#[test]
+fn in_flight_the_tools_of_a_small_map_are_behind_one_button() {
+    let (mut window, _) = flying();
+    assert!(window.shows("Measure (M)"), "there is room");
+    window.harness.set_size(vec2(960.0, 600.0));
+    window.steps(3);
+    assert!(!window.shows("Measure (M)"));
+    window.click("Tools of the map");
+    window.click("Measure (M)");
+    assert_eq!(tool(&window), "measure");
+    window.press(egui::Key::V);
+    assert_eq!(tool(&window), "select");
+    let map = window.harness.get_by_label("Map").rect();
+    let button = window.harness.get_by_label("Tools of the map").rect();
+    assert!(button.right() < map.left() + 50.0, "{button} {map}");
+}
+
 #[test]
 fn the_compass_lies_under_no_button() {
     let (mut window, _) = flying();
