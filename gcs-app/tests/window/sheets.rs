@@ -1,4 +1,4 @@
-//! The pictures of every state without a vehicle, at every size in both themes: a sheet each, kept in `tests/pictures/states`.
+//! The pictures of every state, at every size in both themes: a sheet each, kept in `tests/pictures/states`.
 
 use super::states::{SIZES, THEMES, Widget, examine, opened, placed, widgets};
 use super::{SQUARE, Window, states};
@@ -77,6 +77,16 @@ fn of_selections_and_tools() {
 #[test]
 fn of_panels_and_dialogs() {
     states::panels_and_dialogs(in_all);
+}
+
+#[test]
+fn of_a_flight() {
+    states::flight(in_all);
+}
+
+#[test]
+fn of_questions_and_emergencies() {
+    states::questions_and_emergencies(in_all);
 }
 
 /// Whatever is read or used: each in turn is taken out of the picture.
