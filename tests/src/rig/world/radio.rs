@@ -183,8 +183,7 @@ impl Relay {
     /// told it is in no simulation, and hears nothing more.
     fn begin(&mut self, conditions: Vec<Control>) {
         let calm = Wish::Wind { east_mps: 0.0, north_mps: 0.0 };
-        for wish in
-            [calm, Wish::Gps(true), Wish::Engine(true), Wish::Battery(FULL_PERCENT), Wish::Fence(None)]
+        for wish in [calm, Wish::Gps(true), Wish::EngineAsNew, Wish::Battery(FULL_PERCENT), Wish::Fence(None)]
         {
             self.voice.wish(wish);
         }

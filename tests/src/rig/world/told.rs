@@ -20,6 +20,8 @@ pub enum Wish {
     Gps(bool),
     /// Whether the engine gives what it is asked for.
     Engine(bool),
+    /// What an earlier flight has done to the engine is over, as far as that can be told.
+    EngineAsNew,
     /// How much the battery has left, percent.
     Battery(f32),
     /// A fence of the autopilot's own, so many metres around home, behind which it returns; `None`: no more.
@@ -96,7 +98,8 @@ fn arduplane(wish: Wish) -> Option<Vec<Order>> {
         Wish::Mode(_) => return None,
         Wish::Gps(is_there) => vec![real("SIM_GPS1_ENABLE", f64::from(u8::from(is_there)))],
         // a mask of servos; the throttle is the third one. SIM_ENGINE_MUL, by which it is multiplied, is 0 by default
-        Wish::Engine(works) => vec![real("SIM_ENGINE_FAIL", if works { 0.0 } else { 4.0 })],
+        Wish::Engine(false) => vec![real("SIM_ENGINE_FAIL", 4.0)],
+        Wish::Engine(true) | Wish::EngineAsNew => vec![real("SIM_ENGINE_FAIL", 0.0)],
         // the first battery
         Wish::Battery(percent) => vec![Order::Do(MavCmd::MAV_CMD_BATTERY_RESET, [1.0, percent, 0.0])],
         // a circle, and a return; the radius is not taken away with it
@@ -124,7 +127,8 @@ fn px4(wish: Wish) -> Option<Vec<Order>> {
         Wish::Mode(_) => return None,
         Wish::Gps(is_there) => vec![bits("SIM_GPS_USED", if is_there { 10 } else { 0 })],
         // how strong it was is not known: whoever has stopped it starts the autopilot anew
-        Wish::Engine(true) => vec![],
+        Wish::Engine(true) => return None,
+        Wish::EngineAsNew => vec![],
         Wish::Engine(false) => vec![real("SIH_F_T_MAX", 0.0)],
         // it runs down to this within the first minute of the flight
         Wish::Battery(percent) => vec![real("SIM_BAT_MIN_PCT", percent.into())],
@@ -163,6 +167,15 @@ mod tests {
         let lost = Simulation::Px4.orders(Wish::Gps(true)).unwrap();
         let [Order::Set(_, value, MavParamType::MAV_PARAM_TYPE_INT32)] = lost[..] else { panic!("{lost:?}") };
         assert_eq!(value.to_bits(), 10);
+    }
+
+    #[test]
+    fn an_engine_that_cannot_be_started_again_is_refused_and_not_passed_over() {
+        assert_eq!(Simulation::Px4.orders(Wish::Engine(true)), None);
+        assert_eq!(Simulation::Px4.orders(Wish::EngineAsNew), Some(vec![]), "each flight begins so");
+        for wish in [Wish::Engine(true), Wish::EngineAsNew] {
+            assert_eq!(told(Simulation::ArduPlane, wish), [("SIM_ENGINE_FAIL", 0.0)]);
+        }
     }
 
     #[test]
