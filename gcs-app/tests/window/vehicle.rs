@@ -108,33 +108,13 @@ impl Window {
     }
 
     pub fn receive_gateway(&mut self, alarms: Vec<usal::contract::Alarm>) {
-        let value = GatewayStatus {
-            state: GatewayState::Nav,
-            cause: "waypoints".into(),
-            armed: true,
-            autopilot_mode: "AUTO".into(),
-            autopilot_age_s: 0.1,
-            fp_manager: None,
-            fp_manager_age_s: Some(0.1),
-            safe_return_in_s: None,
-            alarms,
-        };
+        let value = GatewayStatus { cause: "waypoints".into(), alarms, ..gateway_status(GatewayState::Nav) };
         self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
     }
 
     /// Standing disarmed, or flying armed.
     pub fn receive_gateway_state(&mut self, state: GatewayState) {
-        let value = GatewayStatus {
-            state,
-            cause: "for the test".into(),
-            armed: state != GatewayState::Stop,
-            autopilot_mode: "AUTO".into(),
-            autopilot_age_s: 0.1,
-            fp_manager: None,
-            fp_manager_age_s: Some(0.1),
-            safe_return_in_s: None,
-            alarms: Vec::new(),
-        };
+        let value = gateway_status(state);
         self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
     }
 
@@ -149,5 +129,20 @@ impl Window {
 
     pub fn answer(&mut self, ticket: Ticket, result: Result<Reply, String>) {
         self.send(LinkEvent::Answer { ticket, result });
+    }
+}
+
+/// Of a gateway in this state.
+fn gateway_status(state: GatewayState) -> GatewayStatus {
+    GatewayStatus {
+        state,
+        cause: "for the test".into(),
+        armed: state != GatewayState::Stop,
+        autopilot_mode: "AUTO".into(),
+        autopilot_age_s: 0.1,
+        fp_manager: None,
+        fp_manager_age_s: Some(0.1),
+        safe_return_in_s: None,
+        alarms: Vec::new(),
     }
 }
