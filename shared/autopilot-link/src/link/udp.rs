@@ -1,6 +1,7 @@
 //! Datagrams. The return path belongs to those who were recognised, not to any stranger.
 
 use super::{Event, Peer, Stats};
+use socket2::SockRef;
 use std::collections::VecDeque;
 use std::io;
 use std::net::SocketAddr;
@@ -9,6 +10,10 @@ use tokio::net::{UdpSocket, lookup_host};
 
 /// The largest datagram.
 const LARGEST: usize = 65_536;
+
+/// What the system is asked to keep while we do something else: a second of 5,000 messages, each of which it counts as some 800 bytes. It
+/// may grant less.
+const KEEPS: usize = 4 << 20;
 
 /// So many who were not recognised are remembered.
 const UNKNOWN_MAX: usize = 16;
@@ -60,6 +65,7 @@ pub struct Udp {
 impl Udp {
     /// Exchanges datagrams with those that the rule allows.
     pub fn new(socket: UdpSocket, rule: Partners) -> Self {
+        keep_more(&socket);
         let mut udp = Self { socket, rule, partners: vec![], unknown: VecDeque::new(), given: 0 };
         if let Partners::Only(address) = rule {
             udp.admit(Instant::now(), address);
@@ -168,9 +174,30 @@ impl Udp {
     }
 }
 
+/// By itself a system keeps so little that a moment's flood pushes out what the autopilot says.
+fn keep_more(socket: &UdpSocket) {
+    let socket = SockRef::from(socket);
+    let before = socket.recv_buffer_size().unwrap_or(0);
+    // what a system has set to more is not made less
+    let asked = if before < KEEPS { socket.set_recv_buffer_size(KEEPS) } else { Ok(()) };
+    match asked.and_then(|()| socket.recv_buffer_size()) {
+        Ok(granted) => tracing::info!(granted, "bytes of datagrams that wait to be read"),
+        Err(error) => tracing::warn!(%error, "the system keeps no more datagrams than by itself"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[tokio::test]
+    async fn more_is_kept_than_by_itself() {
+        let socket = UdpSocket::bind("127.0.0.1:0").await.unwrap();
+        let before = SockRef::from(&socket).recv_buffer_size().unwrap();
+        let udp = Udp::new(socket, Partners::AUTOPILOT);
+        let after = SockRef::from(&udp.socket).recv_buffer_size().unwrap();
+        assert!(after > before || before >= KEEPS, "{before} {after}");
+    }
 
     #[tokio::test]
     async fn who_is_no_longer_recognised_loses_his_place_though_he_goes_on_talking() {
