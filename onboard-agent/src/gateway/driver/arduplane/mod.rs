@@ -35,6 +35,7 @@ pub const DIALECT: Dialect = Dialect {
     holds_at_end: false,
     forgets_speed: true,
     speed_repeats: 0,
+    flown: [4, 7],
     need: None,
     advice: &ADVICE,
     manner: Manner {

@@ -44,6 +44,8 @@ pub struct Dialect {
     pub forgets_speed: bool,
     /// An airspeed is commanded again with so many heartbeats after it: it may not have been taken, whatever was answered.
     pub speed_repeats: u8,
+    /// Major and minor version with which its habits were found out and whole missions flown, in its own simulation.
+    pub flown: [u8; 2],
     /// The parameter that decides whether it can be flown.
     pub need: Option<&'static Need>,
     /// Parameters that should be so before it is flown.

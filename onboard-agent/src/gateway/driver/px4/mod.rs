@@ -37,6 +37,7 @@ pub const FIXED_WING: Dialect = Dialect {
     forgets_speed: true,
     // one that comes in the moment in which a take-off ends is said to be accepted, and flown from the next entry on
     speed_repeats: 2,
+    flown: [1, 18],
     need: Some(&NO_LANDING_NEEDED),
     advice: &ADVICE,
     // it tells its reasons only where it hears a ground station

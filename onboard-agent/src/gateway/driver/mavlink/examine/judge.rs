@@ -21,7 +21,7 @@ pub fn findings(looked: &Looked, now: Time) -> Vec<Finding> {
         return vec![to_do("autopilot", unsupported((beat.autopilot, beat.mavtype)))];
     };
     let mut all = vec![ok("autopilot", format!("{}, system {}", dialect.name, system(looked)))];
-    all.push(version(looked.version));
+    all.push(version(looked.version, dialect.flown));
     all.push(place(beat));
     all.extend(needed(looked));
     all.extend(advised(looked));
@@ -49,14 +49,32 @@ fn system(looked: &Looked) -> u8 {
     looked.session.peer().map_or(0, |peer| peer.system)
 }
 
-/// Major, minor and patch are a byte each, the highest first.
-fn version(said: Option<u32>) -> Finding {
-    match said {
-        Some(version) if version > 0 => {
-            let [major, minor, patch, _] = version.to_be_bytes();
-            ok("version", format!("{major}.{minor}.{patch}"))
-        }
-        _ => note("version", "it does not say its version"),
+/// Major, minor, patch and kind of release are a byte each, the highest first.
+fn version(said: Option<u32>, flown: [u8; 2]) -> Finding {
+    let Some([major, minor, patch, kind]) = said.filter(|version| *version > 0).map(u32::to_be_bytes) else {
+        return note("version", "it does not say its version");
+    };
+    let version = format!("{major}.{minor}.{patch}{}", release(kind));
+    let [flown_major, flown_minor] = flown;
+    if [major, minor] == flown {
+        return ok("version", format!("{version}, of the {major}.{minor} that this agent has flown"));
+    }
+    note(
+        "version",
+        format!(
+            "{version}: this agent has flown {flown_major}.{flown_minor}; fly this one in its simulation first, for it may have other habits"
+        ),
+    )
+}
+
+/// As `FIRMWARE_VERSION_TYPE` says it.
+fn release(kind: u8) -> &'static str {
+    match kind {
+        0..64 => "-dev",
+        64..128 => "-alpha",
+        128..192 => "-beta",
+        192..255 => "-rc",
+        255 => "",
     }
 }
 
@@ -164,5 +182,21 @@ fn arming(looked: &Looked, now: Time) -> Finding {
         (Some(false), Some(said)) => to_do("arming", format!("it would refuse to arm: {said}")),
         (None, Some(said)) => to_do("arming", format!("it warns: {said}")),
         (None, None) => note("arming", "it does not say whether it would arm, and warns of nothing"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_version_that_was_not_flown_is_told_with_the_one_that_was() {
+        let flown = version(Some(0x0407_0000), [4, 7]);
+        assert_eq!((flown.degree, flown.says.starts_with("4.7.0-dev, ")), (Degree::Ok, true), "{flown:?}");
+        let other = version(Some(0x0405_01FF), [4, 7]);
+        assert_eq!(other.degree, Degree::Note);
+        assert!(other.says.starts_with("4.5.1: ") && other.says.contains("4.7"), "{other:?}");
+        assert_eq!(version(None, [4, 7]).degree, Degree::Note);
+        assert_eq!(version(Some(0), [4, 7]).degree, Degree::Note);
     }
 }
