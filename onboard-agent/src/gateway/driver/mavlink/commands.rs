@@ -1,4 +1,11 @@
 //! Commands: sent until acknowledged, and done when the autopilot shows that it obeyed.
+//!
+//! Whoever takes over right after one must not be overruled by its repetition. So an order that changes the mode is sent again only
+//! where the autopilot still shows the mode before it: one that shows the ordered mode has obeyed, whatever became of its answer, and
+//! one that shows a third mode has been given another order by somebody else.
+
+#[cfg(test)]
+mod tests;
 
 use super::Peer;
 use super::rto::Rto;
@@ -14,6 +21,8 @@ const TRIES: u32 = 16;
 const EFFECT: Duration = Duration::from_secs(3);
 /// On a link that loses so much that nothing is shown, it is waited for so long.
 const UNSEEN: Duration = Duration::from_secs(15);
+/// A mode that was not shown for so long is ordered again blindly: heartbeats come once a second.
+const BLIND: Duration = Duration::from_millis(1600);
 /// Commands that wait; more than the core ever gives.
 const LONGEST_QUEUE: usize = 32;
 /// `MAV_CMD_COMPONENT_ARM_DISARM`: disarm even in flight.
@@ -84,6 +93,58 @@ struct Given {
     tries: u32,
     acked: Option<Time>,
     sent: Time,
+    /// Mode and arming as they were shown before it.
+    before: Option<(u32, bool)>,
+    /// When it was sent last.
+    sent_last: Time,
+    /// The mode before was shown since then.
+    is_as_before: bool,
+}
+
+impl Given {
+    fn new(client: Client, command: Command, before: Option<(u32, bool)>, now: Time) -> Self {
+        let (acked, sent, sent_last) = (None, now, now);
+        Self { client, command, tries: 1, acked, sent, before, sent_last, is_as_before: false }
+    }
+
+    /// Before that it is not sent again: somebody might be overruled.
+    fn waits_until(&self) -> Option<Time> {
+        (changes_mode(self.command) && !self.is_as_before).then(|| self.sent_last + BLIND)
+    }
+
+    /// What is shown is its effect, or is not; `None`: says nothing of it.
+    fn is_obeyed(&self, shown: Shown) -> Option<bool> {
+        Some(match (self.command, shown) {
+            (Command::Current(wanted), Shown::Current(seq)) => wanted == seq,
+            (Command::Mode(wanted), Shown::Mode(mode, _)) => wanted.shown == mode,
+            (Command::GoTo { shows: Some(wanted), .. }, Shown::Mode(mode, _)) => wanted == mode,
+            (Command::Arm, Shown::Mode(_, armed)) => armed,
+            (Command::Disarm, Shown::Mode(_, armed)) => !armed,
+            _ => return None,
+        })
+    }
+
+    /// Something else was shown before: what is shown now came of it, though its answer was not heard.
+    fn has_changed(&self, shown: Shown) -> bool {
+        match (shown, self.before) {
+            (Shown::Mode(mode, armed), Some((mode_before, armed_before))) => match self.command {
+                Command::Arm | Command::Disarm => armed != armed_before,
+                _ => mode != mode_before,
+            },
+            _ => false,
+        }
+    }
+
+    /// It shows neither the mode before nor the one that was ordered: somebody else has chosen it.
+    fn is_overruled(&self, shown: Shown) -> bool {
+        let (Shown::Mode(mode, _), Some((before, _))) = (shown, self.before) else { return false };
+        let wanted = match self.command {
+            Command::Mode(wanted) => wanted.shown,
+            Command::GoTo { shows, .. } => shows.unwrap_or(before),
+            _ => return false,
+        };
+        mode != before && mode != wanted
+    }
 }
 
 /// The queue of commands; one is in flight at a time.
@@ -92,6 +153,8 @@ pub struct Commands {
     queue: VecDeque<(Client, Command)>,
     flight: Option<Given>,
     rto: Rto,
+    /// Mode and arming as they were shown last.
+    seen: Option<(u32, bool)>,
 }
 
 /// Why a command was not carried out.
@@ -141,7 +204,7 @@ impl Commands {
             None => (!self.queue.is_empty()).then_some(Time::ZERO),
             Some(given) => match given.acked {
                 Some(at) => Some(at + UNSEEN),
-                None => self.rto.deadline(),
+                None => self.rto.deadline().max(given.waits_until()),
             },
         }
     }
@@ -152,7 +215,7 @@ impl Commands {
         if self.flight.is_none()
             && let Some((client, command)) = self.queue.pop_front()
         {
-            self.flight = Some(Given { client, command, tries: 1, acked: None, sent: now });
+            self.flight = Some(Given::new(client, command, self.seen, now));
             out.extend((0..self.rto.copies()).map(|_| encode(command, 0, peer)));
             self.rto.start(now);
         }
@@ -170,13 +233,14 @@ impl Commands {
                 self.end(Err(why.into()))
             }
             Some(_) => None,
-            None if !self.rto.expired(now) => None,
+            None if given.waits_until().is_some_and(|until| now < until) || !self.rto.expired(now) => None,
             None if given.tries >= TRIES => {
                 let why = format!("the autopilot did not answer {:?}", given.command);
                 self.end(Err(why.into()))
             }
             None => {
                 given.tries += 1;
+                (given.sent_last, given.is_as_before) = (now, false);
                 let message = encode(given.command, given.tries as u8 - 1, peer);
                 out.extend((0..self.rto.copies()).map(|_| message.clone()));
                 None
@@ -221,25 +285,34 @@ impl Commands {
 
     /// The autopilot shows something that may be a command's effect.
     pub fn shown(&mut self, now: Time, shown: Shown) -> Option<Ended> {
-        let (given, at) = self.flight.as_ref().and_then(|g| Some((g, g.acked?)))?;
-        let obeyed = match (given.command, shown) {
-            (Command::Current(wanted), Shown::Current(seq)) => wanted == seq,
-            (Command::Mode(wanted), Shown::Mode(mode, _)) => wanted.shown == mode,
-            (Command::GoTo { shows: Some(wanted), .. }, Shown::Mode(mode, _)) => wanted == mode,
-            (Command::Arm, Shown::Mode(_, armed)) => armed,
-            (Command::Disarm, Shown::Mode(_, armed)) => !armed,
-            _ => return None,
-        };
-        if obeyed {
-            return self.end(Ok(()));
+        if let Shown::Mode(mode, armed) = shown {
+            self.seen = Some((mode, armed));
         }
-        let why = format!("the autopilot accepted {:?} and did not do it", given.command);
-        if now >= at + EFFECT { self.end(Err(why.into())) } else { None }
+        let given = self.flight.as_mut()?;
+        if given.is_overruled(shown) {
+            let why = format!("the mode was changed by somebody else while {:?} was ordered", given.command);
+            return self.end(Err(why.into()));
+        }
+        given.is_as_before |= matches!(shown, Shown::Mode(..));
+        match (given.is_obeyed(shown)?, given.acked) {
+            (true, Some(_)) => self.end(Ok(())),
+            (true, None) if given.has_changed(shown) => self.end(Ok(())),
+            (false, Some(at)) if now >= at + EFFECT => {
+                let why = format!("the autopilot accepted {:?} and did not do it", given.command);
+                self.end(Err(why.into()))
+            }
+            _ => None,
+        }
     }
 }
 
 fn is_urgent(command: Command) -> bool {
     matches!(command, Command::Terminate | Command::ForceDisarm)
+}
+
+/// It takes the aircraft from whoever has chosen another mode.
+fn changes_mode(command: Command) -> bool {
+    matches!(command, Command::Mode(_) | Command::GoTo { .. })
 }
 
 /// The command has an effect that the autopilot shows.

@@ -308,7 +308,7 @@ impl Driver for MavlinkDriver {
                 self.list.forget();
                 self.speed = speed::Speed::default();
             }
-            Order::HandsOff(off) => self.list.hands_off = off,
+            Order::HandsOff(off) => self.keep_hands(off),
             Order::Adopt(known) => self.list.adopt(id, known),
             Order::Steer(aim) => self.steer(now, id, aim, &mut events),
             Order::Arm => self.arm(now, id, &mut events),

@@ -80,3 +80,28 @@ fn why_the_autopilot_took_it_is_told_in_its_own_words() {
     let told = "the autopilot was switched to RTL, and not by the gateway (it says: GCS Failsafe)";
     assert_eq!(cause, told);
 }
+
+/// He may do so before the heartbeat that shows what was ordered.
+#[test]
+fn a_pilot_who_takes_over_right_after_an_order_of_ours_keeps_the_aircraft() {
+    let direct = GatewayRequest::Direct {
+        heading_deg: 90.0,
+        altitude_amsl_m: super::GROUND_M + 150.0,
+        airspeed_mps: 24.0,
+    };
+    for (personality, request, obeyed) in [
+        (super::Personality::ArduPlane, GatewayRequest::Hold, false),
+        (super::Personality::Px4, direct, true),
+    ] {
+        let mut flight = Flight::in_flight(personality, 3);
+        flight.ask(request).unwrap();
+        if obeyed {
+            flight.run_until(5.0, "obeyed", |f| f.sim.autopilot.mode() != sim::Mode::Auto);
+        }
+        flight.run(0.3);
+        assert!(flight.sim.autopilot.set_mode(sim::Mode::FlyByWireA));
+        flight.run(12.0);
+        assert_eq!(flight.sim.autopilot.mode(), sim::Mode::FlyByWireA, "{personality}");
+        assert_eq!(flight.state(), GatewayState::Manual, "{personality}");
+    }
+}

@@ -3,6 +3,7 @@
 mod acks;
 mod fake;
 mod met;
+mod pilot;
 mod standing;
 mod summary;
 
