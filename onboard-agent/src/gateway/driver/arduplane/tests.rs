@@ -1,5 +1,7 @@
 //! Transfers against the simulator's mission protocol, with what happens on bad links.
 
+mod addressed;
+
 use super::super::mavlink::commands::{Client, Command, ModeNumber};
 use super::super::mavlink::item::{Item, ItemKind, Pass, matches};
 use super::super::mavlink::mission::Outcome;

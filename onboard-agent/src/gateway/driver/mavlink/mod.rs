@@ -33,3 +33,9 @@ pub use autopilot_link::frame::Sender as Peer;
 fn mission_type() -> MavMissionType {
     MavMissionType::MAV_MISSION_TYPE_MISSION
 }
+
+/// A message with these targets is for `own`: it is named, or everybody is (0), or no target is.
+fn is_for(own: Peer, system: Option<u8>, component: Option<u8>) -> bool {
+    let to = |own: u8, target: Option<u8>| target.is_none_or(|target| target == 0 || target == own);
+    to(own.system, system) && to(own.component, component)
+}

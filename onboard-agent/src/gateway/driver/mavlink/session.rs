@@ -5,7 +5,6 @@
 
 mod logs;
 
-use super::Peer;
 use super::commands::{Client, Command, Commands, Refusal, Shown};
 use super::dialect::Manner;
 use super::links::{Links, Received};
@@ -14,11 +13,13 @@ use super::mission::{Mission, Outcome};
 use super::streams::Streams;
 use super::telemetry::Readings;
 use super::words::Words;
+use super::{Peer, is_for};
 use crate::gateway::driver::{FromLink, Setup, SignedBy};
 use crate::gateway::order::{Report, Time};
 use autopilot_link::Outbox;
 use autopilot_link::frame::{Decoder, Frame, Sender};
 use autopilot_link::signing::Signing;
+use mavlink::Message;
 use mavlink::dialects::ardupilotmega::*;
 use std::time::Duration;
 
@@ -250,13 +251,15 @@ impl Session {
         if self.links.take_reboot() {
             events.push(SessionEvent::Telemetry(Report::Rebooted));
         }
-        self.streams.seen(now, mavlink::Message::message_id(message));
+        self.streams.seen(now, message.message_id());
+        // what it answers to or asks of another station, of which several may do something to its list
+        if !is_for(self.own(), message.target_system_id(), message.target_component_id()) {
+            return self.tick(now, events);
+        }
         match message {
             MavMessage::HEARTBEAT(beat) => self.on_heartbeat(now, beat, events),
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => self.synchronise(now, sync.ts1),
             MavMessage::TIMESYNC(sync) => self.links.time_answered(now, link, sync.ts1),
-            // an answer to another station's
-            MavMessage::COMMAND_ACK(ack) if !is_for(self.own(), ack) => {}
             MavMessage::COMMAND_ACK(ack) => {
                 let ended = self.commands.acked(now, ack);
                 events.extend(ended.map(|(client, result)| SessionEvent::Command(client, result)));
@@ -361,12 +364,6 @@ impl Session {
             target_component,
         }));
     }
-}
-
-/// Older autopilots do not say whom they answer.
-fn is_for(own: Sender, ack: &COMMAND_ACK_DATA) -> bool {
-    let system = [0, own.system].contains(&ack.target_system);
-    system && [0, own.component].contains(&ack.target_component)
 }
 
 /// A datagram has an autopilot's heartbeat in it, which is believed if there is a key.

@@ -1,7 +1,7 @@
 //! What the mirror answers: what is asked for, as far as it is known; to orders, that they are denied.
 
-use super::super::Peer;
 use super::super::mission::Entry;
+use super::super::{Peer, is_for};
 use super::Mirror;
 use crate::gateway::order::Time;
 use autopilot_link::frame::Frame;
@@ -172,12 +172,6 @@ impl Mirror {
 
 fn denied() -> MavResult {
     MavResult::MAV_RESULT_DENIED
-}
-
-/// A message for these is for the autopilot; without a target it is for everybody.
-fn is_for(autopilot: Peer, system: Option<u8>, component: Option<u8>) -> bool {
-    let to = |own: u8, target: Option<u8>| target.is_none_or(|target| target == 0 || target == own);
-    to(autopilot.system, system) && to(autopilot.component, component)
 }
 
 fn entry(list: &[Entry], seq: u16, mission_type: MavMissionType) -> Option<&Entry> {

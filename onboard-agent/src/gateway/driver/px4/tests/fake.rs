@@ -231,7 +231,8 @@ impl Px4 {
             return self.say("WPM: REJ. CMD: Req. WP was unexpected");
         }
         if let Some(item) = self.list.get(usize::from(seq)).cloned() {
-            self.out.push(MavMessage::MISSION_ITEM_INT(item));
+            let for_us = MISSION_ITEM_INT_DATA { target_system: 1, target_component: 191, ..item };
+            self.out.push(MavMessage::MISSION_ITEM_INT(for_us));
         }
     }
 
