@@ -7,6 +7,7 @@
 use super::Peer;
 use super::clocks::{Clock, Newest, stamp};
 use super::statistics::Statistics;
+use super::unknown::Unknown;
 use crate::gateway::driver::FromLink;
 use crate::gateway::order::Time;
 use autopilot_link::Outbox;
@@ -108,6 +109,7 @@ pub struct Links {
     /// What came lately, of several links.
     copies: Copies,
     signing: Option<Signing>,
+    unknown: Unknown,
     /// When refused messages were logged, and how many there were.
     logged: (Time, u64),
 }
@@ -145,6 +147,7 @@ impl Links {
             autopilot: None,
             copies: Copies::default(),
             signing,
+            unknown: Unknown::default(),
             logged: (Time::ZERO, 0),
         }
     }
@@ -159,8 +162,8 @@ impl Links {
         }
     }
 
-    /// The next message of what was received; `pass` is given its frame.
-    pub fn next(&mut self, now: Time, pass: impl FnOnce(&Frame<'_>)) -> Option<Received> {
+    /// The next message of what was received; `pass` is given its frame, and those of messages that the dialect does not have.
+    pub fn next(&mut self, now: Time, mut pass: impl FnMut(&Frame<'_>)) -> Option<Received> {
         let several = self.links.len() > 1;
         for (number, link) in self.links.iter_mut().enumerate() {
             while let Some(frame) = link.decoder.next_frame() {
@@ -190,7 +193,9 @@ impl Links {
                 if counts {
                     pass(&frame);
                 }
-                return Some(Received { link: number, sender, message });
+                if message.is_some() || !self.unknown.is(frame.id) {
+                    return Some(Received { link: number, sender, message });
+                }
             }
         }
         None

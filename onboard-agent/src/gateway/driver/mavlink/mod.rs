@@ -22,6 +22,7 @@ mod statistics;
 mod streams;
 mod telemetry;
 mod transfer;
+mod unknown;
 mod words;
 
 use mavlink::dialects::ardupilotmega::MavMissionType;

@@ -120,9 +120,9 @@ impl Session {
 
     /// The next message of what was received and is believed, whoever sent it; the mirror gets those of the autopilot.
     pub fn next_message(&mut self, now: Time) -> Option<Received> {
-        let (mirror, peer) = (self.mirror.as_mut(), self.peer);
+        let (mut mirror, peer) = (self.mirror.as_mut(), self.peer);
         let pass = |frame: &Frame<'_>| {
-            if let Some(mirror) = mirror.filter(|_| peer == Some(frame.sender)) {
+            if let Some(mirror) = mirror.as_mut().filter(|_| peer == Some(frame.sender)) {
                 mirror.pass(frame);
             }
         };

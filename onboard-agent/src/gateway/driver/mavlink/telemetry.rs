@@ -58,6 +58,10 @@ impl Readings {
     /// Takes in a message. What makes no sense is counted in `ignored`.
     pub fn take(&mut self, now: Time, message: &MavMessage, out: &mut Vec<SessionEvent>, ignored: &mut u64) {
         let sense = match message {
+            // it does not know yet where it is
+            MavMessage::GLOBAL_POSITION_INT(m) if (m.lat, m.lon) == (0, 0) && self.last_fix.is_none() => {
+                Some(())
+            }
             MavMessage::GLOBAL_POSITION_INT(m) => {
                 self.fix(now, m).map(|f| out.push(SessionEvent::Telemetry(Report::Fix(f))))
             }
@@ -290,7 +294,6 @@ mod tests {
             assert_eq!(taken(message.clone()).1, 0, "{message:?}");
         }
         let bad = [
-            position(GLOBAL_POSITION_INT_DATA { lat: 0, lon: 0, ..fix() }),
             position(GLOBAL_POSITION_INT_DATA { lat: 910_000_000, ..fix() }),
             position(GLOBAL_POSITION_INT_DATA { alt: i32::MAX, ..fix() }),
             position(GLOBAL_POSITION_INT_DATA { relative_alt: i32::MIN, ..fix() }),
@@ -316,6 +319,17 @@ mod tests {
             let (out, ignored) = taken(message.clone());
             assert_eq!((out, ignored), (vec![], 1), "{message:?}");
         }
+    }
+
+    #[test]
+    fn a_position_that_is_not_known_yet_is_none_and_one_that_gets_lost_is_without_sense() {
+        let nowhere = MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA { lat: 0, lon: 0, ..fix() });
+        let (mut readings, mut out, mut ignored) = (Readings::default(), vec![], 0);
+        readings.take(Time::ZERO, &nowhere, &mut out, &mut ignored);
+        assert_eq!((out.len(), ignored), (0, 0));
+        readings.take(Time::ZERO, &MavMessage::GLOBAL_POSITION_INT(fix()), &mut out, &mut ignored);
+        readings.take(Time::ZERO, &nowhere, &mut out, &mut ignored);
+        assert_eq!((out.len(), ignored), (1, 1));
     }
 
     #[test]
