@@ -63,4 +63,4 @@ const ADVICE: [Advice; 3] = [
     },
 ];
 
-const RULES: Rules = Rules { same: items::same, id: None, reads_in_order: false, passes_over: false };
+const RULES: Rules = Rules { same: items::same, id: None, reads_in_order: false };

@@ -198,6 +198,11 @@ impl Commands {
         self.flight.take_if(|given| given.client == client);
     }
 
+    /// How long it is there and back.
+    pub fn knows_trip(&mut self, trip: Option<Duration>) {
+        self.rto.knows_trip(trip);
+    }
+
     /// When `tick` is due.
     pub fn deadline(&self) -> Option<Time> {
         match &self.flight {

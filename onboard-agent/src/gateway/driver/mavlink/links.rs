@@ -259,6 +259,11 @@ impl Links {
         }
     }
 
+    /// How long it is there and back over the one that is spoken over.
+    pub fn round_trip(&self) -> Option<Duration> {
+        self.links.get(self.used).and_then(|link| link.statistics.round_trip())
+    }
+
     /// Asks the autopilot for its time over each: the answers tell how long they take.
     pub fn ask_time(&mut self, now: Time) {
         for (number, link) in self.links.iter_mut().enumerate() {

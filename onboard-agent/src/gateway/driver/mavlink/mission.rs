@@ -7,6 +7,7 @@ use super::transfer::Transfer;
 use super::{Peer, mission_type};
 use crate::gateway::order::Time;
 use mavlink::dialects::ardupilotmega::*;
+use std::time::Duration;
 
 /// An entry of the list, as on the wire.
 pub type Entry = MISSION_ITEM_INT_DATA;
@@ -24,8 +25,6 @@ pub struct Rules {
     pub id: Option<fn(&[Entry]) -> u32>,
     /// Entries may be asked for only after the list was, and in order; otherwise it breaks off.
     pub reads_in_order: bool,
-    /// An entry that it does not wait for is passed over without a word: it does no harm to send one twice.
-    pub passes_over: bool,
 }
 
 /// How it ended.
@@ -163,6 +162,16 @@ impl Mission {
         self.is_busy().then(|| Outcome::Failed(why.to_owned())).and_then(|failed| self.finish(Some(failed)))
     }
 
+    /// How long it is there and back.
+    pub fn knows_trip(&mut self, trip: Option<Duration>) {
+        let rto = match &mut self.job {
+            Some(Job::Transfer(transfer)) => transfer.rto(),
+            Some(Job::Write(write)) => write.rto(),
+            None => &mut self.link,
+        };
+        rto.knows_trip(trip);
+    }
+
     /// When `tick` is due.
     pub fn deadline(&self) -> Option<Time> {
         match self.job.as_ref()? {
@@ -288,7 +297,7 @@ mod tests {
     use super::*;
 
     const PEER: Peer = Peer { system: 1, component: 1 };
-    const RULES: Rules = Rules { same: is_same, id: Some(length), reads_in_order: false, passes_over: false };
+    const RULES: Rules = Rules { same: is_same, id: Some(length), reads_in_order: false };
 
     fn is_same(one: &Entry, other: &Entry) -> bool {
         one == other

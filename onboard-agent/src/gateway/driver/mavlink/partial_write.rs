@@ -55,6 +55,11 @@ impl PartialWrite {
         self.rto
     }
 
+    /// What is known of the link.
+    pub fn rto(&mut self) -> &mut Rto {
+        &mut self.rto
+    }
+
     /// When `tick` is due.
     pub fn deadline(&self) -> Option<Time> {
         self.rto.deadline()

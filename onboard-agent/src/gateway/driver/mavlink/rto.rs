@@ -9,6 +9,8 @@ const SHORTEST: Duration = Duration::from_millis(150);
 const LONGEST: Duration = Duration::from_millis(3000);
 /// A radio link loses frames by noise more than by congestion: backing off further only wastes time.
 const MAX_DOUBLINGS: u32 = 1;
+/// No autopilot waits longer than this for what it has asked for, however far it is.
+const FARTHEST: Duration = Duration::from_secs(5);
 /// A timeout makes a link suspect for so many exchanges.
 const SUSPECT_FOR: u32 = 16;
 
@@ -19,6 +21,8 @@ pub struct Rto {
     doublings: u32,
     suspect: u32,
     started: Option<Time>,
+    /// The way there and back, as it is known by other means.
+    trip: Option<Duration>,
 }
 
 impl Rto {
@@ -33,6 +37,18 @@ impl Rto {
         self.suspect = self.suspect.saturating_sub(1);
     }
 
+    /// How long it is there and back, as the autopilot's answers to questions for its time say. Where that is longer than the timeout
+    /// everything is sent twice, and nothing can be measured by it.
+    pub fn knows_trip(&mut self, trip: Option<Duration>) {
+        self.trip = trip;
+    }
+
+    /// About how long it is there and back.
+    pub fn trip(&self) -> Duration {
+        let measured = self.smoothed_s.and_then(|(mean, _)| Duration::try_from_secs_f64(mean).ok());
+        measured.unwrap_or(FIRST / 3).max(self.trip.unwrap_or_default()).min(FARTHEST)
+    }
+
     /// How often what is short and matters is sent at once: twice on a link that loses frames.
     pub fn copies(&self) -> usize {
         if self.suspect > 0 { 2 } else { 1 }
@@ -44,7 +60,9 @@ impl Rto {
             None => FIRST,
             Some((mean, spread)) => Duration::try_from_secs_f64(mean + 4.0 * spread).unwrap_or(LONGEST),
         };
-        (base.max(SHORTEST) * (1 << self.doublings.min(MAX_DOUBLINGS))).min(LONGEST)
+        let waits = (base.max(SHORTEST) * (1 << self.doublings.min(MAX_DOUBLINGS))).min(LONGEST);
+        let least = self.trip.map_or(Duration::ZERO, |trip| trip + trip / 4 + SHORTEST);
+        waits.max(least.min(FARTHEST))
     }
 
     /// Starts the timer anew.
@@ -103,5 +121,18 @@ mod tests {
         assert_eq!(rto.copies(), 2, "it lost something lately");
         (0..SUSPECT_FOR).for_each(|_| rto.sample(ms(100)));
         assert_eq!(rto.copies(), 1);
+    }
+
+    #[test]
+    fn nothing_is_sent_again_before_it_can_have_been_answered() {
+        let mut rto = Rto::default();
+        rto.start(Duration::ZERO);
+        rto.knows_trip(Some(Duration::from_secs(2)));
+        assert!(!rto.expired(Duration::from_millis(2600)) && rto.expired(Duration::from_millis(2700)));
+        assert_eq!(rto.trip(), Duration::from_secs(2));
+        rto.knows_trip(Some(Duration::from_secs(60)));
+        assert_eq!(rto.timeout(), FARTHEST);
+        rto.knows_trip(None);
+        assert!(rto.timeout() <= 2 * FIRST);
     }
 }

@@ -218,6 +218,9 @@ impl Session {
         if !self.lockstep && self.peer.is_some() {
             self.links.ask_time(now);
         }
+        let trip = self.links.round_trip();
+        self.mission.knows_trip(trip);
+        self.commands.knows_trip(trip);
         self.log_garbage(now);
         self.log_ignored(now);
     }

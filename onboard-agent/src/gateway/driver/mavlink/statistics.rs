@@ -140,6 +140,11 @@ impl Statistics {
         self.probe.answered(now, asked);
     }
 
+    /// How long it is there and back, as it was measured last.
+    pub fn round_trip(&self) -> Option<Duration> {
+        self.probe.round_trip
+    }
+
     /// How it does, once a second. `bad`: frames that were none.
     pub fn figures(&mut self, now: Time, bad: u64) -> AutopilotLink {
         self.now.at = now;
@@ -171,28 +176,27 @@ impl Statistics {
 /// How long it is there and back.
 #[derive(Debug, Clone, Default)]
 struct Probe {
-    asked: Option<(i64, Time)>,
-    unanswered: usize,
+    /// Questions that are not answered yet, one a second: over a satellite the answer comes after the next question.
+    asked: VecDeque<(i64, Time)>,
     round_trip: Option<Duration>,
 }
 
 impl Probe {
     fn ask(&mut self, now: Time, link: usize) -> i64 {
-        if self.asked.is_some() {
-            self.unanswered += 1;
-        }
-        if self.unanswered >= SECONDS {
+        if self.asked.len() >= SECONDS {
+            self.asked.pop_front();
             self.round_trip = None;
         }
         // never 0
         let question = i64::try_from(now.as_nanos() + link as u128 + 1).unwrap_or(i64::MAX);
-        self.asked = Some((question, now));
+        self.asked.push_back((question, now));
         question
     }
 
+    /// What was asked before will not be answered any more.
     fn answered(&mut self, now: Time, question: i64) {
-        if let Some((_, asked)) = self.asked.take_if(|(asked, _)| *asked == question) {
-            self.unanswered = 0;
+        let Some(at) = self.asked.iter().position(|(asked, _)| *asked == question) else { return };
+        if let Some((_, asked)) = self.asked.drain(..=at).next_back() {
             self.round_trip = Some(now.saturating_sub(asked));
         }
     }
@@ -293,5 +297,15 @@ mod tests {
             let _ = statistics.ask_time(at(second), 0);
         }
         assert_eq!(statistics.figures(at(10), 0).round_trip_ms, None);
+    }
+
+    #[test]
+    fn an_answer_that_comes_after_the_next_question_is_timed_too() {
+        let mut statistics = Statistics::default();
+        let [first, second, _] = [1, 2, 3].map(|second| statistics.ask_time(at(second), 0));
+        statistics.time_answered(at(4), second);
+        assert_eq!(statistics.round_trip(), Some(Duration::from_secs(2)));
+        statistics.time_answered(at(4), first);
+        assert_eq!(statistics.round_trip(), Some(Duration::from_secs(2)), "that one was overtaken");
     }
 }

@@ -5,13 +5,15 @@
 //! over from an earlier transfer, so it proves nothing: every write is read back, and only what was
 //! read back is claimed, or what the autopilot names as the list in use.
 
+mod reading;
 mod sending;
 
-use super::mission::{Entry, Outcome, Rules, request_list, thanks};
+use super::Peer;
+use super::mission::{Entry, Outcome, Rules, thanks};
 use super::rto::Rto;
-use super::{Peer, mission_type};
 use crate::gateway::order::Time;
 use mavlink::dialects::ardupilotmega::*;
+use std::time::Duration;
 
 /// Items in flight.
 const WINDOW: usize = 24;
@@ -24,6 +26,11 @@ const REWRITES: u32 = 5;
 /// Times that a list of which some was taken is sent anew from its first entry before that is given up: each begins with all the
 /// patience there is, for on a bad link every entry is lost as often as before.
 const RESTARTS: u32 = 10;
+/// The list is asked for again after this at most. An autopilot that gives entries in order begins anew with each question for the
+/// list that it gets, also with one that comes late.
+const LIST_WAITS: Duration = Duration::from_secs(4);
+/// Farther than this, an autopilot gives up before what it waits for can be there.
+const FARTHEST: Duration = Duration::from_secs(4);
 /// More entries than this is no list.
 const MAX_ITEMS: u16 = 2000;
 
@@ -54,7 +61,15 @@ pub struct Transfer {
     restarts: u32,
     /// The link has lost something.
     careful: bool,
-    went_back: Option<Time>,
+    went_back: Time,
+    /// When it asked for something new.
+    moved: Time,
+    /// It got an entry that it did not wait for: one is missing, or came twice.
+    complains: bool,
+    /// Times that the list was asked for in vain.
+    list_late: u32,
+    /// It is not asked for again before this.
+    list_due: Time,
     /// When something was sent whose answer can be timed.
     probe: Option<Time>,
 }
@@ -82,8 +97,9 @@ impl Transfer {
         peer: Peer,
         out: &mut Vec<MavMessage>,
     ) -> Self {
-        out.push(request_list(peer));
-        Self::new(now, vec![], rules, rto)
+        let mut transfer = Self::new(now, vec![], rules, rto);
+        transfer.ask_list(now, peer, out);
+        transfer
     }
 
     fn new(now: Time, items: Vec<Entry>, rules: &'static Rules, mut rto: Rto) -> Self {
@@ -99,7 +115,11 @@ impl Transfer {
             best: 0,
             rewrites: 0,
             restarts: 0,
-            went_back: None,
+            went_back: now,
+            moved: now,
+            complains: false,
+            list_late: 0,
+            list_due: now,
             probe: Some(now),
         }
     }
@@ -123,9 +143,19 @@ impl Transfer {
         self.rto
     }
 
+    /// What is known of the link.
+    pub fn rto(&mut self) -> &mut Rto {
+        &mut self.rto
+    }
+
     /// When `tick` is due.
     pub fn deadline(&self) -> Option<Time> {
-        self.rto.deadline()
+        let due = self.rto.deadline();
+        match &self.phase {
+            Phase::Counting => due.max(Some(self.list_due)),
+            Phase::Sending { .. } if self.complains => due.map(|due| due.min(self.stuck_at())),
+            _ => due,
+        }
     }
 
     fn progressed(&mut self, now: Time) {
@@ -170,7 +200,7 @@ impl Transfer {
             (Phase::Sending { acked, asked, .. }, MAV_MISSION_INVALID_SEQUENCE)
                 if *acked > 0 || *asked > 0 =>
             {
-                self.go_back(now, out);
+                self.complains = true;
                 None
             }
             (
@@ -199,34 +229,10 @@ impl Transfer {
     fn read_back(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) {
         if self.rules.reads_in_order {
             self.phase = Phase::Counting;
-            out.push(request_list(peer));
+            self.ask_list(now, peer, out);
         } else {
             self.read(now, self.items.len(), peer, out);
         }
-    }
-
-    fn read(&mut self, now: Time, count: usize, peer: Peer, out: &mut Vec<MavMessage>) {
-        self.phase = Phase::Reading { got: vec![None; count], next: 0 };
-        self.probe = Some(now);
-        self.ask(peer, out);
-    }
-
-    /// Asks for what is missing, a window at a time.
-    fn ask(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
-        let Phase::Reading { got, next } = &mut self.phase else { return };
-        let have = got.iter().flatten().count();
-        // asked for in order, it gives them all in a row, but breaks off if one is missing
-        let window = if self.rules.reads_in_order && self.careful { 1 } else { WINDOW };
-        let end = (have + window).min(got.len());
-        for (i, _) in got.iter().enumerate().take(end).skip(*next).filter(|(_, g)| g.is_none()) {
-            out.push(MavMessage::MISSION_REQUEST_INT(MISSION_REQUEST_INT_DATA {
-                seq: i as u16,
-                target_system: peer.system,
-                target_component: peer.component,
-                mission_type: mission_type(),
-            }));
-        }
-        *next = end.max(*next);
     }
 
     /// The length of the list.
@@ -305,14 +311,19 @@ impl Transfer {
 
     /// Time passed.
     pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Outcome> {
-        if !self.rto.expired(now) {
+        if self.is_stuck(now) {
+            self.go_back(now, out);
+            return None;
+        }
+        let waits_for_list = self.phase == Phase::Counting && now < self.list_due;
+        if waits_for_list || !self.rto.expired(now) {
             return None;
         }
         self.silent += 1;
         self.probe = None;
         self.careful = true;
         if self.silent > PATIENCE || self.restarts > RESTARTS {
-            return Some(Outcome::Failed("the autopilot does not answer".into()));
+            return Some(Outcome::Failed(self.why_given_up()));
         }
         // it may still be waiting for entries: then it does not let us read
         if self.is_kept_from_reading() {
@@ -320,7 +331,10 @@ impl Transfer {
             return None;
         }
         match &mut self.phase {
-            Phase::Counting => out.push(request_list(peer)),
+            Phase::Counting => {
+                self.list_late += 1;
+                self.ask_list(now, peer, out);
+            }
             Phase::Sending { acked, asked, .. } if *acked == 0 && *asked == 0 => {
                 self.send_from_start(peer, out)
             }
@@ -344,5 +358,16 @@ impl Transfer {
             }
         }
         None
+    }
+
+    fn why_given_up(&self) -> String {
+        let trip = self.rto.trip();
+        if trip < FARTHEST {
+            return "the autopilot does not answer".into();
+        }
+        format!(
+            "the link takes {:.0} s there and back, and an autopilot gives up before that: use a faster one for the list",
+            trip.as_secs_f64()
+        )
     }
 }

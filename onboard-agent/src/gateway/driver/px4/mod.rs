@@ -65,8 +65,7 @@ const VTOLS: [MavType; 5] = [
     MavType::MAV_TYPE_VTOL_TAILSITTER,
 ];
 
-const RULES: Rules =
-    Rules { same: items::same, id: Some(items::checksum), reads_in_order: true, passes_over: true };
+const RULES: Rules = Rules { same: items::same, id: Some(items::checksum), reads_in_order: true };
 
 /// The list holds the next part of the flight, and the landing only when that is near.
 const NO_LANDING_NEEDED: Need = Need {

@@ -1,6 +1,8 @@
 //! Failure modes of the mission protocol, each a test by its name: what happens to which message. Twice a list is brought aboard under
 //! it, over a link that loses some more: at every instant what is ready to be flown is what was fed, whole, and in the end it is.
 
+mod far;
+
 use super::*;
 use crate::gateway::driver::{DEFAULT, Driver, FromLink, Setup};
 use crate::gateway::order::{Fed, Order, OrderId, Report, Serial};
@@ -279,7 +281,11 @@ impl Field {
 /// Two lists, one after the other; to how many messages it happened.
 fn flown(personality: Personality, kind: Kind, what: What, seed: u64) -> u32 {
     println!("{personality}, seed {seed}");
-    let mut field = Rig::new(personality, Fitted::new(), Faulty::new(kind, what, seed));
+    flown_over(personality, Faulty::new(kind, what, seed), seed)
+}
+
+fn flown_over(personality: Personality, radio: Faulty, seed: u64) -> u32 {
+    let mut field = Rig::new(personality, Fitted::new(), radio);
     field.bring_aboard(waypoints(1, 3 + seed % 20));
     field.bring_aboard(waypoints(100, 5 + seed % 13));
     for _ in 0..30 {

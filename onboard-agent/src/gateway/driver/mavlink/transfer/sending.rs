@@ -8,7 +8,8 @@ use mavlink::dialects::ardupilotmega::*;
 impl Transfer {
     pub(super) fn send_from_start(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
         self.phase = Phase::Sending { acked: 0, sent: 0, asked: 0 };
-        out.push(self.opening(peer));
+        self.complains = false;
+        out.extend(std::iter::repeat_n(self.opening(peer), self.copies()));
         self.send_window(out);
     }
 
@@ -29,9 +30,9 @@ impl Transfer {
         })
     }
 
-    /// On a link that loses frames each entry goes twice where that does no harm: of those behind a lost one none is taken.
+    /// On a link that loses frames each entry goes twice: of those behind a lost one none is taken.
     pub(super) fn send_window(&mut self, out: &mut Vec<MavMessage>) {
-        let copies = if self.rules.passes_over && self.careful { 2 } else { 1 };
+        let copies = self.copies();
         let Phase::Sending { acked, sent, .. } = &mut self.phase else { return };
         let end = (*acked + WINDOW).min(self.items.len());
         for item in self.items.iter().take(end).skip(*sent) {
@@ -49,26 +50,40 @@ impl Transfer {
         }
         if index > *acked {
             (*acked, *asked) = (index, 1);
-            self.progressed(now);
+            self.moves(now);
             self.send_window(out);
             return;
         }
         *asked += 1;
         let again = *asked > 1;
         if !again {
-            self.progressed(now);
+            self.moves(now);
         } else {
             self.go_back(now, out);
         }
     }
 
+    fn moves(&mut self, now: Time) {
+        self.progressed(now);
+        (self.moved, self.complains) = (now, false);
+    }
+
+    /// It complains of an entry that came twice, too; it waits for one that was lost when it has asked for nothing new since.
+    pub(super) fn is_stuck(&self, now: Time) -> bool {
+        self.complains && matches!(self.phase, Phase::Sending { .. }) && now >= self.stuck_at()
+    }
+
+    pub(super) fn stuck_at(&self) -> Time {
+        self.moved.max(self.went_back) + self.rto.trip()
+    }
+
     /// Sends again from the first entry that was not acknowledged; at most once a round trip, for
     /// each of a window's remaining items is answered with the same complaint.
     pub(super) fn go_back(&mut self, now: Time, out: &mut Vec<MavMessage>) {
-        if self.went_back.is_some_and(|at| now < at + self.rto.timeout() / 3) {
+        if now < self.went_back + self.rto.trip() {
             return;
         }
-        self.went_back = Some(now);
+        (self.went_back, self.complains) = (now, false);
         self.careful = true;
         self.silent += 1;
         self.probe = None;
