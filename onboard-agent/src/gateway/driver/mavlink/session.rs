@@ -194,7 +194,7 @@ impl Session {
         self.now = now;
         if self.links.choose(now, self.mission.is_busy()) {
             // what was asked for over the other link is asked for again, what was under way begins anew
-            self.streams = Streams::default();
+            self.streams.begin_anew();
             let broken = self.mission.break_off("its link is dead, another one is used");
             events.extend(broken.map(SessionEvent::Mission));
         }
@@ -254,7 +254,7 @@ impl Session {
         if self.links.take_reboot() {
             events.push(SessionEvent::Telemetry(Report::Rebooted));
         }
-        self.streams.seen(now, message.message_id());
+        self.streams.seen(now, message);
         // what it answers to or asks of another station, of which several may do something to its list
         if !is_for(self.own(), message.target_system_id(), message.target_component_id()) {
             return self.tick(now, events);

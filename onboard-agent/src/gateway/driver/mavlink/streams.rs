@@ -3,8 +3,8 @@
 
 use super::Peer;
 use crate::gateway::order::Time;
-use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::*;
+use mavlink::{Message, MessageData};
 use std::time::Duration;
 
 /// So long a message's rate is observed before it is asked for again.
@@ -82,13 +82,25 @@ impl Stream {
 }
 
 impl Streams {
+    /// Another link is used: everything is asked for again. What has stopped stays told, and what came before is missed if it does not
+    /// come over this one.
+    pub fn begin_anew(&mut self) {
+        for stream in &mut self.streams {
+            *stream = Stream { came: stream.came, ..Stream::default() };
+        }
+        self.got_home = false;
+    }
+
     /// A message came.
-    pub fn seen(&mut self, now: Time, id: u32) {
+    pub fn seen(&mut self, now: Time, message: &MavMessage) {
+        let id = message.message_id();
         let known = WANTED.iter().zip(&mut self.streams).find(|((wanted, ..), _)| *wanted == id);
         if let Some((_, stream)) = known {
             stream.count += 1;
             stream.is_lacking = false;
-            stream.came = Some(now);
+            if says_something(message) {
+                stream.came = Some(now);
+            }
             self.got_home |= id == HOME_POSITION_DATA::ID;
         }
     }
@@ -129,6 +141,11 @@ impl Streams {
     }
 }
 
+/// Of the battery nothing is known where its share is not: its monitor has failed, or there is none.
+fn says_something(message: &MavMessage) -> bool {
+    !matches!(message, MavMessage::SYS_STATUS(status) if status.battery_remaining == -1)
+}
+
 fn ask(id: u32, interval_ms: u32, peer: Peer) -> MavMessage {
     let (command, param2) = match interval_ms {
         0 => (MavCmd::MAV_CMD_REQUEST_MESSAGE, 0.0),
@@ -152,7 +169,6 @@ fn ask(id: u32, interval_ms: u32, peer: Peer) -> MavMessage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mavlink::Message;
 
     fn asked_for(out: &[MavMessage], id: u32) -> usize {
         let asks =
@@ -176,27 +192,60 @@ mod tests {
         );
     }
 
+    fn battery(battery_remaining: i8) -> MavMessage {
+        MavMessage::SYS_STATUS(SYS_STATUS_DATA { battery_remaining, ..SYS_STATUS_DATA::DEFAULT })
+    }
+
+    fn wind() -> MavMessage {
+        MavMessage::WIND(WIND_DATA::DEFAULT)
+    }
+
+    /// Its monitor has failed.
+    #[test]
+    fn a_battery_whose_share_is_no_longer_known_is_missed_and_one_that_never_was_is_not() {
+        let (mut streams, at) = (Streams::default(), Duration::from_secs);
+        streams.seen(at(0), &battery(50));
+        (1..=11).for_each(|second| streams.seen(at(second), &battery(-1)));
+        assert_eq!(streams.stopped(at(11), WIND_DATA::ID), Some(vec!["battery"]));
+        let mut never = Streams::default();
+        (0..=30).for_each(|second| never.seen(at(second), &battery(-1)));
+        assert_eq!(never.stopped(at(30), WIND_DATA::ID), None);
+    }
+
+    #[test]
+    fn over_another_link_what_has_stopped_is_told_as_over_and_what_does_not_come_is_missed() {
+        let (mut streams, at) = (Streams::default(), Duration::from_secs);
+        streams.seen(at(0), &battery(50));
+        assert_eq!(streams.stopped(at(11), WIND_DATA::ID), Some(vec!["battery"]));
+        streams.begin_anew();
+        assert_eq!(streams.stopped(at(12), WIND_DATA::ID), None, "it is told already");
+        streams.seen(at(13), &battery(50));
+        assert_eq!(streams.stopped(at(13), WIND_DATA::ID), Some(vec![]));
+        streams.begin_anew();
+        assert_eq!(streams.stopped(at(24), WIND_DATA::ID), Some(vec!["battery"]));
+    }
+
     #[test]
     fn what_came_and_no_longer_comes_is_told_until_it_comes_again() {
         let (mut streams, at) = (Streams::default(), Duration::from_secs);
         let stopped = |streams: &mut Streams, second| streams.stopped(at(second), WIND_DATA::ID);
         assert_eq!(stopped(&mut streams, 60), None, "it never came");
-        streams.seen(at(60), SYS_STATUS_DATA::ID);
-        streams.seen(at(60), HOME_POSITION_DATA::ID);
+        streams.seen(at(60), &battery(50));
+        streams.seen(at(60), &MavMessage::HOME_POSITION(HOME_POSITION_DATA::DEFAULT));
         assert_eq!(stopped(&mut streams, 70), None);
         assert_eq!(stopped(&mut streams, 71), Some(vec!["battery"]));
         assert_eq!(stopped(&mut streams, 72), None, "it was told");
-        streams.seen(at(73), SYS_STATUS_DATA::ID);
+        streams.seen(at(73), &battery(50));
         assert_eq!(stopped(&mut streams, 73), Some(vec![]));
     }
 
     #[test]
     fn the_wind_is_missed_once_and_only_as_it_was_asked_for() {
         let (mut streams, at) = (Streams::default(), Duration::from_secs);
-        streams.seen(at(0), WIND_DATA::ID);
-        streams.seen(at(0), WIND_COV_DATA::ID);
+        streams.seen(at(0), &wind());
+        streams.seen(at(0), &MavMessage::WIND_COV(WIND_COV_DATA::DEFAULT));
         assert_eq!(streams.stopped(at(11), WIND_DATA::ID), Some(vec!["wind"]));
-        streams.seen(at(11), WIND_DATA::ID);
+        streams.seen(at(11), &wind());
         assert_eq!(streams.stopped(at(12), WIND_DATA::ID), Some(vec![]));
     }
 
