@@ -69,6 +69,11 @@ impl Newest {
         true
     }
 
+    /// The latest of all that was taken, ms since the autopilot started.
+    pub fn ms(&self) -> u32 {
+        self.at.into_iter().max().unwrap_or(0)
+    }
+
     /// It is spoken over this link from now on: a start that another one showed is no news there, and one that only this one
     /// showed is.
     pub fn follow(&mut self, clock: &mut Clock) {

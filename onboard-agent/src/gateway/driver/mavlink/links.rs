@@ -259,6 +259,11 @@ impl Links {
         }
     }
 
+    /// The autopilot's clock as it is known, ms since it started.
+    pub fn clock_ms(&self) -> u32 {
+        self.newest.ms()
+    }
+
     /// How long it is there and back over the one that is spoken over.
     pub fn round_trip(&self) -> Option<Duration> {
         self.links.get(self.used).and_then(|link| link.statistics.round_trip())

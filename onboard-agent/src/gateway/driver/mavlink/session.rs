@@ -4,6 +4,7 @@
 //! that message and nothing else. What it means is for the driver of that autopilot to say.
 
 mod logs;
+mod summary;
 
 use super::commands::{Client, Command, Commands, Refusal, Shown};
 use super::dialect::Manner;
@@ -22,6 +23,7 @@ use autopilot_link::signing::Signing;
 use mavlink::Message;
 use mavlink::dialects::ardupilotmega::*;
 use std::time::Duration;
+use summary::Beat;
 
 /// Our heartbeat's period.
 const HEARTBEAT: Duration = Duration::from_secs(1);
@@ -29,9 +31,6 @@ const HEARTBEAT: Duration = Duration::from_secs(1);
 const OWN_COMPONENT: u8 = 191;
 /// Until a vehicle is received we speak as system 1, the usual number of a single vehicle.
 const FIRST_SYSTEM: u8 = 1;
-/// A mode of its heartbeats is newer than that of a summary for so long.
-const BEATS_FOR: Duration = Duration::from_secs(5);
-
 /// What a message, or time, brought.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SessionEvent {
@@ -73,8 +72,7 @@ pub struct Session {
     commands: Commands,
     streams: Streams,
     readings: Readings,
-    /// When its last heartbeat came, and whether it was armed.
-    beat: Option<(Time, bool)>,
+    beat: Option<Beat>,
     /// It does not accept its list.
     is_list_unfit: bool,
     /// How it is spoken to.
@@ -284,7 +282,7 @@ impl Session {
                 events.extend(said.map(Report::Says).map(SessionEvent::Telemetry));
             }
             MavMessage::HIGH_LATENCY2(summary) => {
-                self.on_summary(now, summary.custom_mode, events);
+                self.on_summary(now, summary, events);
                 self.on_other(now, message, peer, events);
             }
             MavMessage::PARAM_VALUE(value) => events.push(SessionEvent::Parameter(value.clone())),
@@ -313,17 +311,8 @@ impl Session {
 
     fn on_heartbeat(&mut self, now: Time, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
         events.push(SessionEvent::Heartbeat(beat.clone()));
-        self.beat = Some((now, is_armed(beat)));
+        self.beat = Some(Beat { at: now, armed: is_armed(beat), clock_ms: self.links.clock_ms() });
         self.shown(now, Shown::Mode(beat.custom_mode, is_armed(beat)), events);
-    }
-
-    /// Over such a link no heartbeats may come; whether it is armed only they say.
-    fn on_summary(&mut self, now: Time, mode: u16, events: &mut Vec<SessionEvent>) {
-        let late = |(at, _): &(Time, bool)| now.saturating_sub(*at) >= BEATS_FOR;
-        let Some((_, armed)) = self.beat.filter(late) else { return };
-        let mode = (self.manner.summary.mode)(mode);
-        events.push(SessionEvent::Mode(mode));
-        self.shown(now, Shown::Mode(mode, armed), events);
     }
 
     /// It has a list, and says that it has none to fly.
