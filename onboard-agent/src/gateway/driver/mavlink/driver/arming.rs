@@ -27,9 +27,15 @@ impl MavlinkDriver {
         }
         let is_armed = self.seen.is_some_and(|seen| seen.armed);
         let would_fly = self.seen.is_some_and(|seen| (dialect.meaning)(seen.mode, false) == Mode::Waypoints);
-        let disarm = (arming.is_some() || is_armed).then_some(Command::Disarm);
         let stands = dialect.stands.filter(|_| arming.is_some() || would_fly);
-        self.give(now, id, disarm.into_iter().chain(stands).collect(), events);
+        if arming.is_none() && !is_armed {
+            return self.give(now, id, stands.into_iter().collect(), events);
+        }
+        self.give(now, id, vec![Command::Disarm], events);
+        // whatever comes of that, and before what is ordered next
+        if let Some(stands) = stands {
+            self.session.command(now, Client::Nobody, stands, events);
+        }
     }
 
     /// It gives its reasons in words of its own.

@@ -38,6 +38,33 @@ fn what_armed_before_that_was_heard_is_disarmed() {
     assert!(stands(&rig));
 }
 
+/// In Mission it would take off when somebody arms it.
+#[test]
+fn one_whose_disarming_is_not_answered_does_not_stay_in_the_mode_in_which_it_takes_off() {
+    let mut rig = Rig::loaded();
+    rig.pass = Box::new(|_, m| !is_arming(m));
+    rig.order(Order::Arm);
+    rig.run(3);
+    assert_eq!((rig.px4.main, rig.px4.sub), (4, 4));
+    let stand_down = rig.order(Order::StandDown);
+    rig.run(60);
+    assert!(rig.outcome(stand_down).is_some_and(|outcome| outcome.is_err()));
+    assert!(stands(&rig));
+}
+
+#[test]
+fn a_start_while_it_is_stood_down_takes_off() {
+    let mut rig = Rig::loaded();
+    rig.pass = Box::new(|_, m| !is_arming(m));
+    rig.order(Order::Arm);
+    rig.run(3);
+    rig.order(Order::StandDown);
+    rig.pass = Box::new(|_, _| true);
+    assert_eq!(rig.carry_out(Order::Arm), Ok(()));
+    rig.run(20);
+    assert!(rig.px4.armed && (rig.px4.main, rig.px4.sub) == (4, 4));
+}
+
 /// Armed later by somebody's sticks it would take off.
 #[test]
 fn after_a_refused_arming_it_does_not_stay_in_the_mode_in_which_it_takes_off() {
