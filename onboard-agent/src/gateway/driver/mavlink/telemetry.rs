@@ -23,6 +23,8 @@ const PRESSURES_HPA: RangeInclusive<f64> = 10.0..=1200.0;
 const TEMPERATURES_C: RangeInclusive<f64> = -100.0..=100.0;
 const ENGINE_TEMPERATURES_C: RangeInclusive<f64> = -100.0..=2000.0;
 const FASTEST_RPM: f32 = 200_000.0;
+/// So near to 0, 0 no position is known, degrees × 10⁷: 1 km of sea.
+const NOWHERE: u32 = 100_000;
 /// Its value where nothing is measured: voltage in mV and dilution of precision.
 const NOT_MEASURED: u16 = u16::MAX;
 /// A dilution of precision that nothing can be made of.
@@ -59,7 +61,7 @@ impl Readings {
     pub fn take(&mut self, now: Time, message: &MavMessage, out: &mut Vec<SessionEvent>, ignored: &mut u64) {
         let sense = match message {
             // it does not know yet where it is
-            MavMessage::GLOBAL_POSITION_INT(m) if (m.lat, m.lon) == (0, 0) && self.last_fix.is_none() => {
+            MavMessage::GLOBAL_POSITION_INT(m) if is_nowhere(m.lat, m.lon) && self.last_fix.is_none() => {
                 Some(())
             }
             MavMessage::GLOBAL_POSITION_INT(m) => {
@@ -216,10 +218,15 @@ impl Readings {
     }
 }
 
-/// A valid position; 0, 0 stands for "unknown".
+/// A valid position that is known.
 fn place(lat: i32, lon: i32) -> Option<LatLon> {
     let position = LatLon::new(f64::from(lat) / 1e7, f64::from(lon) / 1e7);
-    (position.is_valid() && (lat, lon) != (0, 0)).then_some(position)
+    (position.is_valid() && !is_nowhere(lat, lon)).then_some(position)
+}
+
+/// 0, 0 stands for "unknown"; and without a fix ArduPlane reckons on from there.
+fn is_nowhere(lat: i32, lon: i32) -> bool {
+    lat.unsigned_abs() < NOWHERE && lon.unsigned_abs() < NOWHERE
 }
 
 fn attitude(m: &ATTITUDE_DATA) -> Option<Attitude> {
@@ -323,9 +330,13 @@ mod tests {
 
     #[test]
     fn a_position_that_is_not_known_yet_is_none_and_one_that_gets_lost_is_without_sense() {
-        let nowhere = MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA { lat: 0, lon: 0, ..fix() });
+        let at = |lat, lon| MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA { lat, lon, ..fix() });
+        let nowhere = at(0, 0);
         let (mut readings, mut out, mut ignored) = (Readings::default(), vec![], 0);
-        readings.take(Time::ZERO, &nowhere, &mut out, &mut ignored);
+        // as an ArduPlane begins
+        for (lat, lon) in [(0, 0), (856, 1506), (1219, 2244)] {
+            readings.take(Time::ZERO, &at(lat, lon), &mut out, &mut ignored);
+        }
         assert_eq!((out.len(), ignored), (0, 0));
         readings.take(Time::ZERO, &MavMessage::GLOBAL_POSITION_INT(fix()), &mut out, &mut ignored);
         readings.take(Time::ZERO, &nowhere, &mut out, &mut ignored);
