@@ -39,10 +39,10 @@ pub struct Control {
     pub safe_since: Option<Time>,
     /// Safe mode was commanded, or the FP Manager could not fly on: only a command ends it.
     pub safe_until_command: bool,
-    /// The way home was chosen for an aircraft without an engine.
-    pub glides_home: bool,
-    /// The autopilot returns by its own means, for it was not known where the aircraft is.
-    pub returns_blind: bool,
+    /// The way home was chosen for an aircraft without an engine, or for one with it. `None`: none was chosen.
+    pub way_home_glides: Option<bool>,
+    /// When a way home was last looked for from where the aircraft was known to be, and whether for a glide.
+    pub looked_for: Option<(Time, bool)>,
     /// What the driver said of this autopilot.
     pub capability: Option<Result<(), String>>,
     /// Place and height of a direct command.
@@ -93,8 +93,8 @@ impl Default for Control {
             retry_at: None,
             safe_since: None,
             safe_until_command: false,
-            glides_home: false,
-            returns_blind: false,
+            way_home_glides: None,
+            looked_for: None,
             capability: None,
             direct: None,
             direct_due: false,

@@ -13,6 +13,11 @@ use usal::contract::{GatewayState, SafeParameters, Token, Waypoint};
 /// Height above the take-off place from which a climbing aircraft may circle, metres.
 const CLEAR_M: f64 = 40.0;
 
+/// A way home that could not be found is looked for again after this: by then it is elsewhere.
+const LOOKS_AGAIN: Duration = Duration::from_secs(10);
+/// Why the autopilot returns by its own means, of an aircraft of which it is known where it is.
+const NONE_IN_REACH: &str = "no runway known within reach: the autopilot returns by its own means";
+
 /// Another FP Manager that was heard so lately is there.
 const OTHER_HEARD: Duration = Duration::from_secs(2);
 /// The one that joined lives if it was heard so lately: some of its heartbeats, and sooner than it can be started again.
@@ -148,10 +153,10 @@ impl Gateway {
                 let due = self.control.safe_since.is_some_and(|s| now >= s + seconds(self.safe.t2_s));
                 // height that is circled away is missing before the runway
                 if due || self.alarms.engine_has_failed() {
-                    self.return_home(out);
+                    self.return_home(now, out);
                 }
             }
-            GatewayState::SafeReturn if self.wants_another_way() => self.choose_again(out),
+            GatewayState::SafeReturn if self.wants_another_way(now) => self.choose_again(now, out),
             GatewayState::Off | GatewayState::Stop => self.fp_manager.expected_since = None,
             _ => {}
         }
@@ -206,29 +211,70 @@ impl Gateway {
         out.push(Output::Save);
     }
 
-    /// The engine failed on the way home, which was chosen for a flight with it, or runs after all; or it is known where the aircraft
-    /// is, at last.
-    fn wants_another_way(&self) -> bool {
-        let is_found = self.control.returns_blind && self.situation().is_some();
-        is_found || self.alarms.engine_has_failed() != self.control.glides_home
+    /// What the way home was chosen for is not so, or none could be chosen; and a way can be looked for (again).
+    fn wants_another_way(&self, now: Time) -> bool {
+        let glides = self.alarms.engine_has_failed();
+        let suits = self.control.way_home_glides == Some(glides);
+        let is_due = |(at, for_glide): (Time, bool)| for_glide != glides || now >= at + LOOKS_AGAIN;
+        !suits
+            && self.control.looked_for.is_none_or(is_due)
+            && !self.lands_by_itself()
+            && self.situation().is_some()
     }
 
-    fn return_home(&mut self, out: &mut Vec<Output>) {
+    /// It returns by its own means, and has come down so low that it may be landing.
+    fn lands_by_itself(&self) -> bool {
+        let low = |s: &Situation| {
+            let ground_m = s.terrain.and_then(|terrain| terrain.elevation_m(s.position));
+            let height_m = ground_m.map(|ground_m| s.altitude_amsl_m - ground_m);
+            height_m.or(self.telemetry.fix.map(|(_, fix)| fix.altitude_home_m)).is_some_and(|m| m < CLEAR_M)
+        };
+        self.control.intent == Intent::Return && self.situation().as_ref().is_some_and(low)
+    }
+
+    fn return_home(&mut self, now: Time, out: &mut Vec<Output>) {
         self.control.safe_since = None;
-        self.control.glides_home = self.alarms.engine_has_failed();
-        let Some((cause, way)) = self.way_home() else { return self.return_by_itself(out) };
-        self.fly_home(way, out);
-        self.change(Trigger::ReturnDue, &cause, out);
+        (self.control.way_home_glides, self.control.looked_for) = (None, None);
+        if self.situation().is_none() {
+            return self
+                .return_by_itself("its position is not known: the autopilot returns by its own means", out);
+        }
+        match self.look_for_way_home(now) {
+            Some((cause, way)) => {
+                self.fly_home(way, out);
+                self.change(Trigger::ReturnDue, &cause, out);
+            }
+            None => self.return_by_itself(NONE_IN_REACH, out),
+        }
     }
 
-    /// Without a runway that is in reach now, the way that is flown stays.
-    fn choose_again(&mut self, out: &mut Vec<Output>) {
-        self.control.returns_blind = false;
-        self.control.glides_home = self.alarms.engine_has_failed();
-        if let Some((cause, way)) = self.way_home() {
-            self.fly_home(way, out);
-            self.cause = cause;
+    /// Without a runway that is in reach now, what is flown stays, and is held against where the aircraft is later on.
+    fn choose_again(&mut self, now: Time, out: &mut Vec<Output>) {
+        self.cause = match self.look_for_way_home(now) {
+            Some((cause, way)) => {
+                self.fly_home(way, out);
+                cause
+            }
+            None if self.control.intent == Intent::Return => NONE_IN_REACH.to_owned(),
+            None if self.alarms.engine_has_failed() => {
+                "no runway known within reach of a glide: the way that was chosen with the engine is flown on"
+                    .to_owned()
+            }
+            None => {
+                "no runway known within reach with the engine: the way of the glide is flown on".to_owned()
+            }
+        };
+    }
+
+    /// The way home that suits the aircraft as it is, from where it is known to be.
+    fn look_for_way_home(&mut self, now: Time) -> Option<(String, Vec<Waypoint>)> {
+        let glides = self.alarms.engine_has_failed();
+        let way = self.way_home();
+        self.control.looked_for = Some((now, glides));
+        if way.is_some() {
+            self.control.way_home_glides = Some(glides);
         }
+        way
     }
 
     fn fly_home(&mut self, way: Vec<Waypoint>, out: &mut Vec<Output>) {
@@ -260,14 +306,9 @@ impl Gateway {
         })
     }
 
-    /// No runway is known within reach (or no position): the autopilot's own return.
-    fn return_by_itself(&mut self, out: &mut Vec<Output>) {
+    /// The autopilot's own return, for want of a way of ours.
+    fn return_by_itself(&mut self, cause: &str, out: &mut Vec<Output>) {
         self.control.set_intent(Intent::Return, self.telemetry.mode);
-        self.control.returns_blind = self.situation().is_none();
-        let cause = match self.situation() {
-            Some(_) => "no runway known within reach: the autopilot returns by its own means",
-            None => "its position is not known: the autopilot returns by its own means",
-        };
         self.change(Trigger::ReturnDue, cause, out);
         out.push(Output::Save);
     }

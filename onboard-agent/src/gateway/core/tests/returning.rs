@@ -1,7 +1,7 @@
 //! On the way home, with and without an engine.
 
 use super::*;
-use usal::contract::Engine;
+use usal::contract::{Engine, SafeRunway};
 
 /// In this mode, with the engine turning so fast at full throttle.
 fn with_engine(mode: Mode, rpm: f64) -> Vec<Report> {
@@ -69,6 +69,85 @@ fn nothing_is_chosen_from_where_it_was_long_ago() {
     core.run(2, &[beat(Mode::Return, true), fix(0.0)]);
     let cause = core.gateway.status(core.now).cause;
     assert!(cause.starts_with("returning to runway"), "now that it is known: {cause}");
+}
+
+/// On the way home by its own means: its position is not known.
+fn returns_blind(runways: Vec<SafeRunway>) -> Core {
+    let mut core = Core::in_nav();
+    core.step(Input::Request(4, GatewayRequest::SetRunways { runways }));
+    core.step(Input::Request(5, GatewayRequest::Safe));
+    core.run(15, &without_position(Mode::Hold, 5000.0));
+    core.run(core.gateway.safe.t2_s as u64, &without_position(Mode::Hold, 5000.0));
+    assert_eq!(core.gateway.state(), GatewayState::SafeReturn);
+    assert!(cause(&core).contains("position is not known"), "{}", cause(&core));
+    core
+}
+
+fn without_position(mode: Mode, rpm: f64) -> Vec<Report> {
+    with_engine(mode, rpm).into_iter().filter(|report| !matches!(report, Report::Fix(_))).collect()
+}
+
+fn cause(core: &Core) -> String {
+    core.gateway.status(core.now).cause
+}
+
+fn near() -> SafeRunway {
+    crate::gateway::tests::flights::runway_at(LatLon::new(36.32, -84.17).destination(10.0, 250.0))
+}
+
+/// High enough for a glide, with or without an engine.
+fn high(mode: Mode, rpm: f64) -> Vec<Report> {
+    let raise = |report: Report| match report {
+        Report::Fix(fix) => Report::Fix(Fix { altitude_amsl_m: 900.0, altitude_home_m: 550.0, ..fix }),
+        other => other,
+    };
+    with_engine(mode, rpm).into_iter().map(raise).collect()
+}
+
+#[test]
+fn an_engine_that_stops_while_the_position_is_missing_is_glided_home_once_it_is_back() {
+    let mut core = returns_blind(vec![near()]);
+    core.run(5, &without_position(Mode::Return, 0.0));
+    assert!(core.raised("engine-out") && cause(&core).contains("position is not known"), "{}", cause(&core));
+    core.run(1, &high(Mode::Return, 0.0));
+    assert!(cause(&core).starts_with("gliding to runway"), "{}", cause(&core));
+}
+
+#[test]
+fn an_engine_that_stops_on_a_way_with_it_while_the_position_is_missing_is_glided_home_once_it_is_back() {
+    let mut core = returns_blind(vec![near()]);
+    core.run(1, &high(Mode::Return, 5000.0));
+    assert!(cause(&core).starts_with("returning to runway"), "{}", cause(&core));
+    core.run(15, &without_position(Mode::Waypoints, 0.0));
+    assert!(core.raised("engine-out"));
+    core.run(1, &high(Mode::Waypoints, 0.0));
+    assert!(cause(&core).starts_with("gliding to runway"), "{}", cause(&core));
+}
+
+#[test]
+fn that_no_runway_is_in_reach_is_said_and_looked_at_again_from_elsewhere() {
+    let far = LatLon::new(36.32, -84.17).destination(0.0, 9000.0);
+    let mut core = returns_blind(vec![near()]);
+    core.run(5, &without_position(Mode::Return, 0.0));
+    core.gateway.runways = vec![crate::gateway::tests::flights::runway_at(far)];
+    core.run(1, &high(Mode::Return, 0.0));
+    assert!(cause(&core).starts_with("no runway known within reach"), "{}", cause(&core));
+    core.gateway.runways = vec![near()];
+    core.run(5, &high(Mode::Return, 0.0));
+    assert!(cause(&core).starts_with("no runway known within reach"), "not each second: {}", cause(&core));
+    core.run(6, &high(Mode::Return, 0.0));
+    assert!(cause(&core).starts_with("gliding to runway"), "{}", cause(&core));
+}
+
+#[test]
+fn an_autopilot_that_may_be_landing_by_itself_is_left_to_it() {
+    let low = |report: Report| match report {
+        Report::Fix(fix) => Report::Fix(Fix { altitude_home_m: 20.0, ..fix }),
+        other => other,
+    };
+    let mut core = returns_blind(vec![near()]);
+    core.run(12, &with_engine(Mode::Return, 5000.0).into_iter().map(low).collect::<Vec<_>>());
+    assert!(cause(&core).contains("position is not known"), "{}", cause(&core));
 }
 
 /// A glide is told the altitudes that it has: nothing would show again that its engine stands.
