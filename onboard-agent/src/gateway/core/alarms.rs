@@ -1,9 +1,11 @@
 //! Alarms: raised when something has been wrong for a while, cleared when it is right again.
 
+mod climb;
 mod watches;
 
 use super::telemetry::{FRESH, Telemetry};
 use crate::gateway::order::Time;
+use climb::Climb;
 use geometry::LatLon;
 use std::time::Duration;
 use usal::contract::{Alarm, GatewayEvent};
@@ -23,8 +25,6 @@ const STOPPED_RPM: f64 = 300.0;
 const THROTTLE: f64 = 0.1;
 /// Throttle at which an aircraft that sinks does all it can, 0..1.
 const FULL_THROTTLE: f64 = 0.9;
-/// An aircraft that climbs faster than this has an engine, m/s.
-const CLIMBING_MPS: f64 = 0.5;
 /// The autopilot did not follow an order for so long.
 const DISOBEYS: Duration = Duration::from_secs(4);
 
@@ -71,7 +71,10 @@ pub struct AlarmInputs {
 #[derive(Debug, Clone, Default)]
 pub struct Alarms {
     raised: Vec<Watch>,
-    suspected: Vec<(Watch, Time)>,
+    /// What may be raised or cleared soon, and since when.
+    changing: Vec<(Watch, Time)>,
+    /// What it shows of its engine by climbing.
+    climb: Climb,
     /// Where it stood when it was found to stand still.
     stands_at: Option<LatLon>,
     /// Messages of another FP Manager that were ignored.
@@ -131,90 +134,102 @@ impl Alarms {
         }
         self.ignored = inputs.other_fp_manager;
         self.stopped.clone_from(&t.stopped);
+        self.climb.take(now, t);
+        let is_up = t.is_up(now);
         for watch in WATCHES {
-            let raised = self.raised.contains(&watch);
-            let wrong = is_wrong(watch, now, t, inputs, raised);
-            self.follow(now, watch, wrong, raised, out);
+            let wrong = self.is_wrong(watch, now, t, inputs);
+            let patience = match wrong {
+                true => watch.patience(),
+                false if is_up => watch.clears_after(),
+                false => Duration::ZERO,
+            };
+            self.follow(now, watch, (wrong, patience), out);
         }
     }
 
-    fn follow(&mut self, now: Time, watch: Watch, wrong: bool, raised: bool, out: &mut Vec<GatewayEvent>) {
-        if !wrong {
-            self.suspected.retain(|(w, _)| *w != watch);
-            if raised {
-                self.raised.retain(|w| *w != watch);
-                out.push(GatewayEvent::AlarmCleared { id: watch.alarm().id });
+    fn is_wrong(&self, watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs) -> bool {
+        let raised = self.raised.contains(&watch);
+        let age = |since: Option<Time>| since.map(|s| now.saturating_sub(s));
+        match watch {
+            Watch::GpsLost => t.gps.is_some_and(|(_, g)| !g.fix_3d),
+            Watch::EngineOut => {
+                let needed = raised || inputs.sinks_below_target;
+                let stands = |e| has_stopped(e, needed);
+                // one that stood when it was last told of stands
+                t.is_up(now) && t.engine(now).map_or(raised, stands)
+            }
+            Watch::EngineSuspected => t.is_up(now) && self.is_engine_doubtful(now, t, inputs, raised),
+            // if nothing comes at all, that is another alarm
+            Watch::StreamStopped => {
+                // some say of the wind, or of an engine, only what they measure in the air
+                let flies = t.armed || t.is_up(now);
+                flies && !t.stopped.is_empty() && age(t.last_received).is_some_and(|a| a < SILENT)
+            }
+            Watch::Sinks => inputs.sinks,
+            Watch::Slow => inputs.slow,
+            Watch::Fast => inputs.fast,
+            Watch::OffAltitude => inputs.off_altitude,
+            Watch::StandsStill => inputs.stands_still,
+            Watch::Disarmed => inputs.disarmed,
+            Watch::ListReplaced => inputs.list_replaced,
+            Watch::NotInCommand => inputs.not_in_command,
+            Watch::EnergyLow => {
+                let limit = if raised { ENERGY_LOW.1 } else { ENERGY_LOW.0 };
+                t.power.is_some_and(|(_, p)| p.battery < limit)
+            }
+            Watch::AutopilotSilent => age(t.last_received).is_some_and(|a| a > SILENT),
+            Watch::PositionStale => t.is_up(now) && is_stale(now, t),
+            Watch::Disobeys => age(inputs.disobeys_since).is_some_and(|a| a > DISOBEYS),
+            Watch::NoSafeRunway => inputs.no_safe_runway,
+            Watch::NoRunwayStored => inputs.no_runway_stored,
+            Watch::OtherFpManager => inputs.other_fp_manager > 0,
+            Watch::Exposed => inputs.exposed,
+            Watch::Replay => inputs.replay,
+            Watch::NotStored => inputs.not_stored,
+            Watch::Flooded => inputs.flooded,
+        }
+    }
+
+    /// It sinks or slows down at full throttle and does not tell of its engine. Once that was seen, until it has climbed as nothing does
+    /// without an engine, or tells that it turns: on the way down nothing else shows it. An autopilot that pulls up to keep the altitude
+    /// gives away its speed first.
+    fn is_engine_doubtful(&self, now: Time, t: &Telemetry, inputs: AlarmInputs, raised: bool) -> bool {
+        let full = |(at, throttle): (Time, f64)| now.saturating_sub(at) < FRESH && throttle > FULL_THROTTLE;
+        match t.engine(now) {
+            // that it stands is an alarm of its own
+            Some(engine) => raised && engine.rpm < STOPPED_RPM && !self.raised.contains(&Watch::EngineOut),
+            None if raised => inputs.slow || !self.climb.shows_an_engine(now, t),
+            None => (inputs.sinks || inputs.slow) && t.throttle.is_some_and(full),
+        }
+    }
+
+    /// Raised or cleared, once it has been so for long enough.
+    fn follow(
+        &mut self,
+        now: Time,
+        watch: Watch,
+        (wrong, patience): (bool, Duration),
+        out: &mut Vec<GatewayEvent>,
+    ) {
+        let known = self.changing.iter().position(|(w, _)| *w == watch);
+        if wrong == self.raised.contains(&watch) {
+            known.map(|at| self.changing.swap_remove(at));
+            return;
+        }
+        let since = known.and_then(|at| self.changing.get(at)).map_or(now, |(_, since)| *since);
+        if now.saturating_sub(since) < patience {
+            if known.is_none() {
+                self.changing.push((watch, now));
             }
             return;
         }
-        if raised {
-            return;
-        }
-        let since = match self.suspected.iter().find(|(w, _)| *w == watch) {
-            Some((_, since)) => *since,
-            None => {
-                self.suspected.push((watch, now));
-                now
-            }
-        };
-        if now.saturating_sub(since) >= watch.patience() {
+        self.changing.retain(|(w, _)| *w != watch);
+        if wrong {
             self.raised.push(watch);
             out.push(GatewayEvent::AlarmRaised(self.alarm(watch)));
-        }
-    }
-}
-
-fn is_wrong(watch: Watch, now: Time, t: &Telemetry, inputs: AlarmInputs, raised: bool) -> bool {
-    let age = |since: Option<Time>| since.map(|s| now.saturating_sub(s));
-    match watch {
-        Watch::GpsLost => t.gps.is_some_and(|(_, g)| !g.fix_3d),
-        Watch::EngineOut => {
-            let needed = raised || inputs.sinks_below_target;
-            let stands = |e| has_stopped(e, needed);
-            // one that stood when it was last told of stands
-            t.is_up(now) && t.engine(now).map_or(raised, stands)
-        }
-        Watch::EngineSuspected => t.is_up(now) && t.engine(now).is_none() && strains(now, t, inputs, raised),
-        // if nothing comes at all, that is another alarm
-        Watch::StreamStopped => {
-            // some say of the wind, or of an engine, only what they measure in the air
-            let flies = t.armed || t.is_up(now);
-            flies && !t.stopped.is_empty() && age(t.last_received).is_some_and(|a| a < SILENT)
-        }
-        Watch::Sinks => inputs.sinks,
-        Watch::Slow => inputs.slow,
-        Watch::Fast => inputs.fast,
-        Watch::OffAltitude => inputs.off_altitude,
-        Watch::StandsStill => inputs.stands_still,
-        Watch::Disarmed => inputs.disarmed,
-        Watch::ListReplaced => inputs.list_replaced,
-        Watch::NotInCommand => inputs.not_in_command,
-        Watch::EnergyLow => {
-            let limit = if raised { ENERGY_LOW.1 } else { ENERGY_LOW.0 };
-            t.power.is_some_and(|(_, p)| p.battery < limit)
-        }
-        Watch::AutopilotSilent => age(t.last_received).is_some_and(|a| a > SILENT),
-        Watch::PositionStale => t.is_up(now) && is_stale(now, t),
-        Watch::Disobeys => age(inputs.disobeys_since).is_some_and(|a| a > DISOBEYS),
-        Watch::NoSafeRunway => inputs.no_safe_runway,
-        Watch::NoRunwayStored => inputs.no_runway_stored,
-        Watch::OtherFpManager => inputs.other_fp_manager > 0,
-        Watch::Exposed => inputs.exposed,
-        Watch::Replay => inputs.replay,
-        Watch::NotStored => inputs.not_stored,
-        Watch::Flooded => inputs.flooded,
-    }
-}
-
-/// It sinks or slows down at full throttle; once that was seen, until it climbs again: on the way down nothing else shows
-/// it. An autopilot that pulls up to keep the altitude gives away its speed first.
-fn strains(now: Time, t: &Telemetry, inputs: AlarmInputs, raised: bool) -> bool {
-    match raised {
-        true => inputs.slow || t.fix.is_none_or(|(_, fix)| fix.down_mps > -CLIMBING_MPS),
-        false => {
-            let full =
-                |(at, throttle): (Time, f64)| now.saturating_sub(at) < FRESH && throttle > FULL_THROTTLE;
-            (inputs.sinks || inputs.slow) && t.throttle.is_some_and(full)
+        } else {
+            self.raised.retain(|w| *w != watch);
+            out.push(GatewayEvent::AlarmCleared { id: watch.alarm().id });
         }
     }
 }

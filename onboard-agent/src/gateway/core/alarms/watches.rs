@@ -328,6 +328,15 @@ impl Watch {
     pub fn patience(self) -> Duration {
         self.words().patience
     }
+
+    /// How long it has to be right in the air before the alarm is cleared. By whether an engine runs a way home is chosen: one heartbeat
+    /// or one reading of a propeller that the wind turns is not believed.
+    pub fn clears_after(self) -> Duration {
+        match self {
+            Watch::EngineOut | Watch::Disarmed => Duration::from_millis(1500),
+            _ => Duration::ZERO,
+        }
+    }
 }
 
 #[cfg(test)]

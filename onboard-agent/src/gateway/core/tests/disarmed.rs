@@ -23,7 +23,7 @@ fn disarmed_in_flight_is_told_and_hides_no_other_alarm() {
     assert!(!core.gateway.telemetry().position().unwrap().1.on_ground);
     core.run(5, &disarmed(Mode::Waypoints)[..1]);
     assert!(core.raised("position-stale"), "nothing is known of where it is");
-    core.run(1, &flying(25.0, 25.0));
+    core.run(2, &flying(25.0, 25.0));
     assert!(!core.raised("disarmed-in-flight"), "it was armed again");
 }
 
