@@ -4,7 +4,7 @@
 //! down sooner it would lack that height before the runway. What the rest of the way can't lose is lost in circles where the approach
 //! begins, and what is left of it on the way there.
 
-use super::gates::{Gate, circles, is_over_ground};
+use super::gates::{Circles, Gate, is_over_ground};
 use super::way::gates;
 use super::{Approach, Situation};
 use aircraft::glide::{Circle, GlidePoint, GlideStart, glide};
@@ -42,7 +42,9 @@ pub(super) fn glide_in(
     let right = normalise_180(runway.heading_deg - s.position.bearing_deg(initial)) >= 0.0;
     let sides = [right, !right].map(|right| {
         let altitudes = (at_initial.altitude_amsl_m, told.initial_m);
-        let mut gates = circles(initial, (runway.heading_deg, right), told.circles, altitudes, s);
+        let circles =
+            Circles { count: told.circles, radius_m: Circle::of(s.profile, s.wind()).radius_m, right };
+        let mut gates = circles.gates(initial, runway.heading_deg, altitudes);
         gates.push(Gate { position: last, altitude_amsl_m: told.last_m, on_arc: false });
         gates
     });

@@ -1,27 +1,28 @@
 //! The way to a landing with the engine: what is checked here is what is fed.
 //!
-//! The autopilot flies straight from altitude to altitude: it would climb on its way towards a ridge, and come to it too low. Where the
-//! slopes lead too near to the ground it circles up before the transit, and down where the approach begins.
+//! The autopilot flies straight from altitude to altitude. So it is told to climb at once, as steeply as it can be counted on: told the
+//! altitude of a far place it would climb all the way there, and come to a ridge too low. Where that slope, or the one down to the approach,
+//! leads too near to the ground, it circles up before the transit, and down where the approach begins.
 
-use super::gates::{CORNERS, Gate, circles, is_over_ground};
+use super::gates::{CORNERS, Circles, Gate, is_over_ground, turned_m};
 use super::gliding::SPARE_M;
 use super::way::{INITIAL_M, gates};
 use super::{Approach, Situation, along};
-use aircraft::glide::Circle;
+use aircraft::power::demanded_power_w;
 use geometry::LatLon;
-use geometry::near::{distance_and_course, distance_m};
+use geometry::geodesy::normalise_180;
+use geometry::near::distance_and_course;
 use usal::contract::{SafeParameters, SafeRunway};
 
-/// Height kept above the ground on the way, metres; as much of it is asked for as the aircraft has where it is, and towards the approach
-/// no more than this share of what it still has above that.
+/// Height kept above the ground on the way, metres; towards the approach no more than this share of what it still has above that.
 const CLEARANCE_M: f64 = 100.0;
 const CLEAR_SHARE: f64 = 0.5;
 /// Slopes that differ by less are one, metres.
 const LEVEL_M: f64 = 10.0;
 /// Share of the steepest climb and descent that is told.
 const STEEP: f64 = 0.7;
-/// More waypoints are not fed.
-const MOST_GATES: u32 = 200;
+/// Most circles on one way: more waypoints are not fed.
+const MOST_CIRCLES: u32 = 192 / CORNERS;
 
 /// A way with the engine.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +31,8 @@ pub(super) struct Powered {
     pub gates: Vec<Gate>,
     /// Time to the threshold, seconds.
     pub time_s: f64,
+    /// What that takes, joules.
+    pub energy_j: f64,
 }
 
 /// What the ways have in common.
@@ -40,7 +43,13 @@ struct Ends<'a> {
     heading_deg: f64,
     /// Metres AMSL.
     transit_m: f64,
+    /// Straight to there: how far, and at which speed over the ground, metres and m/s.
+    way_m: f64,
+    ground_mps: f64,
 }
+
+/// How a height is changed: on the way, or in circles to one side.
+type InCircles = Option<bool>;
 
 /// `None`: the ground on the way is too high, or the wind too strong.
 pub(super) fn powered(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Option<Powered> {
@@ -51,59 +60,75 @@ pub(super) fn powered(runway: &SafeRunway, safe: &SafeParameters, s: &Situation)
     }
     let highest_m = s.profile.ceiling_amsl_m.max(initial.1);
     let transit_m = s.altitude_amsl_m.max(needed_m).clamp(initial.1, highest_m);
-    let ends = Ends { s, initial, heading_deg: runway.heading_deg, transit_m };
-    let has_m = s.terrain.and_then(|terrain| terrain.elevation_m(s.position));
-    let has_m = has_m.map_or(f64::INFINITY, |ground_m| (s.altitude_amsl_m - ground_m - 1.0).max(0.0));
-    let clearance_m =
-        |told_m: f64| (CLEAR_SHARE * (told_m - initial.1)).clamp(SPARE_M, CLEARANCE_M - 1.0).min(has_m);
-    let ways = [(false, false), (false, true), (true, false), (true, true)];
-    ways.into_iter().find_map(|(circles_up, circles_down)| {
-        let mut gates = up(circles_up, circles_down, &ends)?;
-        gates.extend(down(circles_down, &ends)?);
+    let (way_m, course_deg) = distance_and_course(s.position, initial.0);
+    let ground_mps = s.wind().ground_speed_mps(s.profile.cruise_airspeed_mps, course_deg)?;
+    let ends = Ends { s, initial, heading_deg: runway.heading_deg, transit_m, way_m, ground_mps };
+    let asked_m = |told_m: f64| (CLEAR_SHARE * (told_m - initial.1)).clamp(SPARE_M, CLEARANCE_M - 1.0);
+    let ups = sides(normalise_180(course_deg - s.track_deg) >= 0.0);
+    let downs = sides(normalise_180(runway.heading_deg - course_deg) >= 0.0);
+    let ways = combined(ups, downs).into_iter();
+    let mut over_ground = ways.filter_map(|(up_by, down_by)| {
+        let most = if up_by.is_some() && down_by.is_some() { MOST_CIRCLES / 2 } else { MOST_CIRCLES };
+        let mut gates = up(up_by, down_by, most, &ends)?;
+        gates.extend(down(down_by, most, &ends)?);
         gates.push(Gate { position: last.0, altitude_amsl_m: last.1, on_arc: false });
-        if gates.len() > MOST_GATES as usize || !is_over_ground(&gates, s, clearance_m) {
-            return None;
-        }
-        let time_s = time_s(&gates, runway.threshold, s)?;
-        Some(Powered { gates, time_s })
-    })
+        is_over_ground(&gates, s, asked_m).then_some(gates)
+    });
+    let gates = over_ground.next()?;
+    let (time_s, energy_j) = takes(&gates, runway, s)?;
+    Some(Powered { gates, time_s, energy_j })
 }
 
-/// To the altitude of the transit; on the way there, if that is long enough.
-fn up(in_circles: bool, circles_down: bool, ends: &Ends) -> Option<Vec<Gate>> {
-    let Ends { s, initial, transit_m, .. } = ends;
+/// On the way, in circles to the one side, to the other.
+fn sides(right: bool) -> [InCircles; 3] {
+    [None, Some(right), Some(!right)]
+}
+
+/// Without circles first, then with those down, those up, and both.
+fn combined(ups: [InCircles; 3], downs: [InCircles; 3]) -> Vec<(InCircles, InCircles)> {
+    let mut all: Vec<_> = ups.into_iter().flat_map(|up| downs.map(|down| (up, down))).collect();
+    all.sort_by_key(|(up, down)| (up.is_some(), down.is_some()));
+    all
+}
+
+/// To the altitude of the transit; at once, if the way is long enough.
+fn up(by: InCircles, down_by: InCircles, most: u32, ends: &Ends) -> Option<Vec<Gate>> {
+    let Ends { s, initial, transit_m, way_m, ground_mps, .. } = *ends;
     let climb_m = transit_m - s.altitude_amsl_m;
     let climb_mps = STEEP * s.profile.max_climb_mps.max(0.1);
     if climb_m < LEVEL_M {
-        return Some(vec![]);
+        return by.is_none().then(Vec::new);
     }
-    if !in_circles {
-        let way_m = distance_m(s.position, initial.0) - if circles_down { 0.0 } else { descent_m(ends) };
-        let time_s = way_m / s.profile.cruise_airspeed_mps.max(1.0);
-        return (climb_m <= climb_mps * time_s).then(Vec::new);
-    }
-    let count = count(climb_m, climb_mps, s)?;
-    let around = circles(s.position, (s.track_deg, true), count, (s.altitude_amsl_m, *transit_m), s);
+    let Some(right) = by else {
+        let level_m = way_m - if down_by.is_some() { 0.0 } else { descent_m(ends) };
+        let climb_m = climb_m / climb_mps * ground_mps;
+        // a place that is nearer than it turns is not flown to
+        let there_m = climb_m.max(turned_m(s).min(level_m));
+        let position = s.position.destination(s.position.bearing_deg(initial.0), there_m);
+        let there = Gate { position, altitude_amsl_m: transit_m, on_arc: false };
+        return (climb_m <= level_m).then(|| vec![there]);
+    };
+    let circles = Circles::at_rate((climb_m, climb_mps), most, right, s);
     // it is there
-    Some(around.into_iter().skip(1).collect())
+    Some(circles.gates(s.position, s.track_deg, (s.altitude_amsl_m, transit_m)).split_off(1))
 }
 
 /// From the altitude of the transit to where the approach begins.
-fn down(in_circles: bool, ends: &Ends) -> Option<Vec<Gate>> {
-    let Ends { s, initial: (initial, approach_m), heading_deg, transit_m } = *ends;
+fn down(by: InCircles, most: u32, ends: &Ends) -> Option<Vec<Gate>> {
+    let Ends { s, initial: (initial, approach_m), heading_deg, transit_m, way_m, .. } = *ends;
     let there = Gate { position: initial, altitude_amsl_m: approach_m, on_arc: false };
     let falls_m = transit_m - approach_m;
     if falls_m < LEVEL_M {
-        return (!in_circles).then(|| vec![there]);
+        return by.is_none().then(|| vec![there]);
     }
-    if in_circles {
-        let count = count(falls_m, STEEP * s.profile.max_descent_mps.max(0.1), s)?;
-        return Some(circles(initial, (heading_deg, true), count, (transit_m, approach_m), s));
+    if let Some(right) = by {
+        let rate = (falls_m, STEEP * s.profile.max_descent_mps.max(0.1));
+        let circles = Circles::at_rate(rate, most, right, s);
+        return Some(circles.gates(initial, heading_deg, (transit_m, approach_m)));
     }
-    let (way_m, descent_m) = (distance_m(s.position, initial), descent_m(ends));
+    let descent_m = descent_m(ends);
     if descent_m + INITIAL_M <= way_m {
-        let bearing_deg = s.position.inverse(initial).bearing_start_deg;
-        let position = s.position.destination(bearing_deg, way_m - descent_m);
+        let position = s.position.destination(s.position.bearing_deg(initial), way_m - descent_m);
         return Some(vec![Gate { position, altitude_amsl_m: transit_m, on_arc: false }, there]);
     }
     // what is left of it is lost on the level part of the approach
@@ -113,25 +138,25 @@ fn down(in_circles: bool, ends: &Ends) -> Option<Vec<Gate>> {
 
 /// Length of the descent to where the approach begins, metres.
 fn descent_m(ends: &Ends) -> f64 {
-    let profile = ends.s.profile;
-    let slope = STEEP * profile.max_descent_mps.max(0.1) / profile.cruise_airspeed_mps.max(1.0);
+    let slope = STEEP * ends.s.profile.max_descent_mps.max(0.1) / ends.ground_mps;
     (ends.transit_m - ends.initial.1) / slope
 }
 
-/// So many circles for a height at a rate, m/s; `None`: too many.
-fn count(height_m: f64, mps: f64, s: &Situation) -> Option<u32> {
-    let count = (height_m / (mps * Circle::of(s.profile, s.wind()).time_s)).ceil().max(1.0);
-    (count * f64::from(CORNERS) < f64::from(MOST_GATES)).then_some(count as u32)
-}
-
-fn time_s(gates: &[Gate], threshold: LatLon, s: &Situation) -> Option<f64> {
-    let (mut here, mut time_s) = (s.position, 0.0);
-    for place in gates.iter().map(|gate| gate.position).chain([threshold]) {
+/// How long the way to the threshold takes, and of the energy: seconds and joules. A descent takes little, a climb much.
+fn takes(gates: &[Gate], runway: &SafeRunway, s: &Situation) -> Option<(f64, f64)> {
+    let profile = s.profile;
+    let (mut here, mut altitude_m) = (s.position, s.altitude_amsl_m);
+    let (mut time_s, mut energy_j) = (0.0, 0.0);
+    let places = gates.iter().map(|gate| (gate.position, gate.altitude_amsl_m));
+    for (place, told_m) in places.chain([(runway.threshold, runway.elevation_amsl_m)]) {
         let (distance_m, course_deg) = distance_and_course(here, place);
-        time_s += distance_m / s.wind().ground_speed_mps(s.profile.cruise_airspeed_mps, course_deg)?;
-        here = place;
+        let takes_s = distance_m / s.wind().ground_speed_mps(profile.cruise_airspeed_mps, course_deg)?;
+        let climb_mps = (told_m - altitude_m) / takes_s.max(1.0);
+        time_s += takes_s;
+        energy_j += takes_s * demanded_power_w(profile, profile.cruise_airspeed_mps, climb_mps, 1.0);
+        (here, altitude_m) = (place, told_m);
     }
-    Some(time_s)
+    Some((time_s, energy_j))
 }
 
 /// The altitude that clears the ground between here and a place, metres AMSL; `None`: nothing is known of it.
@@ -147,6 +172,8 @@ mod tests {
     use super::super::{choose, path};
     use super::*;
     use aircraft::Profile;
+    use terrain::Terrain;
+    use usal::contract::Air;
 
     /// How far it is told to fly above a ridge of 700 m, so far north of it, on its way to a threshold, both in km; from an altitude,
     /// metres AMSL.
@@ -182,6 +209,132 @@ mod tests {
         {
             let over_m = over_the_ridge_m(threshold_km, ridge_km, altitude_amsl_m);
             assert!((99.0..1000.0).contains(&over_m), "{threshold_km} km, {ridge_km} km: {over_m} m");
+        }
+    }
+
+    /// Flat, but for a knoll beneath the aircraft and a ridge to the north of it. Metres AMSL.
+    struct KnollAndRidge {
+        knoll_m: f64,
+        ridge: Wall,
+    }
+
+    impl terrain::Terrain for KnollAndRidge {
+        fn elevation_m(&self, at: LatLon) -> Option<f64> {
+            let on_knoll = HOME.distance_m(at) < 300.0;
+            if on_knoll { Some(self.knoll_m) } else { self.ridge.elevation_m(at) }
+        }
+    }
+
+    /// Told altitudes every 50 m of the way: how far from the aircraft, and metres AMSL.
+    fn told(way: &Powered, s: &Situation) -> Vec<(LatLon, f64)> {
+        let mut from = (s.position, s.altitude_amsl_m);
+        let mut all = vec![];
+        for gate in &way.gates {
+            let ((start, start_m), end_m) = (from, gate.altitude_amsl_m);
+            from = (gate.position, end_m);
+            let (way_m, course_deg) = distance_and_course(start, gate.position);
+            let steps = (way_m / 50.0).ceil().max(1.0);
+            all.extend((0..=steps as u32).map(|i| {
+                let share = f64::from(i) / steps;
+                (start.destination(course_deg, share * way_m), start_m + share * (end_m - start_m))
+            }));
+        }
+        all
+    }
+
+    fn winds(profile: &Profile) -> [Option<Air>; 3] {
+        [0.0, 0.3, -0.3].map(|share| {
+            Some(Air {
+                airspeed_mps: profile.cruise_airspeed_mps,
+                wind_east_mps: 0.1 * share * profile.cruise_airspeed_mps,
+                wind_north_mps: share * profile.cruise_airspeed_mps,
+                pressure_hpa: 960.0,
+                temperature_c: 15.0,
+            })
+        })
+    }
+
+    /// Whoever begins low, or where the elevation model is too high, has the whole clearance once he has left there.
+    #[test]
+    fn what_it_lacks_where_it_is_it_does_not_lack_over_a_ridge_on_the_way() {
+        for name in Profile::names() {
+            let profile = Profile::by_name(name).unwrap();
+            for air in winds(&profile) {
+                for above_m in [-20.0, 5.0, 20.0, 60.0, 95.0] {
+                    for (ridge_m, ridge_km) in [(510.0, 2.2), (560.0, 4.0), (800.0, 3.0), (480.0, 6.0)] {
+                        let at_ridge = HOME.destination(0.0, 1000.0 * ridge_km);
+                        let ground = KnollAndRidge { knoll_m: 480.0, ridge: Wall(at_ridge.lat_deg, ridge_m) };
+                        let s = Situation {
+                            altitude_amsl_m: 480.0 + above_m,
+                            terrain: Some(&ground),
+                            air,
+                            ..situation(&profile)
+                        };
+                        let case =
+                            format!("{name}, {air:?}, {above_m} m, ridge of {ridge_m} m at {ridge_km} km");
+                        let way = powered(&runway("it", 0.0, 12.0, 0.0, 1), &SafeParameters::default(), &s)
+                            .unwrap_or_else(|| panic!("{case}"));
+                        let clears = |(place, told_m): &(LatLon, f64)| {
+                            let over_ridge = ground.ridge.elevation_m(*place) == Some(ridge_m);
+                            let far_off = HOME.distance_m(*place) > 600.0;
+                            // what a slope gains between two samples of a cliff
+                            let least_m = (0.5 * (told_m - 442.0)).clamp(15.0, 98.0) - 30.0;
+                            !over_ridge || !far_off || told_m - ridge_m >= least_m
+                        };
+                        assert!(told(&way, &s).iter().all(clears), "{case}: {way:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// At its ceiling above a runway at the sea: it circles as often as that takes, no steeper than it descends, and is fed.
+    #[test]
+    fn however_high_above_a_runway_it_is_there_is_a_way_down() {
+        for name in Profile::names() {
+            let profile = Profile::by_name(name).unwrap();
+            for (air, km) in
+                winds(&profile).into_iter().flat_map(|air| [1.0, 2.0, 5.0, 20.0].map(|km| (air, km)))
+            {
+                for altitude_amsl_m in [300.0, 1200.0, 2100.0, profile.ceiling_amsl_m] {
+                    let it = SafeRunway { elevation_amsl_m: 0.0, ..runway("it", 70.0, km, 200.0, 1) };
+                    let terrain = terrain::Flat(0.0);
+                    let s =
+                        Situation { altitude_amsl_m, air, terrain: Some(&terrain), ..situation(&profile) };
+                    let case = format!("{name}, {air:?}, {km} km, {altitude_amsl_m} m");
+                    let way =
+                        powered(&it, &SafeParameters::default(), &s).unwrap_or_else(|| panic!("{case}"));
+                    assert!(way.gates.len() <= 200, "{case}: {}", way.gates.len());
+                    for pair in way.gates.windows(2).filter(|pair| pair[1].on_arc || !pair[0].on_arc) {
+                        let (way_m, course_deg) = distance_and_course(pair[0].position, pair[1].position);
+                        let mps = s.wind().ground_speed_mps(profile.cruise_airspeed_mps, course_deg).unwrap();
+                        let down_mps =
+                            (pair[0].altitude_amsl_m - pair[1].altitude_amsl_m) / (way_m / mps).max(1.0);
+                        assert!(down_mps <= 1.45 * profile.max_descent_mps, "{case}: {down_mps} m/s");
+                    }
+                    assert!(choose(&[it], &SafeParameters::default(), &s).is_some(), "{case}");
+                }
+            }
+        }
+    }
+
+    /// A slope on the one side of the aircraft, or of where the approach begins.
+    #[test]
+    fn it_circles_on_the_side_where_there_is_room() {
+        let profile = Profile::default();
+        for side in [1.0, -1.0] {
+            struct Slope(f64);
+            impl terrain::Terrain for Slope {
+                fn elevation_m(&self, at: LatLon) -> Option<f64> {
+                    let aside_m = self.0 * (at.lon_deg - HOME.lon_deg) * 89_000.0;
+                    Some(if aside_m > 150.0 { 900.0 } else { 300.0 })
+                }
+            }
+            let slope = Slope(side);
+            let s = Situation { altitude_amsl_m: 1400.0, terrain: Some(&slope), ..situation(&profile) };
+            let way = powered(&runway("it", 0.0, 3.0, 0.0, 1), &SafeParameters::default(), &s);
+            let way = way.unwrap_or_else(|| panic!("{side}"));
+            assert!(way.gates.iter().any(|gate| gate.on_arc), "{way:?}");
         }
     }
 

@@ -96,9 +96,8 @@ fn time_s(runway: &SafeRunway, approach: Approach, safe: &SafeParameters, s: &Si
     if s.glides {
         return glide_in(runway, approach, safe, s).map(|glide| glide.time_s);
     }
-    let time_s = powered(runway, safe, s)?.time_s;
-    let endurance_s = USABLE * s.battery * s.profile.energy_j / s.profile.cruise_power_w.max(1.0);
-    (time_s < endurance_s).then_some(time_s)
+    let way = powered(runway, safe, s)?;
+    (way.energy_j < USABLE * s.battery * s.profile.energy_j).then_some(way.time_s)
 }
 
 #[cfg(test)]
@@ -142,7 +141,7 @@ mod tests {
             ("tailwind on landing", vec![downwind, main.clone()], 1.0, 8.0, Some("runway main")),
             ("too short", vec![short, near], 1.0, 0.0, Some("runway near")),
             ("just long enough", vec![tight, main.clone()], 1.0, 0.0, Some("runway main")),
-            ("out of reach", vec![main], 0.03, 0.0, None),
+            ("out of reach", vec![main], 0.02, 0.0, None),
         ];
         let profile = Profile::default();
         for (name, runways, battery, east_mps, expected) in cases {
