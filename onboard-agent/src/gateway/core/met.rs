@@ -24,7 +24,9 @@ impl Gateway {
             self.control.met_at = None;
             return;
         }
-        if self.buffer.course().aboard {
+        // what is armed late took off by an order of ours
+        let is_theirs = self.stood && self.adopting.is_none() && !self.may_arm_late(now);
+        if is_theirs || self.buffer.course().aboard {
             self.control.met_at = None;
             return self.leave_to_who_took_off(out);
         }
@@ -45,11 +47,21 @@ impl Gateway {
         }
     }
 
-    /// What is aboard is known, and nobody has ordered the launch.
+    /// Nobody has ordered the launch. What was fed and is aboard is flown as if it had been; a list that the autopilot still has of an
+    /// earlier start is his who flies it.
     fn leave_to_who_took_off(&mut self, out: &mut Vec<Output>) {
         let on_ground = matches!(self.state, GatewayState::Off | GatewayState::Stop);
-        if on_ground && self.telemetry.mode.is_some_and(|mode| mode != Mode::Waypoints) {
+        let flies_what_was_fed = self.telemetry.mode == Some(Mode::Waypoints) && self.buffer.course().aboard;
+        if on_ground && self.telemetry.mode.is_some() && !flies_what_was_fed {
             self.change(Trigger::PilotTook, "taken off under a pilot's control", out);
+        }
+    }
+
+    /// It stands: what an earlier gateway knew of its flight is over, and who takes off now without an order of ours is on his own.
+    pub(super) fn forget_earlier_flight(&mut self, out: &mut Vec<Output>) {
+        self.stood = true;
+        if self.adopting.take().is_some() {
+            out.push(Output::Save);
         }
     }
 

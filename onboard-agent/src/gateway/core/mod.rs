@@ -75,6 +75,10 @@ pub struct Gateway {
     terminated: bool,
     /// A flight was met in the air: what was known of it.
     adopting: Option<Snapshot>,
+    /// It was seen to stand, not armed: whatever takes off since without an order to is somebody's own flight.
+    stood: bool,
+    /// When it took off, until it is high enough to turn.
+    took_off: Option<Time>,
     /// Another station's list is aboard, and is not flown; until ours is.
     list_lost: bool,
     /// The driver was told to change nothing aboard.
@@ -107,6 +111,8 @@ impl Gateway {
             flooded: false,
             terminated: restored.as_ref().is_some_and(|k| k.terminated),
             adopting: restored,
+            stood: false,
+            took_off: None,
             list_lost: false,
             hands_off: false,
             now: Time::ZERO,
@@ -267,6 +273,9 @@ impl Gateway {
         let Some(to) = states::next(self.state, trigger) else { return };
         let from = std::mem::replace(&mut self.state, to);
         self.cause = cause.to_owned();
+        if from == GatewayState::Stop {
+            self.took_off = Some(self.now).filter(|_| is_flying(to));
+        }
         if !is_safe(to) {
             self.control.safe_since = None;
         }

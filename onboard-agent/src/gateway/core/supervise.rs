@@ -1,6 +1,7 @@
 //! Is the FP Manager alive, has it enough waypoints aboard, and what if not: Safe mode.
 
 use super::io::{Intent, Output};
+use super::observe::CLEAR_M;
 use super::safe::{self, Situation};
 use super::states::Trigger;
 use super::telemetry::OUT_OF_DATE;
@@ -10,8 +11,8 @@ use std::time::Duration;
 use usal::Instance;
 use usal::contract::{GatewayState, SafeParameters, Token, Waypoint};
 
-/// Height above the take-off place from which a climbing aircraft may circle, metres.
-const CLEAR_M: f64 = 40.0;
+/// Faster than this upwards it climbs, m/s.
+const CLIMBING_MPS: f64 = 0.5;
 
 /// A way home that could not be found is looked for again after this: by then it is elsewhere.
 const LOOKS_AGAIN: Duration = Duration::from_secs(10);
@@ -184,10 +185,11 @@ impl Gateway {
         self.ended || self.buffer.last().is_some_and(|w| w.end_of_plan)
     }
 
-    /// High enough to turn: a take-off is not interrupted before, unless it is over.
+    /// High enough to turn: a take-off is not interrupted before, unless it circles already, and no higher.
     fn is_clear_of_ground(&self) -> bool {
-        let high = self.telemetry.fix.is_some_and(|(_, f)| f.altitude_home_m >= CLEAR_M);
-        self.state != GatewayState::TakeOff || high || self.is_dry()
+        let climbs = self.telemetry.fix.is_none_or(|(_, f)| f.down_mps < -CLIMBING_MPS);
+        let takes_off = self.took_off.is_some() || self.state == GatewayState::TakeOff;
+        !takes_off || self.telemetry.is_above_home(CLEAR_M) || (self.is_dry() && !climbs)
     }
 
     /// The end loiter is circled although the plan did not end.

@@ -181,12 +181,22 @@ impl Telemetry {
         self.is_airborne() || self.flies_disarmed(now)
     }
 
+    /// At least so far above the take-off place, metres, as far as is known.
+    pub fn is_above_home(&self, metres: f64) -> bool {
+        self.fix.is_some_and(|(_, fix)| fix.altitude_home_m >= metres)
+    }
+
     /// On the ground, as it says; silent about it for a while, and unarmed or at rest, it is believed to be there.
     pub fn stands(&self, now: Time) -> bool {
         let rests = self.seems_to_rest(now);
         let silent =
             || if self.armed { rests == Some(true) } else { self.has_waited(now) && rests != Some(false) };
         self.first_beat.is_some() && self.on_ground.unwrap_or_else(silent)
+    }
+
+    /// The same, and nobody is to be hurt by its engine.
+    pub fn stands_disarmed(&self, now: Time) -> bool {
+        self.stands(now) && !self.armed
     }
 
     /// In the air for certain: it says so, or is armed, silent about it, and moves (unarmed it may be carried).

@@ -46,3 +46,22 @@ fn who_takes_off_by_hand_in_a_mode_of_his_own_flies_in_manual() {
         assert_eq!(core.gateway.state(), GatewayState::Nav, "{mode:?}: he gives it back");
     }
 }
+
+/// Its list is not ours any more, whatever the autopilot still has.
+#[test]
+fn who_takes_off_when_nothing_is_to_be_flown_any_more_has_it() {
+    for silent in [false, true] {
+        let mut core = ready();
+        let nothing = Feed { cancel_after: Some(Token(0)), waypoints: vec![] };
+        core.step(Input::Feed(4, nothing, fp_manager()));
+        assert!(core.was_ordered(&Order::Forget));
+        core.done();
+        if silent {
+            core.run(12, &[]);
+            assert_eq!(core.gateway.state(), GatewayState::Off);
+        }
+        core.run(30, &in_mode(Mode::Waypoints));
+        assert_eq!(core.gateway.state(), GatewayState::Manual, "silent: {silent}");
+        assert!(!was_steered(&core) && core.raised("not-in-command"), "silent: {silent}");
+    }
+}

@@ -376,6 +376,7 @@ pub fn landing() -> Vec<Waypoint> {
     ]
 }
 
+mod by_hand;
 mod corners;
 mod faulted;
 mod faults;
