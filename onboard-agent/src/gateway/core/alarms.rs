@@ -47,6 +47,8 @@ pub struct AlarmInputs {
     pub stands_still: bool,
     /// It flies, and is not armed.
     pub disarmed: bool,
+    /// It was to be ended by force, and that was not carried out.
+    pub flies_on: bool,
     /// Another station put its list aboard, which is not flown.
     pub list_replaced: bool,
     /// Somebody else steers the flying aircraft.
@@ -171,6 +173,7 @@ impl Alarms {
             Watch::OffAltitude => inputs.off_altitude,
             Watch::StandsStill => inputs.stands_still,
             Watch::Disarmed => inputs.disarmed,
+            Watch::FliesOn => inputs.flies_on,
             Watch::ListReplaced => inputs.list_replaced,
             Watch::NotInCommand => inputs.not_in_command,
             Watch::EnergyLow => {

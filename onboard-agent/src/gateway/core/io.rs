@@ -118,6 +118,9 @@ pub struct Snapshot {
     /// The flight was ended by force; a restart does not bring it back.
     #[serde(default)]
     pub terminated: bool,
+    /// When, seconds since 1970, if that was known.
+    #[serde(default)]
+    pub terminated_unix_s: Option<i64>,
     /// The alarm of an engine that has failed, or seemed to.
     #[serde(default)]
     pub engine: Option<String>,

@@ -85,6 +85,9 @@ impl Gateway {
     /// Takes over a flight that was met in the air, if it flies waypoints of ours.
     pub(super) fn adopt(&mut self, id: OrderId, aboard: Option<usize>, out: &mut Vec<Output>) {
         self.control.forget(id);
+        if self.state == GatewayState::Terminate {
+            return;
+        }
         let mut waypoints = std::mem::take(&mut self.control.adopting);
         let known = self.adopting.take();
         let given_back = |intent: &Intent| *intent == Intent::Nothing && self.flies_waypoints();

@@ -11,6 +11,7 @@ mod buffer;
 mod control;
 mod deviation;
 mod feeding;
+mod forced_end;
 mod io;
 mod launch;
 mod met;
@@ -34,6 +35,7 @@ use super::order::{Course, Mode, Order, OrderId, Report, Time};
 use alarms::{AlarmInputs, Alarms};
 use buffer::Buffer;
 use control::Control;
+use forced_end::ForcedEnd;
 use geometry::LatLon;
 use states::{Trigger, is_flying, is_safe};
 use std::time::Duration;
@@ -71,8 +73,7 @@ pub struct Gateway {
     not_stored: bool,
     /// Somebody floods the port.
     flooded: bool,
-    /// The flight was ended by force, perhaps before a restart; until it is on the ground.
-    terminated: bool,
+    forced_end: ForcedEnd,
     /// A flight was met in the air: what was known of it.
     adopting: Option<Snapshot>,
     /// It was seen to stand, not armed: whatever takes off since without an order to is somebody's own flight.
@@ -109,7 +110,9 @@ impl Gateway {
             low_reported: false,
             not_stored: false,
             flooded: false,
-            terminated: restored.as_ref().is_some_and(|k| k.terminated),
+            forced_end: restored
+                .as_ref()
+                .map_or_else(ForcedEnd::default, |k| ForcedEnd::restored(k.terminated, k.terminated_unix_s)),
             adopting: restored,
             stood: false,
             took_off: None,
@@ -147,7 +150,7 @@ impl Gateway {
 
     fn round(&mut self, now: Time, out: &mut Vec<Output>) {
         self.watch(now, out);
-        self.keep_terminated(out);
+        self.keep_ended(now, out);
         self.observe(now, out);
         self.supervise(now, out);
         self.steer(now, out);
@@ -176,7 +179,8 @@ impl Gateway {
             waypoints: self.buffer.waypoints().cloned().collect(),
             plan: self.fp_manager.plan.clone(),
             mode: self.telemetry.mode.map(|_| self.telemetry.mode_name.clone().into_owned()),
-            terminated: self.terminated,
+            terminated: self.forced_end.is_wanted,
+            terminated_unix_s: self.forced_end.unix_s,
             engine: self.alarms.of_engine(),
         }
     }
@@ -190,7 +194,10 @@ impl Gateway {
         }
         match report {
             Report::Course(course) => self.set_course(course),
-            Report::Done(id) => self.control.done(id),
+            Report::Done(id) => {
+                self.control.done(id);
+                self.forced_end.answered(now, id, true);
+            }
             Report::PutOff(id, why) => self.put_off(now, id, why, out),
             Report::Failed(id, why) => self.failed(now, id, why, out),
             Report::Adopted(id, aboard) => self.adopt(id, aboard, out),
@@ -220,6 +227,7 @@ impl Gateway {
     }
 
     fn failed(&mut self, now: Time, id: OrderId, why: String, out: &mut Vec<Output>) {
+        self.forced_end.answered(now, id, false);
         let launch = self.control.failed(now, id);
         if launch && !is_flying(self.state) {
             self.give_up_launch(&format!("launch refused by the autopilot: {why}"), out);
@@ -236,6 +244,7 @@ impl Gateway {
             off_altitude: self.is_off_altitude(now),
             stands_still: self.stands_still(now),
             disarmed: is_flying(self.state) && self.telemetry.flies_disarmed(now),
+            flies_on: self.telemetry.armed && self.forced_end.has_failed(),
             list_replaced: self.list_lost && self.state != GatewayState::Manual,
             not_in_command: self.state == GatewayState::Manual,
             no_safe_runway: self.control.intent == Intent::Return,

@@ -3,8 +3,8 @@
 use super::Gateway;
 use super::io::{Intent, Output};
 use super::safe::{choose, is_usable};
-use super::states::{Trigger, is_flying};
-use crate::gateway::order::{Order, Time};
+use super::states::is_flying;
+use crate::gateway::order::Time;
 use usal::contract::{GatewayRequest, GatewayState, SafeParameters, SafeRunway};
 
 /// A direct command goes to a place so far ahead, metres.
@@ -219,39 +219,5 @@ impl Gateway {
         self.safe = safe;
         out.push(Output::Save);
         Ok(())
-    }
-
-    fn terminate(&mut self, confirm: &str, out: &mut Vec<Output>) -> Result<(), String> {
-        if confirm != self.settings.vehicle {
-            return Err("To end the flight by force, repeat the vehicle's name in `confirm`.".into());
-        }
-        if !is_flying(self.state) && !self.telemetry.armed {
-            return Err("There is no flight to end.".into());
-        }
-        self.control.set_intent(Intent::Nothing, self.telemetry.mode);
-        self.end_by_force("by command", out);
-        Ok(())
-    }
-
-    fn end_by_force(&mut self, cause: &str, out: &mut Vec<Output>) {
-        self.terminated = true;
-        self.order(Order::Terminate, out);
-        self.change(Trigger::Terminated, cause, out);
-        out.push(Output::Save);
-    }
-
-    /// What was ended by force before a restart of the gateway stays ended, until it is on the ground.
-    pub(super) fn keep_terminated(&mut self, out: &mut Vec<Output>) {
-        let connected = self.telemetry.mode.is_some();
-        if !self.terminated || self.state == GatewayState::Terminate || !connected {
-            return;
-        }
-        if self.telemetry.is_landed(self.now) {
-            self.terminated = false;
-            self.adopting = None;
-            out.push(Output::Save);
-        } else {
-            self.end_by_force("by command, before the gateway started anew", out);
-        }
     }
 }

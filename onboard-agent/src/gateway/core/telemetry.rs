@@ -160,6 +160,12 @@ impl Telemetry {
         }
     }
 
+    /// What time it is, as it says: seconds since 1970.
+    pub fn unix_s(&self, now: Time) -> Option<i64> {
+        let (at, gps) = self.gps?;
+        Some(gps.unix_s?.saturating_add_unsigned(now.saturating_sub(at).as_secs()))
+    }
+
     /// What it says of its engine, if it still does.
     pub fn engine(&self, now: Time) -> Option<Engine> {
         self.engine.filter(|(at, _)| now.saturating_sub(*at) < OUT_OF_DATE).map(|(_, engine)| engine)

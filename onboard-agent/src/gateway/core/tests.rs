@@ -3,6 +3,7 @@
 mod by_hand;
 mod disarmed;
 mod down;
+mod ended;
 mod launching;
 mod met;
 mod replaced;

@@ -34,6 +34,8 @@ pub enum Watch {
     StandsStill,
     /// It flies, and its engine may not run.
     Disarmed,
+    /// It does not end its flight.
+    FliesOn,
     /// Somebody else wrote a list.
     ListReplaced,
     /// Somebody else steers.
@@ -67,7 +69,7 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 23] = [
+pub const WATCHES: [Watch; 24] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
@@ -82,6 +84,7 @@ pub const WATCHES: [Watch; 23] = [
     Watch::OffAltitude,
     Watch::StandsStill,
     Watch::Disarmed,
+    Watch::FliesOn,
     Watch::ListReplaced,
     Watch::NotInCommand,
     Watch::NoSafeRunway,
@@ -221,6 +224,15 @@ const WORDS: [Words; WATCHES.len()] = [
         cause: Some(Cause::Engine),
         // a heartbeat or two may be wrong, and one that does not say whether it stands may still roll
         patience: Duration::from_secs(3),
+    },
+    Words {
+        watch: Watch::FliesOn,
+        id: "not-terminated",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "The flight was ended by force, and the autopilot has not done it: the engine may run. It is told again each second, as soon as it is heard. Keep everybody away; end it by hand if you can.",
+        cause: None,
+        patience: Duration::from_secs(0),
     },
     Words {
         watch: Watch::ListReplaced,

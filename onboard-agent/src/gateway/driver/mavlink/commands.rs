@@ -178,7 +178,7 @@ pub type Ended = (Client, Result<(), Refusal>);
 impl Commands {
     /// Takes a command.
     pub fn give(&mut self, client: Client, command: Command) -> Option<Ended> {
-        if self.queue.len() >= LONGEST_QUEUE {
+        if self.queue.len() >= LONGEST_QUEUE && !is_urgent(command) {
             return Some((client, Err(Refusal::from("too many commands are waiting".to_string()))));
         }
         if !is_urgent(command) {

@@ -12,9 +12,21 @@ const BUFFER: usize = 4096;
 /// A frame of MAVLink 2 that has to do with time: time has to go on.
 const TIMESYNC: [u8; 3] = [111, 0, 0];
 
+/// Whether a radio gets through.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum Air {
+    #[default]
+    Clear,
+    /// What is sent waits in the radio.
+    Blocked,
+    /// What is sent is lost.
+    Lost,
+}
+
 /// One direction of a radio.
 #[derive(Debug, Default)]
 pub struct Radio {
+    pub air: Air,
     waiting: VecDeque<(usize, Vec<u8>)>,
     credit: usize,
 }
@@ -24,11 +36,14 @@ impl Radio {
     pub fn pass(&mut self, sent: Vec<(usize, Vec<u8>)>) -> Vec<(usize, Vec<u8>)> {
         let is_time = |(_, bytes): &(usize, Vec<u8>)| bytes.get(7..10) == Some(&TIMESYNC);
         let (time, sent): (Vec<_>, Vec<_>) = sent.into_iter().partition(is_time);
-        for frame in sent {
+        for frame in sent.into_iter().filter(|_| self.air != Air::Lost) {
             let waiting: usize = self.waiting.iter().map(|(_, bytes)| bytes.len()).sum();
             self.waiting.extend((waiting + frame.1.len() <= BUFFER).then_some(frame));
         }
         self.credit = A_STEP + if self.waiting.is_empty() { 0 } else { self.credit };
+        if self.air != Air::Clear {
+            return time;
+        }
         let mut out = vec![];
         while let Some(frame) = self.waiting.pop_front_if(|(_, bytes)| bytes.len() <= self.credit) {
             self.credit -= frame.1.len();

@@ -1,0 +1,114 @@
+//! A flight that was ended by force: it stays ended, whatever the link, and however often the gateway starts anew.
+
+use super::control::RETRY;
+use super::io::{Intent, Output};
+use super::states::{Trigger, is_flying};
+use super::{COME_DOWN_AFTER, Gateway};
+use crate::gateway::order::{Order, OrderId, Time};
+use std::time::Duration;
+use usal::contract::GatewayState;
+
+/// What time it is, the autopilot says within this, if it knows.
+const TELLS_TIME: Duration = Duration::from_secs(10);
+
+/// The flight is ended by force.
+#[derive(Debug, Clone, Default)]
+pub struct ForcedEnd {
+    /// It was, perhaps before a restart; until it is on the ground.
+    pub is_wanted: bool,
+    /// When, seconds since 1970, if that was known.
+    pub unix_s: Option<i64>,
+    order: Option<OrderId>,
+    /// When that is ordered again.
+    again_at: Option<Time>,
+    failed: bool,
+}
+
+impl ForcedEnd {
+    /// As an earlier gateway knew it.
+    pub fn restored(is_wanted: bool, unix_s: Option<i64>) -> Self {
+        Self { is_wanted, unix_s, ..Self::default() }
+    }
+
+    /// An order was answered; whether it was carried out.
+    pub fn answered(&mut self, now: Time, id: OrderId, done: bool) {
+        if self.order.take_if(|of| *of == id).is_some() {
+            self.again_at = Some(now + RETRY);
+            self.failed = !done;
+        }
+    }
+
+    /// The order was not carried out, and nothing says that one given since was.
+    pub fn has_failed(&self) -> bool {
+        self.is_wanted && self.failed
+    }
+
+    fn is_due(&self, now: Time) -> bool {
+        self.order.is_none() && self.again_at.is_none_or(|at| now >= at)
+    }
+}
+
+impl Gateway {
+    pub(super) fn terminate(&mut self, confirm: &str, out: &mut Vec<Output>) -> Result<(), String> {
+        if confirm != self.settings.vehicle {
+            return Err("To end the flight by force, repeat the vehicle's name in `confirm`.".into());
+        }
+        if !is_flying(self.state) && !self.telemetry.armed {
+            return Err("There is no flight to end.".into());
+        }
+        let unix_s = self.telemetry.unix_s(self.now);
+        self.forced_end = ForcedEnd { order: self.forced_end.order, ..ForcedEnd::restored(true, unix_s) };
+        self.end_by_force("by command", out);
+        Ok(())
+    }
+
+    fn end_by_force(&mut self, cause: &str, out: &mut Vec<Output>) {
+        self.control.set_intent(Intent::Nothing, self.telemetry.mode);
+        if self.forced_end.order.is_none() {
+            self.order_end(out);
+        }
+        self.change(Trigger::Terminated, cause, out);
+        out.push(Output::Save);
+    }
+
+    /// What was ended by force stays ended until it is on the ground: it is ordered again as long as it is armed.
+    pub(super) fn keep_ended(&mut self, now: Time, out: &mut Vec<Output>) {
+        let is_known = self.telemetry.mode.is_some();
+        if !self.forced_end.is_wanted || !is_known {
+            return;
+        }
+        let is_over = self.was_another_flight(now);
+        if self.telemetry.stands_disarmed(now) || is_over {
+            self.forced_end = ForcedEnd::default();
+            self.adopting.take_if(|_| is_over);
+            out.push(Output::Save);
+        } else if self.state != GatewayState::Terminate {
+            let may_fly = self.telemetry.armed || self.telemetry.flies_disarmed(now);
+            if may_fly && self.knows_when(now) {
+                self.end_by_force("by command, before the gateway started anew", out);
+            }
+        } else if self.telemetry.armed && self.forced_end.is_due(now) {
+            self.order_end(out);
+        }
+    }
+
+    fn order_end(&mut self, out: &mut Vec<Output>) {
+        self.forced_end.order = Some(self.order(Order::Terminate, out));
+    }
+
+    /// How long ago it was ended is known, or will not be.
+    fn knows_when(&self, now: Time) -> bool {
+        let has_waited = self.telemetry.first_beat.is_some_and(|at| now >= at + TELLS_TIME);
+        self.forced_end.unix_s.is_none() || self.telemetry.unix_s(now).is_some() || has_waited
+    }
+
+    /// That was so long ago that the aircraft has come down: it is another flight.
+    fn was_another_flight(&self, now: Time) -> bool {
+        let passed_s = self
+            .telemetry
+            .unix_s(now)
+            .zip(self.forced_end.unix_s)
+            .map(|(now_s, then_s)| now_s.saturating_sub(then_s));
+        passed_s.and_then(|s| u64::try_from(s).ok()).is_some_and(|s| s >= COME_DOWN_AFTER.as_secs())
+    }
+}
