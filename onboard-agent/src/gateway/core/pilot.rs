@@ -72,11 +72,12 @@ impl Gateway {
         format!("the autopilot was switched to {mode}, {by}{why}")
     }
 
-    /// What is aboard is not touched while the pilot flies, unless it is to be flown again.
+    /// What is aboard is not touched while the pilot flies, unless it is to be flown again; nor before it is known whether he does.
     pub(super) fn keep_hands_off(&mut self, out: &mut Vec<Output>) {
         let off = match self.state {
             GatewayState::Manual => self.control.intent == Intent::Nothing,
-            state => state == GatewayState::Terminate,
+            GatewayState::Terminate => true,
+            _ => self.control.is_reading(),
         };
         if std::mem::replace(&mut self.hands_off, off) != off {
             self.order(Order::HandsOff(off), out);

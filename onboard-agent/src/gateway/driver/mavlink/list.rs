@@ -68,6 +68,11 @@ pub trait Feeding: std::fmt::Debug + Send + Sync {
     fn ready(&self) -> bool;
     /// What the autopilot steers to, of what was fed.
     fn target(&self) -> Target;
+    /// It circles behind the last waypoint, as far as the autopilot's own list says. For one that is adopted: what was known of it may
+    /// be less than what it has.
+    fn is_at_end(&self) -> bool {
+        self.target() == Target::End
+    }
 }
 
 /// What is being done to the list.
@@ -237,7 +242,7 @@ impl List {
 
     /// Ours is aboard, and every waypoint of it was flown.
     pub fn is_at_end(&self) -> bool {
-        self.window.as_ref().is_some_and(|w| w.installed() && w.target() == Target::End)
+        self.window.as_ref().is_some_and(|w| w.installed() && w.is_at_end())
     }
 
     /// How far the autopilot is with the waypoints, if that has changed.

@@ -11,6 +11,7 @@
 //! landing is behind the jump, positions are counted anew, and the list says where to go on. What a lost answer leaves open is which of a few lists is in use ([`Window::lists`]):
 //! what is the same in all of them is certain, the rest is not claimed.
 
+mod landing;
 mod line;
 mod ring;
 #[cfg(test)]
@@ -21,7 +22,6 @@ use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
 use crate::gateway::driver::mavlink::list::{Change, Feeding};
 use crate::gateway::order::{Fed, Fix, Serial, Target};
 use ring::{RING, entry};
-use usal::contract::Action;
 
 /// Waypoints ahead of the aircraft that are put on board.
 const AHEAD: u64 = 28;
@@ -228,6 +228,10 @@ impl Feeding for Window {
             Target::Unknown { next: self.chain.next() }
         }
     }
+
+    fn is_at_end(&self) -> bool {
+        self.target() == Target::End && self.steered_to().as_ref().is_some_and(ring::is_end_loiter)
+    }
 }
 
 impl Window {
@@ -317,13 +321,6 @@ impl Window {
         }
     }
 
-    /// A landing that is left for something else does not end the list, and is not flown any more. What led to it stands in its place:
-    /// if the same landing comes next, PX4 wants to see that it is come to from above.
-    fn instead_of_landing(&self, position: u64, landing: Item) -> Item {
-        let before = self.chain.before(position).filter(|item| item.kind != ItemKind::Land);
-        ring::passing(before.unwrap_or(landing))
-    }
-
     /// How far on board the chain should reach: extended in large steps, so that there are few lists.
     fn stretch(&mut self) {
         let (first, full) = (self.chain.first(), self.chain.end());
@@ -332,17 +329,6 @@ impl Window {
             self.end = full.min(first + AHEAD);
         }
         self.end = self.landing().map_or(self.end.min(full), |landing| landing + 1);
-    }
-
-    /// It is to land at a position, and nothing comes behind that.
-    fn ends_at(&self, position: u64) -> bool {
-        let is_left = position == self.chain.first() && self.chain.jump().is_some();
-        !is_left && self.chain.at(position).is_some_and(|w| matches!(w.action, Action::Land { .. }))
-    }
-
-    /// The landing that is to be on board.
-    fn landing(&self) -> Option<u64> {
-        (self.chain.first()..self.end).find(|p| self.ends_at(*p))
     }
 
     /// Counts positions anew, so that what is left lies flat. What is on board has other numbers, and says nothing:
