@@ -122,12 +122,6 @@ impl Station {
     pub fn hello(&mut self) {
         self.driver.hello();
     }
-
-    /// When `tick` is due at the latest.
-    pub fn deadline(&self) -> Time {
-        let driver = self.driver.deadline();
-        self.gateway.deadline().map_or(driver, |d| d.min(driver))
-    }
 }
 
 fn log(report: &Report) {

@@ -157,18 +157,6 @@ impl Gateway {
         self.report_progress(out);
     }
 
-    /// When `step` has to be called again even if nothing happens.
-    pub fn deadline(&self) -> Option<Time> {
-        let waits = [
-            self.fp_manager.silent_at(&self.safe),
-            self.control.safe_since.map(|s| s + seconds(self.safe.t2_s)),
-            self.waypoints_due(),
-            self.control.retry_at,
-            self.telemetry.last_received.map(|h| h + OFF_AFTER),
-        ];
-        waits.into_iter().flatten().min()
-    }
-
     /// What must survive a restart.
     pub fn snapshot(&self) -> Snapshot {
         Snapshot {

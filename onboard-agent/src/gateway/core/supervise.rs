@@ -124,7 +124,7 @@ impl FpManager {
     }
 
     /// When it will have been silent for T1.
-    pub fn silent_at(&self, safe: &SafeParameters) -> Option<Time> {
+    fn silent_at(&self, safe: &SafeParameters) -> Option<Time> {
         self.last_received.max(self.expected_since).map(|t| t + seconds(safe.t1_s))
     }
 
@@ -174,7 +174,7 @@ impl Gateway {
     }
 
     /// When an FP Manager that was given the aircraft back has to have sent waypoints: without an engine it circles away its height.
-    pub(super) fn waypoints_due(&self) -> Option<Time> {
+    fn waypoints_due(&self) -> Option<Time> {
         let since = self.fp_manager.awaited_since.filter(|_| self.state == GatewayState::Hold);
         let patience_s = if self.alarms.engine_has_failed() { self.safe.t1_s } else { self.safe.t2_s };
         since.map(|since| since + seconds(patience_s))

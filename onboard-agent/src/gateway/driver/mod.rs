@@ -43,9 +43,6 @@ pub trait Driver: Send + Sync {
     /// Time passed.
     fn tick(&mut self, now: Time);
 
-    /// When `tick` is due.
-    fn deadline(&self) -> Time;
-
     /// The next report.
     fn next_report(&mut self) -> Option<Report>;
 

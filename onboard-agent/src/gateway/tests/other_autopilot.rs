@@ -192,10 +192,6 @@ impl Driver for GliderDriver {
 
     fn tick(&mut self, _now: Time) {}
 
-    fn deadline(&self) -> Time {
-        Time::MAX
-    }
-
     fn next_report(&mut self) -> Option<Report> {
         self.reports.pop_front()
     }

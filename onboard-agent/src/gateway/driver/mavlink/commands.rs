@@ -203,17 +203,6 @@ impl Commands {
         self.rto.knows_trip(trip);
     }
 
-    /// When `tick` is due.
-    pub fn deadline(&self) -> Option<Time> {
-        match &self.flight {
-            None => (!self.queue.is_empty()).then_some(Time::ZERO),
-            Some(given) => match given.acked {
-                Some(at) => Some(at + UNSEEN),
-                None => self.rto.deadline().max(given.waits_until()),
-            },
-        }
-    }
-
     /// Time passed: the next command, or the same again.
     pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Ended> {
         let ended = self.check(now, peer, out);

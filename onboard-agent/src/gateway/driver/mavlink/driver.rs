@@ -332,11 +332,6 @@ impl Driver for MavlinkDriver {
         self.settle(now, events);
     }
 
-    fn deadline(&self) -> Time {
-        let session = self.session.deadline();
-        self.list.deadline().map_or(session, |list| list.min(session))
-    }
-
     fn next_report(&mut self) -> Option<Report> {
         self.reports.pop_front()
     }

@@ -190,11 +190,6 @@ impl List {
         }
     }
 
-    /// When something is to be tried again.
-    pub fn deadline(&self) -> Option<Time> {
-        self.retry_at
-    }
-
     /// What is to be done next, if anything, and nothing is being done.
     pub fn next(&mut self, now: Time) -> Option<Step> {
         if self.task.is_some() || self.retry_at.is_some_and(|at| now < at) {

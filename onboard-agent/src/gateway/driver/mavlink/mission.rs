@@ -172,14 +172,6 @@ impl Mission {
         rto.knows_trip(trip);
     }
 
-    /// When `tick` is due.
-    pub fn deadline(&self) -> Option<Time> {
-        match self.job.as_ref()? {
-            Job::Transfer(transfer) => transfer.deadline(),
-            Job::Write(write) => write.deadline(),
-        }
-    }
-
     /// Time passed.
     pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Outcome> {
         let outcome = match self.job.as_mut()? {

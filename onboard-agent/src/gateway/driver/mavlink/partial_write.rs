@@ -60,11 +60,6 @@ impl PartialWrite {
         &mut self.rto
     }
 
-    /// When `tick` is due.
-    pub fn deadline(&self) -> Option<Time> {
-        self.rto.deadline()
-    }
-
     /// Everything was read back as wanted.
     pub fn is_complete(&self) -> bool {
         self.confirmed.iter().all(|c| *c)

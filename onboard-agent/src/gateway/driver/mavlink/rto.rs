@@ -82,7 +82,7 @@ impl Rto {
     }
 
     /// When the timer runs out.
-    pub fn deadline(&self) -> Option<Time> {
+    fn deadline(&self) -> Option<Time> {
         self.started.map(|s| s + self.timeout())
     }
 

@@ -181,12 +181,6 @@ impl Session {
         self.out.push(heartbeat(self.manner.we_are));
     }
 
-    /// When `tick` is due.
-    pub fn deadline(&self) -> Time {
-        let waits = [self.mission.deadline(), self.commands.deadline()];
-        waits.into_iter().flatten().fold(self.beat_at, Time::min)
-    }
-
     /// Time passed.
     pub fn tick(&mut self, now: Time, events: &mut Vec<SessionEvent>) {
         self.now = now;

@@ -148,16 +148,6 @@ impl Transfer {
         &mut self.rto
     }
 
-    /// When `tick` is due.
-    pub fn deadline(&self) -> Option<Time> {
-        let due = self.rto.deadline();
-        match &self.phase {
-            Phase::Counting => due.max(Some(self.list_due)),
-            Phase::Sending { .. } if self.complains => due.map(|due| due.min(self.stuck_at())),
-            _ => due,
-        }
-    }
-
     fn progressed(&mut self, now: Time) {
         if let Some(sent) = self.probe.take() {
             self.rto.sample(now.saturating_sub(sent));
