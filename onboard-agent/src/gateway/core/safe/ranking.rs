@@ -10,7 +10,6 @@ use super::powered::powered;
 use super::way::gates;
 use super::{Approach, Landing, Situation, along, is_usable};
 use geometry::LatLon;
-use geometry::near::distance_m;
 use usal::contract::{SafeParameters, SafeRunway};
 
 /// Share of the energy left that may be planned with.
@@ -77,7 +76,6 @@ fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Optio
         return (tailwind_mps(s, reversed.heading_deg) <= most_mps).then_some((reversed, true));
     }
     let [initial, last] = gates(&reversed, Approach::Whole, safe);
-    let length_m = distance_m(last.0, reversed.threshold);
     let terrain = s.terrain?;
     let is_low = |place: LatLon, height_m: f64| {
         let ground_m = terrain.elevation_m(place);
@@ -85,8 +83,7 @@ fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Optio
     };
     let height_m = last.1 - reversed.elevation_amsl_m;
     let level = along(initial.0, last.0).all(|(_, place)| is_low(place, height_m));
-    let is_clear = length_m > 0.0
-        && level
+    let is_clear = level
         && along(last.0, reversed.threshold).all(|(share, place)| is_low(place, height_m * (1.0 - share)));
     is_clear.then_some((reversed, true))
 }
