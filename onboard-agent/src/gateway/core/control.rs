@@ -81,6 +81,8 @@ pub struct Control {
     pub met_at: Option<Time>,
     /// When somebody took the aircraft, and the mode that was wanted.
     pub taken: Option<(Time, Mode)>,
+    /// Waypoints were fed in this step: what the driver said of its list before that is true no more.
+    pub fed: bool,
 }
 
 impl Default for Control {
@@ -116,6 +118,7 @@ impl Default for Control {
             holds_by_itself: false,
             met_at: None,
             taken: None,
+            fed: false,
         }
     }
 }
@@ -260,7 +263,8 @@ impl Gateway {
     fn steer_mode(&mut self, now: Time, out: &mut Vec<Output>) {
         let Some(wanted) = self.control.wanted_mode() else { return };
         let flies = wanted == Mode::Waypoints;
-        if flies && !self.buffer.course().ready && !self.flies_waypoints() {
+        let is_whole = self.buffer.course().ready && !self.control.fed;
+        if flies && !is_whole && !self.flies_waypoints() {
             return;
         }
         if self.telemetry.armed {

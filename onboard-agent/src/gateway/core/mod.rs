@@ -125,6 +125,7 @@ impl Gateway {
     /// Takes in what happened; what is to be done goes to `out`.
     pub fn step(&mut self, now: Time, input: Input, out: &mut Vec<Output>) {
         self.now = now;
+        self.control.fed = false;
         match input {
             Input::Tick => {}
             Input::Report(report) => self.report(now, report, out),
@@ -315,6 +316,7 @@ impl Gateway {
     /// Cancels and appends, as one transaction.
     fn feed_driver(&mut self, cancel_after: Option<Token>, waypoints: Vec<Waypoint>, out: &mut Vec<Output>) {
         let order = self.buffer.feed(cancel_after, waypoints);
+        self.control.fed = true;
         self.order(order, out);
     }
 

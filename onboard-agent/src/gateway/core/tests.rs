@@ -5,6 +5,7 @@ mod disarmed;
 mod down;
 mod ended;
 mod launching;
+mod let_loose;
 mod met;
 mod replaced;
 mod returning;
