@@ -2,6 +2,8 @@
 
 mod gates;
 mod gliding;
+#[cfg(test)]
+mod limits_tests;
 mod powered;
 mod ranking;
 mod way;
