@@ -6,6 +6,8 @@
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod word_by_word;
 
 use super::Peer;
 use super::rto::Rto;

@@ -1,5 +1,8 @@
 //! What is wanted on the autopilot's list, and what is being done to get it there.
 
+#[cfg(test)]
+mod tests;
+
 use super::chain::Chain;
 use super::item::{Item, ItemKind};
 use crate::gateway::order::{Course, Fed, Fix, OrderId, Report, Serial, Target, Time};

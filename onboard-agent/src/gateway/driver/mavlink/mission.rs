@@ -1,5 +1,8 @@
 //! What is being done to the autopilot's list: one transfer or one partial write at a time.
 
+#[cfg(test)]
+mod others_tests;
+
 use super::aboard::Aboard;
 use super::partial_write::PartialWrite;
 use super::rto::Rto;

@@ -7,6 +7,9 @@
 //!
 //! Entries are written in order: an entry is on board only when those before it are.
 
+#[cfg(test)]
+mod tests;
+
 use super::mission::{Entry, Same};
 use super::rto::Rto;
 use super::{Peer, mission_type};

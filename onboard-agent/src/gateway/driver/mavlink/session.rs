@@ -5,6 +5,8 @@
 
 mod logs;
 mod summary;
+#[cfg(test)]
+mod tests;
 
 use super::commands::{Client, Command, Commands, Refusal, Shown};
 use super::dialect::Manner;

@@ -7,6 +7,8 @@
 
 mod reading;
 mod sending;
+#[cfg(test)]
+mod tests;
 
 use super::Peer;
 use super::mission::{Entry, Outcome, Rules, thanks};
