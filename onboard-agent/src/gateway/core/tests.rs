@@ -7,6 +7,7 @@ mod ended;
 mod launching;
 mod let_loose;
 mod met;
+mod random;
 mod refused;
 mod replaced;
 mod returning;
