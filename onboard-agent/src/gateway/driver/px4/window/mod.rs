@@ -124,7 +124,8 @@ impl Feeding for Window {
                 self.reach(position, Some(*new_from))
             }
             (None, Some(position), Some(wanted)) if self.has_gone_on(position, wanted) => {
-                self.arrived_at(position)
+                self.arrived_at(wanted);
+                self.reach(position, self.deviation());
             }
             (None, _, Some(_)) => self.disobeys = true,
             (None, Some(position), None) => self.reach(position, self.deviation()),
@@ -182,9 +183,7 @@ impl Feeding for Window {
                 self.installed = true;
                 self.farthest = self.farthest_of(&items);
                 self.lists = vec![items];
-                if let Some(position) = jump.or(self.overrun) {
-                    self.send_to(position, jump.is_none());
-                }
+                jump.or(self.overrun).into_iter().for_each(|position| self.send_to(position, jump.is_none()));
             }
             Some(Pending::SetCurrent { position }) => self.arrived_at(position),
             None => {}
@@ -288,7 +287,7 @@ impl Window {
         self.chain.advance_to(position.min(most));
     }
 
-    /// It goes on where it was told to; in flight, it may be farther by now.
+    /// It goes on where it was told to; in flight, it may be farther by now, but not along what was fed meanwhile.
     fn has_gone_on(&self, position: u64, wanted: u64) -> bool {
         position == wanted || (position > wanted && self.entered && !self.disobeys)
     }

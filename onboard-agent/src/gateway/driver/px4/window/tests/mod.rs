@@ -240,6 +240,33 @@ fn what_replaces_cancelled_waypoints_is_flown_from_its_first_however_far_it_got_
     }
 }
 
+/// What it went on along was the list before: of the new waypoints none was flown.
+#[test]
+fn what_is_fed_while_a_list_goes_up_is_flown_however_far_that_list_was_flown() {
+    for (fate, reached) in
+        [Fate::Done, Fate::Unanswered].into_iter().flat_map(|fate| (0..6).map(move |n| (fate, n)))
+    {
+        let mut rig = Rig::new(20);
+        rig.window.feed(Serial(0), waypoints(21, 5));
+        let list = rig.begin().expect("a new list");
+        rig.autopilot.obey(&list);
+        if fate == Fate::Unanswered {
+            rig.window.failed();
+            assert_eq!(rig.begin(), Some(list), "PX4 takes the same again for no news");
+        }
+        rig.window.feed(Serial(0), waypoints(31, 5));
+        (0..reached).for_each(|_| rig.reach());
+        rig.window.done();
+        rig.report();
+        for _ in 0..12 {
+            rig.settle();
+            rig.reach();
+        }
+        assert!(rig.steered().ends_with(&[31, 32, 33, 34, 35]), "{reached}: {:?}", rig.steered());
+        assert_eq!(rig.window.target(), Target::End);
+    }
+}
+
 #[test]
 fn the_same_plan_again_is_no_news_for_px4_and_begins_at_its_beginning_all_the_same() {
     let mut rig = Rig::new(6);
