@@ -7,10 +7,12 @@ mod ended;
 mod launching;
 mod let_loose;
 mod met;
+mod moments;
 mod random;
 mod refused;
 mod replaced;
 mod returning;
+mod taken;
 
 use super::*;
 use crate::gateway::order::{Fix, Target};
