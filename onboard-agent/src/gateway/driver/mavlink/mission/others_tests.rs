@@ -4,7 +4,7 @@ use super::*;
 use MavMissionType::{MAV_MISSION_TYPE_FENCE as FENCE, MAV_MISSION_TYPE_MISSION as PLAN};
 
 const PEER: Peer = Peer { system: 1, component: 1 };
-const RULES: Rules = Rules { same: is_same, id: Some(length), reads_in_order: false, passes_over: false };
+const RULES: Rules = Rules { same: is_same, id: Some(length), reads_in_order: false };
 
 fn is_same(one: &Entry, other: &Entry) -> bool {
     one == other

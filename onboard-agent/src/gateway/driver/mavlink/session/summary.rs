@@ -6,7 +6,7 @@ use mavlink::dialects::ardupilotmega::HIGH_LATENCY2_DATA;
 use std::time::Duration;
 
 /// A mode of its heartbeats is newer than that of a summary for so long.
-const BEATS_FOR: Duration = Duration::from_secs(5);
+pub(super) const BEATS_FOR: Duration = Duration::from_secs(5);
 /// A summary takes no longer than this by satellite; one that is older yet is of an autopilot that started anew, ms.
 const MOST_LATE_MS: u32 = 120_000;
 

@@ -177,7 +177,7 @@ fn a_summary_says_the_mode_while_no_heartbeats_come() {
     let mut talk = Talk::bound();
     talk.hear(AUTOPILOT, &summary(10));
     assert_eq!(modes(&talk), 0, "a heartbeat came just now");
-    talk.now += BEATS_FOR;
+    talk.now += summary::BEATS_FOR;
     talk.hear(AUTOPILOT, &summary(11));
     assert!(talk.said(&SessionEvent::Mode(11)));
 }

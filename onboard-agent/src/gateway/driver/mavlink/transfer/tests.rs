@@ -4,7 +4,7 @@ use super::*;
 use MavMissionResult::*;
 
 const PEER: Peer = Peer { system: 1, component: 1 };
-const RULES: Rules = Rules { same: is_same, id: None, reads_in_order: false, passes_over: false };
+const RULES: Rules = Rules { same: is_same, id: None, reads_in_order: false };
 /// Of an autopilot that gives its list only in order.
 const IN_ORDER: Rules = Rules { reads_in_order: true, ..RULES };
 /// Longer than any timeout.
@@ -164,15 +164,6 @@ fn requests_for_what_it_has_and_for_what_is_not_there_are_passed_over() {
     talk.said();
     talk.request(1);
     assert_eq!(talk.said(), "", "it is read by now");
-}
-
-#[test]
-fn a_link_that_loses_frames_gets_each_entry_twice_where_that_does_no_harm() {
-    const TWICE: Rules = Rules { passes_over: true, ..RULES };
-    let mut talk = Talk::upload(2, &TWICE);
-    assert_eq!(talk.said(), "count 0 1");
-    talk.timeout();
-    assert_eq!(talk.said(), "count 0 0 1 1");
 }
 
 #[test]
