@@ -269,7 +269,7 @@ impl Gateway {
         }
         if self.telemetry.armed {
             (self.control.was_armed, self.control.arm) = (true, None);
-        } else {
+        } else if !self.telemetry.flies_disarmed(now) {
             if flies && self.state == GatewayState::Stop {
                 self.arm(now, out);
             }

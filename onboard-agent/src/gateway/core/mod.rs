@@ -262,8 +262,10 @@ impl Gateway {
         flies && self.telemetry.last_received.is_some_and(|at| self.now.saturating_sub(at) <= silent_at_most)
     }
 
+    /// Also without an engine; but what stood and is not armed may be carried.
     fn flies_waypoints(&self) -> bool {
-        self.telemetry.armed && self.telemetry.mode == Some(Mode::Waypoints)
+        let glides = self.state != GatewayState::Stop && self.telemetry.flies_disarmed(self.now);
+        (self.telemetry.armed || glides) && self.telemetry.mode == Some(Mode::Waypoints)
     }
 
     /// Makes a transition, if the table has one; reports it; does what entering the state asks for.

@@ -66,3 +66,32 @@ fn an_agent_that_starts_while_it_is_disarmed_in_the_air_does_not_say_that_it_sta
     assert!(!core.was_ordered(&Order::Forget), "its list is not forgotten");
     assert!(core.orders().iter().any(|(_, order)| matches!(order, Order::Adopt(_))), "it is read");
 }
+
+/// An emergency is answered with waypoints: it circled on, down to the ground, and was told nothing.
+#[test]
+fn disarmed_in_flight_it_is_steered_as_before() {
+    let mut core = Core::in_nav();
+    core.step(Input::Request(4, GatewayRequest::Hold));
+    let mut held = flying(25.0, 25.0);
+    held[0] = beat(Mode::Hold, true);
+    core.run(1, &held);
+    core.done();
+    core.run(5, &disarmed(Mode::Hold));
+    core.step(Input::Request(5, GatewayRequest::Resume));
+    core.run(1, &disarmed(Mode::Hold));
+    assert!(core.was_ordered(&Order::Steer(crate::gateway::order::Aim::Waypoints)));
+    core.done();
+    core.run(1, &disarmed(Mode::Waypoints));
+    assert_eq!(core.gateway.state(), GatewayState::Nav);
+}
+
+/// In a car, by an autopilot that does not say whether it stands.
+#[test]
+fn what_is_carried_unarmed_does_not_take_off() {
+    let mut core = Core::in_stop_with_a_plan();
+    core.step(Input::Report(Report::Course(course(true))));
+    core.gateway.telemetry.on_ground = None;
+    let [beat, _, fix, air] = disarmed(Mode::Waypoints);
+    core.run(10, &[beat, fix, air]);
+    assert_eq!((core.gateway.state(), core.gateway.control.intent), (GatewayState::Stop, Intent::Nothing));
+}

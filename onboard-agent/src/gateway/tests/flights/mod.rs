@@ -378,6 +378,7 @@ pub fn landing() -> Vec<Waypoint> {
 
 mod by_hand;
 mod corners;
+mod disarmed;
 mod ended;
 mod faulted;
 mod faults;
