@@ -104,15 +104,25 @@ impl Gateway {
             }
             self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
             self.control.set_intent(wanted, self.telemetry.mode);
-            if wanted == Intent::Nothing {
-                self.change(Trigger::PilotTook, TAKEN_MEANWHILE, out);
-            }
+            self.is_met(wanted, out);
             out.push(Output::Save);
         } else if self.state == GatewayState::Manual {
             // it took long to read
             self.cause = NOT_OURS.to_owned();
         } else if !is_flying(self.state) {
             self.change(Trigger::PilotTook, NOT_OURS, out);
+        }
+    }
+
+    /// What is wanted may never be confirmed: until then the state is what it is seen to do.
+    fn is_met(&mut self, wanted: Intent, out: &mut Vec<Output>) {
+        const CAUSE: &str = "met in flight, as it was left";
+        match self.telemetry.mode {
+            _ if wanted == Intent::Nothing => self.change(Trigger::PilotTook, TAKEN_MEANWHILE, out),
+            _ if is_flying(self.state) => {}
+            Some(Mode::Hold) => self.change(Trigger::HoldConfirmed, CAUSE, out),
+            Some(Mode::Direct) => self.change(Trigger::DirectConfirmed, CAUSE, out),
+            _ => {}
         }
     }
 

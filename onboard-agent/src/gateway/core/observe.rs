@@ -64,7 +64,10 @@ impl Gateway {
             // armed by an order that was taken back: it is disarmed
             return None;
         }
-        if matches!(self.control.intent, Intent::Hold | Intent::Direct) && self.control.mode_pending() {
+        // one that was met on its way has no other state to stay in
+        let is_led_away =
+            matches!(self.control.intent, Intent::Hold | Intent::Direct) && is_flying(self.state);
+        if is_led_away && self.control.mode_pending() {
             return None;
         }
         let Some(waypoint) = self.buffer.current() else {

@@ -19,9 +19,9 @@ pub enum Trigger {
     Landing,
     /// On the ground, disarmed.
     Landed,
-    /// It circles, as we asked.
+    /// It circles, as we asked, or an earlier gateway did.
     HoldConfirmed,
-    /// It follows our direct command.
+    /// It follows our direct command, or an earlier gateway's.
     DirectConfirmed,
     /// Its mode was changed, and not by us.
     PilotTook,
@@ -186,8 +186,8 @@ mod tests {
             Trigger::Approaching => "a landing follows the waypoint it steers to",
             Trigger::Landing => "it steers to a landing",
             Trigger::Landed => "on the ground and disarmed",
-            Trigger::HoldConfirmed => "it circles, as we asked",
-            Trigger::DirectConfirmed => "it follows our direct command",
+            Trigger::HoldConfirmed => "it circles, as we asked, or as it is met",
+            Trigger::DirectConfirmed => "it follows our direct command, or is met doing so",
             Trigger::PilotTook => "its mode was changed, and not by us",
             Trigger::SafeNeeded => {
                 "FP Manager silent (T1), waypoints run dry, its waypoints do not come (T2), or by command"

@@ -64,3 +64,33 @@ fn one_that_holds_by_itself_behind_the_end_of_its_list_was_not_taken_by_anybody(
     assert!(was_sent(&core, crate::gateway::order::Aim::Waypoints));
     assert!(!core.raised("not-in-command"));
 }
+
+/// Refused each second, it was `Off` until its battery was empty: nobody could join, and nothing was told.
+#[test]
+fn one_that_does_not_do_what_is_wanted_is_in_the_state_of_what_it_does() {
+    use GatewayState::{Directed, Hold, Nav};
+    for (wanted, mode, state) in [
+        (Intent::Fly, Mode::Hold, Hold),
+        (Intent::Fly, Mode::Direct, Directed),
+        (Intent::Hold, Mode::Waypoints, Nav),
+        (Intent::Direct, Mode::Hold, Hold),
+    ] {
+        let mut known = Core::in_nav().gateway.snapshot();
+        (known.intent, known.mode) = (wanted, Some(format!("{mode:?}")));
+        let mut core = met(mode, Some(known), false);
+        let mut reports = flying(25.0, 25.0);
+        reports[0] = beat(mode, true);
+        for _ in 0..8 {
+            for (id, order) in core.orders() {
+                if matches!(order, Order::Steer(_)) {
+                    core.step(Input::Report(Report::Failed(id, "denied".into())));
+                }
+            }
+            core.out.clear();
+            core.run(1, &reports);
+        }
+        assert_eq!(core.gateway.state(), state, "{wanted:?} in {mode:?}");
+        assert!(core.raised("autopilot-disobeys") && was_steered(&core), "{wanted:?} in {mode:?}");
+        assert!(core.join().accepted, "{wanted:?} in {mode:?}");
+    }
+}
