@@ -24,6 +24,8 @@ pub struct Alarms {
     unread: bool,
     /// The engine gives no power, or seems to, whoever answered that.
     engine_out: bool,
+    /// The one for which Safe mode is wanted of the gateway, and not granted yet.
+    asks_for_safe: Option<String>,
 }
 
 /// An alarm that asks for an emergency plan.
@@ -39,7 +41,7 @@ impl Alarms {
     /// With what an earlier FP Manager of this flight answered.
     pub fn restored(answered: BTreeSet<String>) -> Self {
         let engine_out = ENGINE_OUT.iter().any(|id| answered.contains(*id));
-        Self { answered, unread: false, engine_out }
+        Self { answered, unread: false, engine_out, asks_for_safe: None }
     }
 
     /// Identifiers of what was answered, to be kept for a restart.
@@ -69,6 +71,26 @@ impl Alarms {
         }
     }
 
+    /// Safe mode is wanted for it.
+    pub fn asks_for_safe(&mut self, call: &Call) {
+        self.asks_for_safe = Some(call.id.clone());
+    }
+
+    /// Safe mode was granted, or is wanted for a reason that does not go away with an alarm.
+    pub fn safe_is_settled(&mut self) {
+        self.asks_for_safe = None;
+    }
+
+    /// Whether Safe mode was wanted for an alarm that is not among those raised now, or from a pilot who has the aircraft by now. It asks
+    /// again, if it is still raised when he gives that back.
+    pub fn no_longer_ask_for_safe(&mut self, alarms: &[Alarm], is_pilots: bool) -> bool {
+        let is_raised = |id: &str| alarms.iter().any(|alarm| alarm.id == id);
+        let Some(id) = self.asks_for_safe.take_if(|id| is_pilots || !is_raised(id)) else { return false };
+        self.answered.remove(&id);
+        self.unread = true;
+        true
+    }
+
     /// An alarm went away.
     pub fn cleared(&mut self, id: &str) {
         self.answered.remove(id);
@@ -81,7 +103,7 @@ impl Alarms {
 
     /// What was answered in an earlier flight asks anew.
     pub fn new_flight(&mut self) {
-        *self = Self { answered: BTreeSet::new(), unread: true, engine_out: false };
+        *self = Self { unread: true, ..Self::default() };
     }
 
     /// The alarms raised now, as the gateway publishes them; those that nobody answered yet, the most severe first.

@@ -84,6 +84,9 @@ impl Manager {
         // one that does not know yet what flies has raised nothing, and forgotten nothing
         if status.state != GatewayState::Off {
             self.alarms.all(&status.alarms);
+            if self.alarms.no_longer_ask_for_safe(&status.alarms, status.state == GatewayState::Manual) {
+                self.gateway_session.unwant(GatewayRequest::Safe);
+            }
         }
         if self.gateway_session.is_joined() && self.gateway_session.is_airborne() {
             for call in self.alarms.listed(&status.alarms) {
@@ -132,7 +135,8 @@ impl Manager {
     }
 
     /// An alarm of the gateway asks for an emergency plan. On the ground it has to ask again in the air; while a plan
-    /// for something worse is flown, when that is left. If no plan can be flown for it, Safe mode has to do.
+    /// for something worse is flown, when that is left. If no plan can be flown for it, Safe mode has to do; while the pilot flies, when he
+    /// gives the aircraft back.
     fn emergency(&mut self, now: Time, call: alarms::Call, out: &mut Vec<Effect>) {
         if !self.gateway_session.is_airborne() {
             return self.alarms.read_again();
@@ -148,7 +152,11 @@ impl Manager {
             if refusal.code == "not-more-severe" {
                 return;
             }
+            if self.gateway_session.is_pilots() {
+                return self.alarms.read_again();
+            }
             self.gateway_session.want(GatewayRequest::Safe);
+            self.alarms.asks_for_safe(&call);
         }
         self.alarms.answer(call);
     }

@@ -124,6 +124,11 @@ impl GatewaySession {
         self.state.is_some_and(|state| !is_down(state))
     }
 
+    /// The gateway says that the pilot has the aircraft.
+    pub fn is_pilots(&self) -> bool {
+        self.state == Some(GatewayState::Manual)
+    }
+
     /// The gateway says that the aircraft stands disarmed on the ground.
     pub fn stands_disarmed(&self) -> bool {
         self.is_on_ground() && !self.armed
@@ -266,7 +271,7 @@ impl GatewaySession {
     /// The executor flies on: if the gateway holds or follows a direct command, it should too. If the pilot flies, a hold that waits
     /// for him to give the aircraft back is not wanted any more, and that is all.
     pub fn flies_on(&mut self) {
-        if self.state == Some(GatewayState::Manual) {
+        if self.is_pilots() {
             return self.unwant(GatewayRequest::Hold);
         }
         let led_away = matches!(self.state, Some(GatewayState::Hold | GatewayState::Directed));
@@ -277,8 +282,7 @@ impl GatewaySession {
 
     /// The operator wants the plan flown on. False: nobody but the plan leads the aircraft, as far as is known.
     pub fn take_back(&mut self) -> bool {
-        let pilot = self.state == Some(GatewayState::Manual);
-        if pilot {
+        if self.is_pilots() {
             self.want(GatewayRequest::Resume);
         } else {
             self.flies_on();
@@ -291,7 +295,7 @@ impl GatewaySession {
     /// joined before.
     pub fn request_back(&mut self, now: Time) -> Option<GatewayRequest> {
         let due = |pending: &&Pending| pending.request == GatewayRequest::Resume && pending.is_due(now);
-        if self.asking || self.state != Some(GatewayState::Manual) {
+        if self.asking || !self.is_pilots() {
             return None;
         }
         let request = self.wanted.as_ref().filter(due)?.request.clone();

@@ -229,11 +229,17 @@ impl Manager {
                 self.step(now, Input::Rejected { first: first.convert(), reason }, out);
                 if self.is_in_emergency() && self.executor.status_phase() == Phase::Holding {
                     // its plan can't be flown: a gateway that takes no waypoints has to bring the aircraft home
-                    self.gateway_session.want(GatewayRequest::Safe);
+                    self.want_safe();
                 }
             }
         }
         self.send(now, out);
+    }
+
+    /// Whatever becomes of the alarms.
+    fn want_safe(&mut self) {
+        self.gateway_session.want(GatewayRequest::Safe);
+        self.alarms.safe_is_settled();
     }
 
     /// The take-off was not granted in time, or did not come about: the plan stands where it stood before its start.
@@ -256,6 +262,9 @@ impl Manager {
         answer: Result<(), String>,
         out: &mut Vec<Effect>,
     ) {
+        if *request == GatewayRequest::Safe && answer.is_ok() {
+            self.alarms.safe_is_settled();
+        }
         if let Some(reason) = self.gateway_session.requested(now, request, answer) {
             out.push(Effect::Event(Event::NotGranted { request: request.name().into(), reason }));
         }
@@ -300,7 +309,7 @@ impl Manager {
                     self.feeder.push(Feed { cancel_after, waypoints });
                 }
                 Output::Hold => self.gateway_session.want(GatewayRequest::Hold),
-                Output::Safe => self.gateway_session.want(GatewayRequest::Safe),
+                Output::Safe => self.want_safe(),
                 Output::Event(event) => self.happened(event, out),
                 Output::Answer { result, .. } => answer = Some(result),
                 Output::Act { leg, passage, act } => out.extend(invocation(leg, passage, act)),

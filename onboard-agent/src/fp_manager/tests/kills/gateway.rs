@@ -26,7 +26,7 @@ pub struct Gateway {
     highest: Token,
     here: LatLon,
     runway: LatLon,
-    alarms: Vec<Alarm>,
+    pub alarms: Vec<Alarm>,
     /// It gave the aircraft back with an empty buffer: the next waypoints are flown at once.
     awaits_waypoints: bool,
     /// Safe mode was commanded: no join ends it.

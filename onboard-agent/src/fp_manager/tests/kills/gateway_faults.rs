@@ -162,6 +162,51 @@ fn alarm_in_flight_without_a_plan_being_flown_asks_for_safe_mode() {
     assert_eq!(flight.gateway.requests, [GatewayRequest::Safe]);
 }
 
+fn clear_alarms(flight: &mut Flight) {
+    for alarm in std::mem::take(&mut flight.gateway.alarms) {
+        flight.gateway.events.push_back(GatewayEvent::AlarmCleared { id: alarm.id });
+    }
+}
+
+/// It was asked for ten minutes later, for an alarm that was gone.
+#[test]
+fn safe_mode_for_an_alarm_while_the_pilot_flies_is_asked_for_only_if_that_is_still_raised_when_he_gives_back()
+{
+    for clears in [true, false] {
+        let mut flight = Flight::new(1, false, false);
+        flight.asks.clear();
+        flight.gateway.state = GatewayState::Manual;
+        run(&mut flight, 2);
+        flight.gateway.alarm("energy-low", Cause::Energy);
+        run(&mut flight, 3);
+        assert_eq!(flight.process.manager.gateway_session.wanted(), None);
+        if clears {
+            clear_alarms(&mut flight);
+            run(&mut flight, 2);
+        }
+        flight.gateway.state = GatewayState::Nav;
+        run(&mut flight, 4);
+        assert_eq!(flight.gateway.requests.contains(&GatewayRequest::Safe), !clears);
+    }
+}
+
+#[test]
+fn safe_mode_that_was_not_granted_yet_is_not_wanted_of_the_pilot_nor_for_an_alarm_that_is_gone() {
+    let wanted = |flight: &Flight| flight.process.manager.gateway_session.wanted().cloned();
+    let mut flight = needs_safe(usize::MAX);
+    run(&mut flight, 5);
+    assert_eq!(wanted(&flight), Some(GatewayRequest::Safe));
+    flight.gateway.state = GatewayState::Manual;
+    run(&mut flight, 2);
+    assert_eq!(wanted(&flight), None);
+    flight.gateway.state = GatewayState::Nav;
+    run(&mut flight, 4);
+    assert_eq!(wanted(&flight), Some(GatewayRequest::Safe), "it is still raised");
+    clear_alarms(&mut flight);
+    run(&mut flight, 2);
+    assert_eq!(wanted(&flight), None);
+}
+
 #[test]
 fn holding_when_safe_mode_ends_it_holds_again() {
     for home in [false, true] {
