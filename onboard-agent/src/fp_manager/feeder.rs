@@ -110,6 +110,11 @@ impl Feeder {
         });
     }
 
+    /// The aircraft flies: a start that was taken back, and had to wait for an ear, is somebody else's flight by now.
+    pub fn drop_take_back(&mut self) {
+        self.waiting.take_if(|feed| feed.cancel_after == Some(Token(0)) && feed.waypoints.is_empty());
+    }
+
     /// There is room again, or the gateway takes waypoints again: what waits may go at once.
     pub fn hurry(&mut self) {
         self.not_before = None;
@@ -252,6 +257,20 @@ mod tests {
         feeder.answered(NOW, Some(FeedAnswer::NotNow("Safe".into())));
         feeder.hurry();
         assert_eq!(feeder.send(NOW).unwrap(), feed(None, 1..=3));
+    }
+
+    #[test]
+    fn a_start_that_is_taken_back_is_dropped_once_the_aircraft_flies_and_nothing_else_is() {
+        for (waits, stays) in
+            [(feed(Some(0), []), false), (feed(Some(0), 1..=1), true), (feed(Some(3), []), true)]
+        {
+            let mut feeder = Feeder::default();
+            feeder.push(waits);
+            feeder.send(NOW);
+            feeder.answered(NOW, Some(FeedAnswer::NotNow("not heard".into())));
+            feeder.drop_take_back();
+            assert_eq!(!feeder.is_idle(), stays);
+        }
     }
 
     #[test]

@@ -81,6 +81,9 @@ impl Manager {
             self.feeder.clear();
             self.step(now, Input::GatewayControls(true), out);
         }
+        if self.gateway_session.is_airborne() {
+            self.feeder.drop_take_back();
+        }
         // one that does not know yet what flies has raised nothing, and forgotten nothing
         if status.state != GatewayState::Off {
             self.alarms.all(&status.alarms);

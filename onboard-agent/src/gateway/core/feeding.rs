@@ -139,6 +139,10 @@ impl Gateway {
         if let Err(why) = self.takes_waypoints(now) {
             return FeedAnswer::NotNow(why);
         }
+        if is_take_back(&feed) && self.state != GatewayState::Stop {
+            let why = "a start is taken back on the ground only: in flight, hold or land elsewhere";
+            return FeedAnswer::Refused { faults: vec![(Token(0), "in-flight".into(), why.into())] };
+        }
         let faults = self.faults(&feed);
         if !faults.is_empty() {
             return FeedAnswer::Refused { faults };
@@ -183,10 +187,7 @@ impl Gateway {
     }
 
     fn take(&mut self, feed: Feed, out: &mut Vec<Output>) {
-        if self.state == GatewayState::Stop
-            && feed.cancel_after == Some(Token(0))
-            && feed.waypoints.is_empty()
-        {
+        if is_take_back(&feed) {
             return self.stand_down(out);
         }
         let last = feed.waypoints.last().map(|w| w.token);
@@ -203,4 +204,9 @@ impl Gateway {
         }
         out.push(Output::Save);
     }
+}
+
+/// Nothing of a start is wanted any more.
+fn is_take_back(feed: &Feed) -> bool {
+    feed.cancel_after == Some(Token(0)) && feed.waypoints.is_empty()
 }

@@ -65,3 +65,18 @@ fn who_takes_off_when_nothing_is_to_be_flown_any_more_has_it() {
         assert!(!was_steered(&core) && core.raised("not-in-command"), "silent: {silent}");
     }
 }
+
+/// It was on its way while the autopilot was not heard, and arrives in the climb-out.
+#[test]
+fn a_start_that_is_taken_back_late_takes_no_list_from_who_flies_it_by_now() {
+    let mut core = ready();
+    core.run(12, &[]);
+    let nothing = || Feed { cancel_after: Some(Token(0)), waypoints: vec![] };
+    let answer = core.answer(Input::Feed(4, nothing(), fp_manager()));
+    assert!(matches!(answer, Answer::Feed(FeedAnswer::NotNow(_))), "{answer:?}");
+    core.run(1, &in_mode(Mode::Waypoints));
+    let answer = core.answer(Input::Feed(5, nothing(), fp_manager()));
+    assert!(matches!(answer, Answer::Feed(FeedAnswer::Refused { .. })), "{answer:?}");
+    core.run(2, &in_mode(Mode::Waypoints));
+    assert_eq!(core.gateway.state(), GatewayState::Nav);
+}
