@@ -18,6 +18,17 @@ const MOST_CIRCLES: f64 = 20.0;
 /// An autopilot circles in a wind of up to this share of its airspeed.
 const MOST_WIND: f64 = 0.8;
 
+/// What is kept of the height for what a glide does not know of (gusts, the way an autopilot turns): metres, and a share of what the
+/// glide takes.
+const RESERVE_M: f64 = 15.0;
+const RESERVE_SHARE: f64 = 0.1;
+
+/// The height that a glide to a runway has to spare there, metres, for it to be counted on: by the height that it takes, metres. The
+/// executor and Safe mode keep the same.
+pub fn reserve_m(taken_m: f64) -> f64 {
+    RESERVE_M + RESERVE_SHARE * taken_m.max(0.0)
+}
+
 /// A point of a glide.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GlidePoint {
@@ -54,19 +65,41 @@ pub struct Circle {
 impl Circle {
     /// At the cruise speed, over the ground.
     pub fn of(profile: &Profile, wind: Wind) -> Self {
+        Self::with_radius(CIRCLE_RADII * profile.turn_radius_m(profile.cruise_airspeed_mps), profile, wind)
+    }
+
+    /// The smallest that an autopilot is sure to hold: banked halfway between what is planned with and the steepest. For the little height
+    /// that a wider one would take too much of.
+    pub fn smallest(profile: &Profile, wind: Wind) -> Self {
+        let bank_deg = 0.5 * (profile.planning_bank_deg + profile.max_bank_deg);
+        let most_mps = profile.cruise_airspeed_mps + bounded_mps(wind, profile);
+        let radius_m = most_mps.powi(2) / (GRAVITY_MPS2 * bank_deg.to_radians().tan());
+        Self::with_radius(radius_m.min(Self::of(profile, wind).radius_m), profile, wind)
+    }
+
+    fn with_radius(radius_m: f64, profile: &Profile, wind: Wind) -> Self {
         let speed_mps = profile.cruise_airspeed_mps;
-        let radius_m = CIRCLE_RADII * profile.turn_radius_m(speed_mps);
         // it is banked most where the wind is behind it
-        let wind_mps = wind.speed_mps().min(MOST_WIND * speed_mps);
+        let wind_mps = bounded_mps(wind, profile);
         let load_factor = ((speed_mps + wind_mps).powi(2) / (GRAVITY_MPS2 * radius_m)).hypot(1.0);
         let time_s = TAU * radius_m / (speed_mps * speed_mps - wind_mps * wind_mps).sqrt();
         Self { radius_m, height_m: time_s * glide_sink_mps(profile, speed_mps, load_factor), time_s }
     }
 
+    /// The height that is kept for one, metres: what it takes, and some to spare.
+    pub fn kept_m(&self) -> f64 {
+        CIRCLE_SPARE * self.height_m
+    }
+
     /// So many of them can be flown with this much height to lose, and some of it to spare.
     pub fn most(&self, height_m: f64) -> u32 {
-        (height_m / (CIRCLE_SPARE * self.height_m)).floor().clamp(0.0, MOST_CIRCLES) as u32
+        (height_m / self.kept_m()).floor().clamp(0.0, MOST_CIRCLES) as u32
     }
+}
+
+/// The wind's speed, as far as an autopilot circles in it, m/s.
+fn bounded_mps(wind: Wind, profile: &Profile) -> f64 {
+    wind.speed_mps().min(MOST_WIND * profile.cruise_airspeed_mps)
 }
 
 /// The glide through some places, with a point at each, and at the last one in line with a runway; `None`: against the wind it does
@@ -127,6 +160,8 @@ mod tests {
             let windy = Circle::of(&profile, Wind::from_direction(90.0, 0.3 * profile.cruise_airspeed_mps));
             assert!(windy.height_m > calm.height_m && windy.time_s > calm.time_s, "{name}");
             assert_eq!(windy.radius_m, calm.radius_m, "{name}: it is one over the ground");
+            let small = Circle::smallest(&profile, Wind::CALM);
+            assert!(small.radius_m < calm.radius_m && small.height_m < calm.height_m, "{name}");
             let storm = Circle::of(&profile, Wind::from_direction(90.0, 1e3));
             assert!(storm.height_m.is_finite() && storm.height_m > 0.0, "{name}");
             assert_eq!([-1.0, 0.0, 1.0, 2.5].map(|n| calm.most(n * calm.height_m)), [0, 0, 0, 2], "{name}");

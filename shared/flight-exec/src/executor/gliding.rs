@@ -41,11 +41,13 @@ impl Executor {
         let plan = self.setup.program.flown().emergency_plans.get(section)?;
         let runway = self.setup.program.plan.runway(&plan.runway)?;
         let halts = halts(&self.world(), section, (path.stage, path.indices.first().copied().unwrap_or(0)));
+        let last = halts.len().checked_sub(1)?;
         let spare_m = |from: usize| {
-            let arrival = self.arrival(state, halts.get(from..)?, runway);
+            // whoever leaves the circles of a landing need not go back to where its final begins
+            let ahead = if last == 0 { &[] } else { halts.get(from..)? };
+            let arrival = self.arrival(state, ahead, runway);
             Some((arrival, arrival.map_or(f64::NEG_INFINITY, |a| a.spare_m())))
         };
-        let last = halts.len().checked_sub(1)?;
         // on the final approach nothing can be left out but the circles before it
         if spare_m(0)?.1 >= 0.0 || (last == 0 && !front.waypoint.on_arc) {
             return None;

@@ -3,7 +3,7 @@
 use super::path::distance_m;
 use super::world::World;
 use aircraft::Wind;
-use aircraft::glide::{GlideStart, glide};
+use aircraft::glide::{GlideStart, glide, reserve_m};
 use flight_plan::{Id, Runway, Stage, StageKind};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
@@ -12,11 +12,6 @@ use geometry::geodesy::normalise_180;
 pub const ALIGNED_DEG: f64 = 30.0;
 /// Most legs on the way home that are looked at.
 const MAX_HALTS: usize = 200;
-/// What is kept of the height for what a glide does not know of (gusts, the way an autopilot turns): metres, and a share of what the
-/// glide takes.
-pub const RESERVE_M: f64 = 15.0;
-const RESERVE_SHARE: f64 = 0.1;
-
 /// A part of an emergency plan that can be gone to: a leg of a stage, or a landing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Halt {
@@ -78,7 +73,15 @@ pub struct Arrival {
 impl Arrival {
     /// So much more than the reserve, metres; what of it is lacking, if it is negative.
     pub fn spare_m(&self) -> f64 {
-        self.height_m - RESERVE_M - RESERVE_SHARE * self.taken_m
+        self.height_m - reserve_m(self.taken_m)
+    }
+
+    /// The altitude that a glide straight from a place to the runway needs there, with its reserve, metres AMSL. `None`: the wind does not
+    /// let it get there.
+    pub fn needed_amsl_m(world: &World, wind: Wind, position: LatLon, runway: &Runway) -> Option<f64> {
+        let from =
+            GlideStart { position, altitude_amsl_m: 0.0, course_deg: position.bearing_deg(runway.threshold) };
+        Some(-Self::of(world, wind, from, [].into_iter(), runway)?.spare_m())
     }
 
     /// Of one that goes to a landing at once, and whether it does so by the place where the final approach begins. That is left out if the

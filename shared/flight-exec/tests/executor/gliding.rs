@@ -129,6 +129,44 @@ fn what_is_too_high_close_in_and_in_line_circles_before_it_lands() {
     assert!(matches!(land.action, Action::Land { .. }));
 }
 
+/// Of what it is told, following that, until it lands: the altitudes above the ground in circles, and whether the circles were left.
+fn circling_down(height_m: f64) -> (Vec<f64>, bool) {
+    let mut rig = before_the_threshold(height_m);
+    rig.events.clear();
+    let mut told_m = vec![];
+    while let Some(next) = rig.buffer.front().filter(|w| !matches!(w.action, Action::Land { .. })) {
+        told_m.push(next.altitude_amsl_m - GROUND_M);
+        rig.altitude_amsl_m = Some(next.altitude_amsl_m);
+        if !rig.fly_one() {
+            break;
+        }
+    }
+    (told_m, left_out(&rig).is_some())
+}
+
+/// What lies behind it is not flown by again: it is told down to what the runway asks for from where it lands, and left alone.
+#[test]
+fn circles_on_the_final_lose_the_height_that_is_too_much_and_are_flown_to_their_end() {
+    for height_m in (0..20).map(|i| 240.0 + 40.0 * f64::from(i)) {
+        let (told_m, left) = circling_down(height_m);
+        let last_m = *told_m.last().unwrap_or_else(|| panic!("{height_m} m: nothing is circled"));
+        assert!(!left, "{height_m} m: {told_m:?}");
+        // 600 m before the threshold: 50 m of glide and the reserve of 20 m; the steepest descent loses 96 m
+        assert!((69.0..125.0).contains(&last_m), "{height_m} m: {told_m:?}");
+        assert!(told_m.windows(2).all(|pair| pair[1] < pair[0] + 0.1), "{height_m} m: {told_m:?}");
+    }
+}
+
+/// Too high by less than a circle takes, it flies a smaller one.
+#[test]
+fn nobody_comes_over_the_threshold_too_high_to_land_behind_it() {
+    for height_m in (0..40).map(|i| 100.0 + 5.0 * f64::from(i)) {
+        let (told_m, _) = circling_down(height_m);
+        let over_m = told_m.last().unwrap_or(&height_m) - 4.0 * 600.0 / 25.0;
+        assert!(over_m < 50.0, "{height_m} m: {over_m} m over the threshold, {told_m:?}");
+    }
+}
+
 /// He may take it to a field.
 #[test]
 fn nobody_is_told_to_land_elsewhere_who_comes_to_the_runway_straight() {

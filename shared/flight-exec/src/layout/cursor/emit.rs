@@ -9,7 +9,7 @@ use crate::layout::world::World;
 use crate::value::Choice;
 use aircraft::glide::GlideStart;
 use aircraft::power::glide_sink_mps;
-use flight_plan::{Act, Trigger};
+use flight_plan::{Act, StageKind, Trigger};
 
 /// Each waypoint may lie so much beyond what the aircraft climbs on the way to it, metres, so that it never waits for its
 /// target, however wide it turns. The gateway grants ten.
@@ -72,11 +72,12 @@ impl Cursor {
     }
 
     /// With the engine out: an altitude below which the glide home from a point would be short of its reserve, metres AMSL. No height is
-    /// given away there.
+    /// given away there. The points of a landing say so themselves: in its circles the way is not that by what lies behind.
     fn kept_for_the_glide(&self, point: Point, course_deg: f64, world: &World) -> f64 {
         let needed_m = || {
             let (wind, section) = (world.glides_in?, self.section?);
-            if matches!(point.action, Action::Land { .. }) {
+            let stage = world.program.stages(Some(section)).get(self.stage)?;
+            if stage.kind == StageKind::Land {
                 return None;
             }
             let runway = &world.program.flown().emergency_plans.get(section)?.runway;

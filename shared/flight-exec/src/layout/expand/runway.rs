@@ -4,7 +4,7 @@ use super::arc::vertices;
 use super::track::SAME_PLACE_M;
 use super::{ExpandError, Point};
 use crate::api::Action;
-use crate::layout::homeward::{ALIGNED_DEG, Arrival, RESERVE_M, is_on_final};
+use crate::layout::homeward::{ALIGNED_DEG, Arrival, is_on_final};
 use crate::layout::path::{Level, PathState, distance_m};
 use crate::layout::world::World;
 use aircraft::Wind;
@@ -89,21 +89,18 @@ fn gliding_in(gate: Point, path: &PathState, runway: &Runway, (wind, world): (Wi
     if Arrival::at_landing(world, wind, from, gate.position, runway).0 {
         return losing_height(gate, path, runway, (wind, world));
     }
-    let mps = path.last.airspeed_mps.max(1.0);
-    let left_s = distance_m(position, runway.threshold) / mps;
+    let left_s = distance_m(position, runway.threshold) / path.last.airspeed_mps.max(1.0);
     let is_too_high = altitude_amsl_m - world.profile.max_descent_mps * left_s > runway.elevation_amsl_m;
     if !is_too_high || !is_on_final(position, gate.position, runway) {
         return Vec::new();
     }
-    let needed_m = RESERVE_M + glide_sink_mps(world.profile, mps, 1.0) * left_s;
-    let level = Level { metres: runway.elevation_amsl_m + needed_m, reference: AltitudeReference::Amsl };
-    let here = Point { level: Some(level), ..Point::fly(position) };
     // it is there
-    losing_height(here, path, runway, (wind, world)).split_off(1)
+    losing_height(Point::fly(position), path, runway, (wind, world)).split_off(1)
 }
 
 /// With the engine out: to where the final approach begins, and around there as often as it takes to lose what is too much of the height.
-/// As many circles as the steepest descent needs, and no more than a glide has height for.
+/// As many circles as the steepest descent needs, and no more than a glide has height for: what is left of it in smaller ones. Each point
+/// keeps the height that the rest of the way takes from there.
 fn losing_height(
     gate: Point,
     path: &PathState,
@@ -111,26 +108,49 @@ fn losing_height(
     (wind, world): (Wind, &World),
 ) -> Vec<Point> {
     let (profile, mps) = (world.profile, path.last.airspeed_mps.max(1.0));
-    let circle = Circle::of(profile, wind);
     let way_s = distance_m(path.last.position, gate.position) / mps;
-    let wanted_m = gate.level.map_or(runway.elevation_amsl_m, |level| level.metres);
+    let needed_m = Arrival::needed_amsl_m(world, wind, gate.position, runway);
+    let wanted_m =
+        needed_m.unwrap_or(runway.elevation_amsl_m).max(gate.level.map_or(f64::NEG_INFINITY, |l| l.metres));
     let (steep_mps, glide_mps) = (profile.max_descent_mps, glide_sink_mps(profile, mps, 1.0));
-    let too_much_m = path.predicted_amsl_m - steep_mps * way_s - wanted_m;
-    let there_is_m = path.predicted_amsl_m - glide_mps * way_s - wanted_m;
-    let needed = (too_much_m / (steep_mps * circle.time_s)).ceil().max(0.0);
-    let circles = needed.min(f64::from(circle.most(there_is_m)));
-    let mut points = vec![gate];
-    if circles > 0.0 {
-        let side = if normalise_180(runway.heading_deg - path.course_deg) < 0.0 { -1.0 } else { 1.0 };
-        let radius_m = circle.radius_m;
-        let centre = gate.position.destination(runway.heading_deg + side * 90.0, radius_m);
-        let start_bearing_deg = normalise_360(runway.heading_deg - side * 90.0);
-        let around =
-            PathElement::Arc { centre, radius_m, start_bearing_deg, sweep_deg: side * 360.0 * circles };
-        let on_the_way_down = |point| Point { level: gate.level, ..point };
-        points.extend(vertices(&[around], world.config.arc_tolerance_m).into_iter().map(on_the_way_down));
+    let mut too_much_m = path.predicted_amsl_m - steep_mps * way_s - wanted_m;
+    let mut there_is_m = path.predicted_amsl_m - glide_mps * way_s - wanted_m;
+    let circles = [Circle::of(profile, wind), Circle::smallest(profile, wind)].map(|circle| {
+        let needed = (too_much_m / (steep_mps * circle.time_s)).ceil().max(0.0);
+        let laps = needed.min(f64::from(circle.most(there_is_m)));
+        too_much_m -= laps * steep_mps * circle.time_s;
+        there_is_m -= laps * circle.kept_m();
+        (circle, laps)
+    });
+    let mut left_m: f64 = circles.iter().map(|(circle, laps)| laps * circle.height_m).sum();
+    let at_least = |metres: f64| Some(Level { metres, reference: AltitudeReference::Amsl });
+    let mut points = vec![Point { level: at_least(wanted_m + left_m), ..gate }];
+    for (circle, laps) in circles.into_iter().filter(|(_, laps)| *laps > 0.0) {
+        let corners = around(gate.position, circle.radius_m, laps, path, runway, world);
+        let takes_m = laps * circle.height_m / (corners.len() as f64).max(1.0);
+        points.extend(corners.into_iter().map(|corner| {
+            left_m -= takes_m;
+            Point { level: at_least(wanted_m + left_m.max(0.0)), ..corner }
+        }));
     }
     points
+}
+
+/// So many times around, from a place on the runway's line and back to it in line with the runway, on the side that it comes from.
+fn around(
+    at: LatLon,
+    radius_m: f64,
+    laps: f64,
+    path: &PathState,
+    runway: &Runway,
+    world: &World,
+) -> Vec<Point> {
+    let side = if normalise_180(runway.heading_deg - path.course_deg) < 0.0 { -1.0 } else { 1.0 };
+    let centre = at.destination(runway.heading_deg + side * 90.0, radius_m);
+    let start_bearing_deg = normalise_360(runway.heading_deg - side * 90.0);
+    let sweep_deg = side * 360.0 * laps;
+    let arc = PathElement::Arc { centre, radius_m, start_bearing_deg, sweep_deg };
+    vertices(&[arc], world.config.arc_tolerance_m)
 }
 
 fn on_final(runway: &Runway, before_m: f64, world: &World) -> Point {
