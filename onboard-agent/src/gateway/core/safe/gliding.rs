@@ -7,11 +7,11 @@
 use super::gates::{Circles, Gate, is_over_ground};
 use super::way::gates;
 use super::{Approach, Situation};
-use aircraft::glide::{Circle, GlidePoint, GlideStart, glide};
+use aircraft::glide::{Circle, GlidePoint, GlideStart, glide, reserve_m};
 use geometry::geodesy::normalise_180;
 use usal::contract::{SafeParameters, SafeRunway};
 
-/// Height above the threshold that a glide comes there with, and above the ground on the way, metres.
+/// Least height above the ground on the way, metres.
 pub(super) const SPARE_M: f64 = 15.0;
 /// Share of the steepest descent that is counted on.
 const STEEP: f64 = 0.7;
@@ -38,7 +38,11 @@ pub(super) fn glide_in(
     let way = [initial, last, runway.threshold];
     let points = glide(s.profile, s.wind().into(), start, &way, runway.heading_deg)?;
     let [.., at_initial, at_last, end] = points.as_slice() else { return None };
-    let told = told(runway, s, [at_initial, at_last, end])?;
+    let takes_m = s.altitude_amsl_m - end.altitude_amsl_m;
+    if end.altitude_amsl_m < runway.elevation_amsl_m + reserve_m(takes_m) {
+        return None;
+    }
+    let told = told(runway, s, [at_initial, at_last, end]);
     let right = normalise_180(runway.heading_deg - s.position.bearing_deg(initial)) >= 0.0;
     let sides = [right, !right].map(|right| {
         let altitudes = (at_initial.altitude_amsl_m, told.initial_m);
@@ -62,21 +66,21 @@ struct Told {
     last_m: f64,
 }
 
-/// `None`: it comes to the threshold too low.
-fn told(runway: &SafeRunway, s: &Situation, [initial, last, end]: [&GlidePoint; 3]) -> Option<Told> {
-    let too_much_m = end.altitude_amsl_m - (runway.elevation_amsl_m + SPARE_M);
-    if too_much_m < 0.0 {
-        return None;
-    }
+/// From each place on it keeps the reserve of the way from there.
+fn told(runway: &SafeRunway, s: &Situation, [initial, last, end]: [&GlidePoint; 3]) -> Told {
     let (height_m, sinks_m) = (initial.altitude_amsl_m, initial.altitude_amsl_m - last.altitude_amsl_m);
+    let needed_m = |from: &GlidePoint| {
+        let takes_m = from.altitude_amsl_m - end.altitude_amsl_m;
+        runway.elevation_amsl_m + takes_m + reserve_m(takes_m)
+    };
     let falls_m =
         |from: &GlidePoint, to: &GlidePoint| STEEP * s.profile.max_descent_mps * (to.time_s - from.time_s);
-    let most_last_m = (last.altitude_amsl_m - too_much_m).max(runway.elevation_amsl_m + falls_m(last, end));
-    let most_initial_m = (height_m - too_much_m).max(most_last_m + falls_m(initial, last));
+    let most_last_m = needed_m(last).max(runway.elevation_amsl_m + falls_m(last, end));
+    let most_initial_m = needed_m(initial).max(most_last_m + falls_m(initial, last));
     let circle = Circle::of(s.profile, s.wind());
-    let circles = if height_m > most_initial_m { circle.most(too_much_m) } else { 0 };
+    let circles = if height_m > most_initial_m { circle.most(height_m - needed_m(initial)) } else { 0 };
     let initial_m = (height_m - f64::from(circles) * circle.height_m).min(most_initial_m);
-    Some(Told { circles, initial_m, last_m: (initial_m - sinks_m).min(most_last_m) })
+    Told { circles, initial_m, last_m: (initial_m - sinks_m).min(most_last_m) }
 }
 
 #[cfg(test)]
