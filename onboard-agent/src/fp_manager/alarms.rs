@@ -12,7 +12,7 @@ use wire::Convert;
 /// More identifiers are not remembered: a gateway has a few dozen alarms.
 const MOST: usize = 256;
 
-/// The gateway's alarms of an engine that has stopped, seems to have, or may not run.
+/// The gateway's alarms of an engine, for those that are remembered by name only: told, they say it by their cause.
 const ENGINE_OUT: [&str; 3] = ["engine-out", "engine-suspected", "disarmed-in-flight"];
 
 /// What was answered.
@@ -121,7 +121,7 @@ impl Alarms {
 }
 
 fn tells_of_engine(alarm: &Alarm) -> bool {
-    ENGINE_OUT.contains(&alarm.id.as_str())
+    alarm.cause.convert() == Some(Cause::Engine)
 }
 
 /// What an alarm asks for, if anything.

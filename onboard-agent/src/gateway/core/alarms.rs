@@ -8,7 +8,7 @@ use crate::gateway::order::Time;
 use climb::Climb;
 use geometry::LatLon;
 use std::time::Duration;
-use usal::contract::{Alarm, GatewayEvent};
+use usal::contract::{Alarm, Cause, GatewayEvent};
 use watches::{WATCHES, Watch};
 
 /// Nothing was received from the autopilot for so long.
@@ -93,9 +93,7 @@ impl Alarms {
 
     /// The engine has failed, or seems to have.
     pub fn engine_has_failed(&self) -> bool {
-        self.raised
-            .iter()
-            .any(|watch| matches!(watch, Watch::EngineOut | Watch::EngineSuspected | Watch::Disarmed))
+        self.raised.iter().any(|watch| watch.alarm().cause == Some(Cause::Engine))
     }
 
     /// The alarm of an engine that has failed, or seems to, for a gateway that follows this one: on the way down nothing else shows it.
