@@ -350,7 +350,7 @@ impl Gateway {
     fn leave_loiter(&mut self, out: &mut Vec<Output>) {
         let Some(waypoint) = self.buffer.current() else { return };
         let Action::Loiter { radius_m } = waypoint.action else { return };
-        let Some(place) = self.place() else { return };
+        let Some(place) = self.place_now() else { return };
         let reached = place.distance_m(waypoint.position) < LOITER_REACHED * radius_m.abs();
         if reached
             && self.flies_waypoints()

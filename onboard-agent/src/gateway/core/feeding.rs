@@ -181,7 +181,7 @@ impl Gateway {
 
     /// Where the aircraft is, as a waypoint that the batch follows on; in flight only.
     fn here(&self, feed: &Feed) -> Option<Waypoint> {
-        let position = self.place().filter(|_| self.telemetry.is_up(self.now))?;
+        let position = self.place_now().filter(|_| self.telemetry.is_up(self.now))?;
         let first = feed.waypoints.first()?.clone().convert();
         Some(plausibility::from_here(position, &first).convert())
     }

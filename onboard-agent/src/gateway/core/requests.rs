@@ -125,7 +125,7 @@ impl Gateway {
         out: &mut Vec<Output>,
     ) -> Result<(), String> {
         self.is_free()?;
-        let place = self.place().ok_or("The position is not known.")?;
+        let place = self.place_now().ok_or("The position is not known: try again when it is.")?;
         let profile = &self.settings.profile;
         let speeds = profile.min_airspeed_mps..=profile.max_airspeed_mps;
         if !heading_deg.is_finite() || !speeds.contains(&airspeed_mps) {

@@ -7,6 +7,7 @@ use super::states::Trigger;
 use super::telemetry::OUT_OF_DATE;
 use super::{Gateway, seconds};
 use crate::gateway::order::Time;
+use geometry::LatLon;
 use std::time::Duration;
 use usal::Instance;
 use usal::contract::{GatewayState, SafeParameters, Token, Waypoint};
@@ -291,6 +292,11 @@ impl Gateway {
         let landing = safe::choose(&self.runways, &self.safe, &situation)?;
         let cause = format!("{} to {landing}", if situation.glides { "gliding" } else { "returning" });
         Some((cause, safe::path(&landing, &self.safe, &situation)))
+    }
+
+    /// Where the aircraft is; not where it was.
+    pub(super) fn place_now(&self) -> Option<LatLon> {
+        self.situation().map(|s| s.position)
     }
 
     /// Where the aircraft is, for the choice of a runway. Wind and battery change slowly: the last that was told of them counts.

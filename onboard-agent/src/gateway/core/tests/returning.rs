@@ -150,6 +150,18 @@ fn an_autopilot_that_may_be_landing_by_itself_is_left_to_it() {
     assert!(cause(&core).contains("position is not known"), "{}", cause(&core));
 }
 
+/// The ground that it has to clear is that where it is.
+#[test]
+fn nothing_is_steered_by_hand_from_where_it_was_long_ago() {
+    let mut core = Core::in_nav();
+    let direct = GatewayRequest::Direct { heading_deg: 90.0, altitude_amsl_m: 600.0, airspeed_mps: 25.0 };
+    core.run(12, &[beat(Mode::Waypoints, true)]);
+    let Answer::Request(Err(reason)) = core.answer(Input::Request(4, direct.clone())) else { panic!() };
+    assert!(reason.contains("position is not known"), "{reason}");
+    core.run(1, &flying(25.0, 25.0));
+    assert_eq!(core.answer(Input::Request(5, direct)), Answer::Request(Ok(())));
+}
+
 /// A glide is told the altitudes that it has: nothing would show again that its engine stands.
 #[test]
 fn a_gateway_that_starts_anew_in_a_glide_knows_that_the_engine_is_out() {
