@@ -1,5 +1,7 @@
 //! The window against a small model of an autopilot's list.
 
+mod moments;
+
 use super::ring::JUMP_SLOT;
 use super::*;
 use crate::gateway::core::CAPACITY;

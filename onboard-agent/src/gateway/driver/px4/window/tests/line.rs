@@ -83,3 +83,19 @@ fn while_it_is_not_flown_a_list_goes_up_at_once() {
     rig.flying = false;
     assert!(rig.begin().is_some());
 }
+
+/// There is no course to be on.
+#[test]
+fn what_does_not_move_or_has_no_line_is_on_none() {
+    let mut rig = fed_one_more(3);
+    rig.window.moved(&Fix { north_mps: 0.0, east_mps: 0.0, ..before(2, 990.0, 0.0, 0.0) });
+    assert_eq!(rig.begin(), None);
+    let twice = |n: u64| corner(n / 2);
+    let fed =
+        |n| Fed { serial: Serial(n), waypoint: Waypoint { position: twice(n), ..waypoint(n, Action::Fly) } };
+    let mut rig = Rig::flying((2..=9).map(fed).collect(), |n| corner(n / 2));
+    rig.reach();
+    rig.window.feed(ALL, vec![fed(10)]);
+    rig.window.moved(&before(2, 990.0, 0.0, 0.0));
+    assert_eq!(rig.begin(), None, "from a place to itself");
+}
