@@ -269,3 +269,27 @@ fn a_way_home_is_kept_where_no_glide_is_better() {
     assert!(core.raised("engine-out") && core.gateway.state() == S::SafeReturn);
     assert!(!core.orders().iter().any(|(_, order)| matches!(order, Order::Feed { .. })));
 }
+
+/// A plan that was flown to its end is no buffer that ran dry.
+#[test]
+fn behind_the_end_of_the_plan_it_circles_in_peace() {
+    let mut core = Core::in_nav();
+    core.gateway.ended = true;
+    core.step(Input::Report(Report::Course(Course { target: Target::End, ..course(true) })));
+    core.run(3, &flying(25.0, 25.0));
+    assert_eq!(core.gateway.state(), S::Nav);
+}
+
+#[test]
+fn a_throttle_that_was_told_long_ago_suspects_no_engine() {
+    let mut core = Core::in_nav();
+    core.step(Input::Report(Report::Throttle(1.0)));
+    core.run(4, &flying(25.0, 25.0));
+    core.run(15, &at_height(-60.0, 2.0));
+    assert!(core.raised("sinks") && !core.raised("engine-suspected"));
+}
+
+#[test]
+fn what_was_never_heard_has_not_landed() {
+    assert!(!Core::new().gateway.telemetry.is_landed(Time::ZERO));
+}

@@ -106,6 +106,9 @@ fn before_the_autopilot_is_known_nothing_is_done_to_its_list() {
     list.leave(Serial(1));
     list.lost();
     list.steers_to(at(0), 3);
+    let (position, altitude_amsl_m) = (LatLon::new(36.0, -84.0), 500.0);
+    let [altitude_home_m, north_mps, east_mps, down_mps] = [100.0, 25.0, 0.0, 0.0];
+    list.moved(&Fix { position, altitude_amsl_m, altitude_home_m, north_mps, east_mps, down_mps });
     list.forget();
     assert_eq!((list.next(at(0)), list.new_course(), list.is_at_end()), (None, None, false));
     assert_eq!(list.read(&[]), None);
@@ -121,6 +124,14 @@ fn what_may_not_be_changed_is_left_as_it_is() {
     list.supported = true;
     assert_eq!(list.next(at(0)), Some(Step::Change(CHANGE)));
     assert_eq!(list.next(at(0)), None, "one thing at a time");
+}
+
+#[test]
+fn a_circle_is_left_by_the_window() {
+    let (mut list, notes) = list();
+    list.leave(Serial(1));
+    assert_eq!(told(&notes), ["leave"]);
+    assert!(list.is_at_end() && list.new_course().is_some() && list.new_course().is_none(), "told once");
 }
 
 #[test]

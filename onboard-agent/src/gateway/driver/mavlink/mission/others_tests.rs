@@ -119,3 +119,11 @@ fn a_write_that_nobody_answers_ends() {
     let ended = (1..1000).find_map(|n| mission.tick(Time::from_secs(4 * n), PEER, &mut vec![]));
     assert!(matches!(ended, Some(Outcome::Failed(_))), "{ended:?}");
 }
+
+#[test]
+fn while_it_is_replaced_by_us_another_list_in_use_is_no_other_stations() {
+    let mut mission = mission();
+    UPLOAD(&mut mission);
+    let said = MISSION_CURRENT_DATA { total: 9, ..MISSION_CURRENT_DATA::DEFAULT };
+    assert!((0..20).all(|_| !mission.is_foreign(&said)));
+}

@@ -28,3 +28,12 @@ fn an_entry_behind_the_ring_is_nowhere_to_go_on_from() {
     let lands_twice = [place(ItemKind::Land), place(ItemKind::Land)];
     assert_eq!(Window::default().adopt(&lands_twice, 0, vec![]), None, "not one of ours");
 }
+
+#[test]
+fn what_is_said_of_a_list_that_is_not_ours_means_nothing() {
+    let mut window = Window::default();
+    window.feed(ALL, waypoints(1, 3));
+    window.reported(2);
+    window.done();
+    assert!(!window.installed() && window.target() == Target::None && !window.is_astray(2));
+}
