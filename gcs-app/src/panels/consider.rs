@@ -89,7 +89,9 @@ fn since(considered: &Considered, scene: &Scene<'_>) -> Vec<String> {
     let age_s = considered.age_s(scene.now_s, vehicle.clock_s(scene.now_s));
     let old = age_s.filter(|age_s| *age_s > OLD_S);
     let old = old.map(|age_s| format!("Looked at {} ago: look again", units::duration(age_s)));
-    let is_elsewhere = considered.has_gone_on(vehicle.current_leg());
+    // another leg is not skipped at all: that is said above the button
+    let is_elsewhere =
+        considered.command != Command::SkipLeg && considered.has_gone_on(vehicle.current_leg());
     let elsewhere = is_elsewhere.then(|| "The aircraft is on another leg by now: look again".to_owned());
     let state = vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
     let landing = (state == Some(GatewayState::Land)).then(|| {
