@@ -24,6 +24,7 @@ pub struct Profile {
     /// Show what was flown already, too.
     whole: bool,
     levels: levels::Levels,
+    columns: Columns,
 }
 
 impl Panel for Profile {
@@ -43,12 +44,14 @@ impl Panel for Profile {
         timeline::show(ui, scene, queue);
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        plot(ui, scene, self.whole, &mut self.levels, queue);
+        plot(ui, scene, self, queue);
     }
 }
 
 /// The profile; dragging on it moves the cursor, dragging a leg's mark its altitude.
-fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, levels: &mut levels::Levels, queue: &mut Queue) {
+fn plot(ui: &mut Ui, scene: &Scene<'_>, profile: &mut Profile, queue: &mut Queue) {
+    let Profile { whole, levels, columns } = profile;
+    let whole = *whole;
     let size = ui.available_size().max(vec2(120.0, 80.0));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let told = flown::told(scene).filter(|_| !whole);
@@ -79,7 +82,7 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, whole: bool, levels: &mut levels::Levels
     if told.is_some() {
         return flown::draw(ui, &painter, &axes, forecast, scene, p);
     }
-    draw_preview(ui, &painter, &axes, scene, p);
+    draw_preview(ui, &painter, &axes, columns.refresh(&axes, scene), scene, p);
     levels.run(ui, &painter, &axes, scene, queue);
     if let Some(pointer) =
         response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())
@@ -100,10 +103,10 @@ fn description(scene: &Scene<'_>, forecast: &Forecast, from: Option<&Point>, is_
     )
 }
 
-fn draw_preview(ui: &Ui, painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
+fn draw_preview(ui: &Ui, painter: &Painter, axes: &Axes, seen: &[Point], scene: &Scene<'_>, p: &Palette) {
     draw_stages(ui, painter, axes, scene, p);
-    draw_ground(painter, axes, scene.forecast(), p);
-    draw_path(painter, axes, scene, p);
+    draw_ground(painter, axes, seen, p);
+    draw_path(painter, axes, seen, scene, p);
     draw_cursor(painter, axes, scene, p);
     if scene.vehicle.outlook.is_elsewhere() && flown::told(scene).is_none() {
         flown::warn(ui, painter, axes);
@@ -250,11 +253,30 @@ fn thinned<'a>(axes: &'a Axes, forecast: &'a Forecast) -> impl Iterator<Item = &
     .map_while(|index| forecast.points.get(index))
 }
 
-fn draw_ground(painter: &Painter, axes: &Axes, forecast: &Forecast, p: &Palette) {
+/// The columns of the path that is foreseen; found again when path or axes are others.
+#[derive(Debug, Default)]
+struct Columns {
+    of: Option<(u64, f64, f64, f32)>,
+    points: Vec<Point>,
+}
+
+impl Columns {
+    fn refresh(&mut self, axes: &Axes, scene: &Scene<'_>) -> &[Point] {
+        let of = (scene.analysis.forecast_version, axes.from_s, axes.duration_s, axes.plot.width());
+        if self.of != Some(of) {
+            self.of = Some(of);
+            self.points = thinned(axes, scene.forecast()).cloned().collect();
+        }
+        &self.points
+    }
+}
+
+/// `seen`: a point in each column.
+fn draw_ground(painter: &Painter, axes: &Axes, seen: &[Point], p: &Palette) {
     let fill = p.border.gamma_multiply(0.55);
     let mut mesh = Mesh::default();
     let mut edge: Vec<Pos2> = Vec::new();
-    for point in thinned(axes, forecast) {
+    for point in seen {
         let Some(ground) = point.ground_amsl_m else { continue };
         let top = pos2(axes.x(point.time_s), axes.y(ground));
         let first = mesh.vertices.len() as u32;
@@ -270,19 +292,18 @@ fn draw_ground(painter: &Painter, axes: &Axes, forecast: &Forecast, p: &Palette)
     painter.add(Shape::line(edge, Stroke::new(1.2, p.border)));
 }
 
-fn draw_path(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
+fn draw_path(painter: &Painter, axes: &Axes, seen: &[Point], scene: &Scene<'_>, p: &Palette) {
     let forecast = scene.forecast();
     match scene.analysis.coverage().filter(|_| scene.view.coverage && scene.out_of_date().is_none()) {
         Some(known) => {
             // what is narrower than a column is not seen
-            let seen: Vec<Point> = thinned(axes, forecast).cloned().collect();
-            for (reach, part) in coverage::parts(&seen, known) {
+            for (reach, part) in coverage::parts(seen, known) {
                 let path: Vec<Pos2> = part.iter().map(|point| axes.place(point)).collect();
                 coverage::line(painter, &path, coverage::look(reach, p));
             }
         }
         None => {
-            let path: Vec<Pos2> = thinned(axes, forecast).map(|point| axes.place(point)).collect();
+            let path: Vec<Pos2> = seen.iter().map(|point| axes.place(point)).collect();
             let colour = if scene.out_of_date().is_some() { p.weak } else { p.accent };
             painter.add(Shape::line(path, Stroke::new(1.8, colour)));
         }

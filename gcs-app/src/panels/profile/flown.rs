@@ -71,8 +71,9 @@ pub fn name(scene: &Scene<'_>) -> String {
 pub fn draw(ui: &Ui, painter: &Painter, axes: &Axes, way: &Forecast, scene: &Scene<'_>, p: &Palette) {
     let (left, right) = (axes.plot.left(), axes.plot.right());
     draw_band(ui, painter, axes, &name(scene), left, right, p);
-    draw_ground(painter, axes, way, p);
-    let path: Vec<Pos2> = thinned(axes, way).map(|point| axes.place(point)).collect();
+    let seen: Vec<Point> = thinned(axes, way).cloned().collect();
+    draw_ground(painter, axes, &seen, p);
+    let path: Vec<Pos2> = seen.iter().map(|point| axes.place(point)).collect();
     painter.add(Shape::line(path, Stroke::new(1.8, p.active)));
     aircraft(painter, axes, axes.from_s, scene, p);
 }
