@@ -293,3 +293,32 @@ fn a_throttle_that_was_told_long_ago_suspects_no_engine() {
 fn what_was_never_heard_has_not_landed() {
     assert!(!Core::new().gateway.telemetry.is_landed(Time::ZERO));
 }
+
+/// It started anew in the air, perhaps: nothing can be written while that list is flown.
+#[test]
+fn what_flies_a_list_that_is_not_ours_circles_until_ours_is_aboard() {
+    use crate::gateway::order::Aim;
+    let steered = |core: &Core, aim| core.orders().iter().filter(|(_, o)| *o == Order::Steer(aim)).count();
+    let lost = || Input::Report(Report::Course(Course::default()));
+    let mut core = Core::in_nav();
+    for _ in 0..3 {
+        core.step(lost());
+        core.run(1, &flying(25.0, 25.0));
+        core.step(Input::Report(Report::Course(course(true))));
+        core.run(1, &flying(25.0, 25.0));
+    }
+    assert_eq!(steered(&core, Aim::Hold), 0, "each time but for a moment");
+    core.step(lost());
+    core.run(3, &flying(25.0, 25.0));
+    assert_eq!(steered(&core, Aim::Hold), 1);
+    core.run(3, &flying(25.0, 25.0));
+    assert_eq!(steered(&core, Aim::Hold), 1, "it is on its way");
+    let circles = [beat(Mode::Hold, true), fix(25.0)];
+    core.run(1, &circles);
+    core.done();
+    core.run(5, &circles);
+    assert_eq!(steered(&core, Aim::Waypoints), 0);
+    core.step(Input::Report(Report::Course(course(true))));
+    core.run(1, &circles);
+    assert_eq!((steered(&core, Aim::Waypoints), core.gateway.state()), (1, S::Nav));
+}

@@ -81,3 +81,43 @@ fn what_has_nothing_of_ours_aboard_is_somebody_elses() {
         assert!(cause(&core).contains("nothing that it has aboard is ours"), "{}", cause(&core));
     }
 }
+
+/// It may come into effect a moment later; after that it is somebody else who chose that mode.
+#[test]
+fn a_mode_of_ours_that_was_overtaken_is_nobodys_takeover_for_a_moment() {
+    use crate::gateway::order::Aim;
+    for (seconds, is_takeover) in [(1, false), (6, true)] {
+        let mut core = Core::in_nav();
+        core.step(Input::Request(4, GatewayRequest::Hold));
+        core.step(Input::Request(5, GatewayRequest::Resume));
+        let (hold, _) = core.orders().into_iter().find(|(_, o)| *o == Order::Steer(Aim::Hold)).unwrap();
+        core.step(Input::Report(Report::Failed(hold, "no answer".into())));
+        core.run(seconds, &flying(25.0, 25.0));
+        core.out.clear();
+        core.run(1, &[beat(Mode::Hold, true)]);
+        assert_eq!(core.gateway.state() == GatewayState::Manual, is_takeover, "{seconds} s");
+        assert_eq!(core.was_ordered(&Order::Steer(Aim::Waypoints)), !is_takeover, "{seconds} s");
+    }
+}
+
+#[test]
+fn another_direct_command_is_carried_out_once_though_it_follows_one_already() {
+    let direct =
+        |heading_deg| GatewayRequest::Direct { heading_deg, altitude_amsl_m: 500.0, airspeed_mps: 24.0 };
+    let steered = |core: &Core| core.orders().iter().filter(|(_, o)| matches!(o, Order::Steer(_))).count();
+    let mut follows = flying(25.0, 25.0);
+    follows[0] = beat(Mode::Direct, true);
+    let mut core = Core::in_nav();
+    core.step(Input::Request(4, direct(90.0)));
+    core.run(1, &follows);
+    core.done();
+    assert_eq!(core.gateway.state(), GatewayState::Directed);
+    core.run(2, &follows);
+    assert_eq!(steered(&core), 0);
+    core.step(Input::Request(5, direct(180.0)));
+    core.run(1, &follows);
+    assert_eq!(steered(&core), 1);
+    core.done();
+    core.run(2, &follows);
+    assert_eq!(steered(&core), 0);
+}

@@ -222,3 +222,36 @@ fn heartbeat_of_ours() -> HEARTBEAT_DATA {
     let MavMessage::HEARTBEAT(beat) = heartbeat(MavType::MAV_TYPE_GCS) else { panic!() };
     beat
 }
+
+/// Behind the one link of the autopilot comes the one of the other program.
+#[test]
+fn a_mirror_shows_what_the_autopilot_says_and_leads_nothing_to_it() {
+    use autopilot_link::frame::encode;
+    let mut session = Session::new(&Setup { mirror: true, ..Setup::default() });
+    let mut events = vec![];
+    let mut hear = |session: &mut Session, link, from, number: u8, message: &MavMessage| {
+        session.receive(link, FromLink::Datagram(&encode(from, number, message)));
+        while session.process(Time::ZERO, &mut events) {}
+    };
+    hear(&mut session, 0, AUTOPILOT, 0, &beat(false));
+    hear(&mut session, 0, AUTOPILOT, 1, &beat(true));
+    let mut outbox = Outbox::default();
+    session.send(&mut outbox);
+    // numbered anew: what came before it was not shown
+    let shown = encode(AUTOPILOT, 0, &beat(true));
+    assert!(outbox.frames_over(1).any(|frame| frame == shown));
+    let arm =
+        COMMAND_LONG_DATA { command: MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ..COMMAND_LONG_DATA::DEFAULT };
+    outbox.clear();
+    hear(&mut session, 1, GROUND, 0, &MavMessage::COMMAND_LONG(arm.clone()));
+    session.send(&mut outbox);
+    let bytes = encode(GROUND, 0, &MavMessage::COMMAND_LONG(arm));
+    assert!(outbox.frames_over(0).all(|frame| frame != bytes));
+}
+
+#[test]
+fn out_of_turn_it_says_that_it_is_there() {
+    let mut session = Session::new(&Setup::default());
+    session.hello();
+    assert!(matches!(session.out[..], [MavMessage::HEARTBEAT(_)]));
+}
