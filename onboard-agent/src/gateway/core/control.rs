@@ -281,7 +281,7 @@ impl Gateway {
         let due = self.telemetry.mode != Some(wanted) || (wanted == Mode::Direct && self.control.direct_due);
         if due
             && !self.is_steering(wanted)
-            && let Some(aim) = self.aim()
+            && let Some(aim) = self.aim(wanted)
         {
             self.order_steer(aim, out);
         }
@@ -308,18 +308,19 @@ impl Gateway {
         self.control.mode.is_some_and(|(_, ordered)| !overtaken(ordered))
     }
 
-    fn aim(&self) -> Option<Aim> {
-        Some(match self.control.intent {
-            Intent::Nothing => return None,
-            Intent::Fly => Aim::Waypoints,
-            Intent::Hold => Aim::Hold,
-            Intent::Direct => {
+    /// `None`: there is no place to send it to.
+    fn aim(&self, wanted: Mode) -> Option<Aim> {
+        Some(match wanted {
+            Mode::Waypoints => Aim::Waypoints,
+            Mode::Hold => Aim::Hold,
+            Mode::Direct => {
                 // one that was given to an earlier gateway is not known: stay here
                 let here = self.telemetry.fix.map(|(_, f)| (f.position, f.altitude_amsl_m));
                 let (position, altitude_amsl_m) = self.control.direct.or(here)?;
                 Aim::Direct { position, altitude_amsl_m }
             }
-            Intent::Return => Aim::Return,
+            // a pilot's mode is never wanted
+            Mode::Return | Mode::Other(_) => Aim::Return,
         })
     }
 
