@@ -23,6 +23,8 @@ pub(super) struct Glide {
     pub gates: Vec<Gate>,
     /// Time to the threshold without circles, seconds: these take away nothing but height that is too much.
     pub time_s: f64,
+    /// It comes there with the whole reserve, and not only with that of a short one.
+    pub keeps_reserve: bool,
 }
 
 /// The glide from where the aircraft is; `None`: it does not come there.
@@ -39,7 +41,8 @@ pub(super) fn glide_in(
     let points = glide(s.profile, s.wind().into(), start, &way, runway.heading_deg)?;
     let [.., at_initial, at_last, end] = points.as_slice() else { return None };
     let takes_m = s.altitude_amsl_m - end.altitude_amsl_m;
-    if end.altitude_amsl_m < runway.elevation_amsl_m + reserve_m(takes_m) {
+    let height_m = end.altitude_amsl_m - runway.elevation_amsl_m;
+    if height_m < reserve_m(0.0) {
         return None;
     }
     let told = told(runway, s, [at_initial, at_last, end]);
@@ -53,7 +56,7 @@ pub(super) fn glide_in(
         gates
     });
     let gates = sides.into_iter().find(|gates| is_over_ground(gates, s, |_| SPARE_M))?;
-    Some(Glide { gates, time_s: end.time_s })
+    Some(Glide { gates, time_s: end.time_s, keeps_reserve: height_m >= reserve_m(takes_m) })
 }
 
 /// What it is told.

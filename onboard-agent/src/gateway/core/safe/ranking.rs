@@ -29,15 +29,19 @@ const GLIDE_TAILWIND: f64 = 0.1;
 const CLEAR_SHARE: f64 = 0.5;
 const MODEL_ERROR_M: f64 = 5.0;
 
-/// The best landing of those within reach.
+/// The best landing of those within reach. A glide that would come there without its whole reserve is one only if there is no other.
 pub fn choose(runways: &[SafeRunway], safe: &SafeParameters, s: &Situation) -> Option<Landing> {
+    best(runways, safe, (s, true)).or_else(|| if s.glides { best(runways, safe, (s, false)) } else { None })
+}
+
+fn best(runways: &[SafeRunway], safe: &SafeParameters, (s, reserve): (&Situation, bool)) -> Option<Landing> {
     let usable = runways.iter().filter(|runway| is_usable(runway, s.profile));
     let ends = usable.flat_map(|runway| [Some((runway.clone(), false)), other_end(runway, safe, s)]);
     let approaches: &[Approach] =
         if s.glides { &[Approach::Whole, Approach::Short] } else { &[Approach::Whole] };
     let in_reach = ends.flatten().filter_map(|(runway, reversed)| {
         approaches.iter().find_map(|approach| {
-            let time_s = time_s(&runway, *approach, safe, s)?;
+            let time_s = time_s(&runway, *approach, safe, (s, reserve))?;
             let landing = Landing { runway: runway.clone(), reversed, approach: *approach };
             Some((cost_s(&landing, time_s, s), landing))
         })
@@ -89,9 +93,15 @@ fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Optio
 }
 
 /// Time of the way to a landing, seconds; `None`: out of reach.
-fn time_s(runway: &SafeRunway, approach: Approach, safe: &SafeParameters, s: &Situation) -> Option<f64> {
+fn time_s(
+    runway: &SafeRunway,
+    approach: Approach,
+    safe: &SafeParameters,
+    (s, reserve): (&Situation, bool),
+) -> Option<f64> {
     if s.glides {
-        return glide_in(runway, approach, safe, s).map(|glide| glide.time_s);
+        let glide = glide_in(runway, approach, safe, s).filter(|glide| glide.keeps_reserve || !reserve)?;
+        return Some(glide.time_s);
     }
     let way = powered(runway, safe, s)?;
     (way.energy_j < USABLE * s.battery * s.profile.energy_j).then_some(way.time_s)
@@ -163,6 +173,18 @@ mod tests {
         let behind = Situation { glides: true, altitude_amsl_m: reach_m(4_400.0), ..situation(&profile) };
         let abeam = runway("abeam", 90.0, 3.0, 0.0, 1);
         assert_eq!(chosen(&[abeam], &behind).as_deref(), Some("runway abeam by a short final"));
+    }
+
+    /// One that it reaches with hardly anything to spare is better than none, and worse than any other.
+    #[test]
+    fn a_runway_without_the_whole_reserve_is_glided_to_only_if_there_is_no_other() {
+        let profile = Profile::default();
+        let (tight, safe) = (runway("tight", 0.0, 5.0, 0.0, 1), runway("safe", 180.0, 3.0, 180.0, 9));
+        let s =
+            Situation { glides: true, altitude_amsl_m: 322.0 + 5000.0 / 12.0 + 30.0, ..situation(&profile) };
+        assert_eq!(chosen(std::slice::from_ref(&tight), &s).as_deref(), Some("runway tight"));
+        let way = chosen(&[tight, safe], &s).unwrap();
+        assert!(way.starts_with("runway safe"), "{way}");
     }
 
     #[test]
