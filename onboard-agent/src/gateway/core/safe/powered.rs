@@ -1,8 +1,8 @@
 //! The way to a landing with the engine: what is checked here is what is fed.
 //!
 //! The autopilot flies straight from altitude to altitude. So it is told to climb at once, as steeply as it can be counted on: told the
-//! altitude of a far place it would climb all the way there, and come to a ridge too low. Where that slope, or the one down to the approach,
-//! leads too near to the ground, it circles up before the transit, and down where the approach begins.
+//! altitude of a far place it would climb all the way there, and come to a ridge too low. Where that slope, or the one down to the
+//! approach, leads too near to the ground, it circles up before the transit, and down where the approach begins.
 
 use super::gates::{CORNERS, Circles, Gate, is_over_ground, turned_m};
 use super::gliding::SPARE_M;
