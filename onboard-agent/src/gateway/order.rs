@@ -77,7 +77,8 @@ impl Aim {
 ///
 /// Those about waypoints (the first four) are not answered: what came of them is seen in [`Report::Course`]. A
 /// driver goes on trying until the autopilot has what was fed. Take-off and landing are waypoints.
-/// The others are answered by exactly one [`Report::Done`], [`Report::Failed`], [`Report::PutOff`] or [`Report::Adopted`].
+/// The others are answered by exactly one [`Report::Done`], [`Report::Failed`], [`Report::Unanswered`],
+/// [`Report::PutOff`] or [`Report::Adopted`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Order {
     /// What was fed behind the waypoint `after` is cancelled (0: everything), and these follow. One
@@ -117,6 +118,8 @@ pub enum Report {
     Done(OrderId),
     /// An order was refused or never confirmed; what it was about is in an unknown condition.
     Failed(OrderId, String),
+    /// An order to arm was not answered, or accepted and not seen to be carried out: it may still be.
+    Unanswered(OrderId, String),
     /// An order was refused for now, and may be carried out when it is given again.
     PutOff(OrderId, String),
     /// Of the waypoints to be adopted, so many are really aboard. `None`: it flies none of ours.

@@ -127,6 +127,7 @@ impl Station {
 fn log(report: &Report) {
     match report {
         Report::Failed(id, why) => tracing::warn!(?id, why, "order failed"),
+        Report::Unanswered(id, why) => tracing::warn!(?id, why, "order not answered"),
         Report::PutOff(id, why) => tracing::warn!(?id, why, "order put off"),
         Report::Rebooted => tracing::warn!("the autopilot started anew"),
         Report::Capability(Ok(kind)) => tracing::info!(kind, "autopilot"),

@@ -175,12 +175,10 @@ impl Control {
         self.forget(id);
     }
 
-    /// An order failed. True: it was the arming of a launch.
-    pub fn failed(&mut self, now: Time, id: OrderId) -> bool {
-        let arming = self.arm == Some(id);
+    /// An order failed.
+    pub fn failed(&mut self, now: Time, id: OrderId) {
         self.retry_at = Some(now + RETRY);
         self.forget(id);
-        arming
     }
 
     /// It does not arm yet; true: it has had its time to.

@@ -3,7 +3,8 @@
 use super::Gateway;
 use super::control::RETRY;
 use super::io::{Intent, Output};
-use crate::gateway::order::{Order, Time};
+use super::states::is_flying;
+use crate::gateway::order::{Mode, Order, OrderId, Time};
 use std::time::Duration;
 use usal::contract::{GatewayEvent, GatewayState};
 
@@ -54,6 +55,25 @@ impl Gateway {
         }
     }
 
+    /// An order failed, perhaps that to arm; `may_come`: it was not refused, and may still be carried out.
+    pub(super) fn not_armed(
+        &mut self,
+        now: Time,
+        id: OrderId,
+        why: &str,
+        may_come: bool,
+        out: &mut Vec<Output>,
+    ) {
+        let is_launch = self.control.arm == Some(id) && !is_flying(self.state);
+        self.control.failed(now, id);
+        if is_launch {
+            self.give_up_launch(&format!("launch refused by the autopilot: {why}"), out);
+            if may_come {
+                self.control.given_up_at = Some(now);
+            }
+        }
+    }
+
     /// Nothing takes off any more, and that is told.
     pub(super) fn give_up_launch(&mut self, cause: &str, out: &mut Vec<Output>) {
         self.take_back_launch(out);
@@ -81,14 +101,17 @@ impl Gateway {
         self.control.stand_down = Some(self.order(Order::StandDown, out));
     }
 
-    /// It may arm by an order of ours that was taken back; nobody else did it.
+    /// It may arm by an order of ours that was taken back.
     pub(super) fn may_arm_late(&self, now: Time) -> bool {
         self.control.given_up_at.is_some_and(|at| now.saturating_sub(at) < ARMS_LATE)
     }
 
     fn disarm_late(&mut self, now: Time, out: &mut Vec<Output>) {
         let is_idle = self.state == GatewayState::Stop && self.control.intent == Intent::Nothing;
-        let is_ours = self.telemetry.armed && self.may_arm_late(now);
+        // in a mode of his own somebody else has armed it
+        let mode = self.telemetry.mode;
+        let is_his = matches!(mode, Some(Mode::Other(_))) && mode != self.control.mode_before;
+        let is_ours = self.telemetry.armed && self.may_arm_late(now) && !is_his;
         if is_idle && is_ours && self.control.stand_down.is_none() {
             self.control.stand_down = Some(self.order(Order::StandDown, out));
         }

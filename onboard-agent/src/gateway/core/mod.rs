@@ -189,6 +189,7 @@ impl Gateway {
             }
             Report::PutOff(id, why) => self.put_off(now, id, why, out),
             Report::Failed(id, why) => self.failed(now, id, why, out),
+            Report::Unanswered(id, why) => self.not_armed(now, id, &why, true, out),
             Report::Adopted(id, aboard) => self.adopt(id, aboard, out),
             Report::ListUnfit(true) => self.list_refused(now),
             Report::HoldsByItself => self.control.holds_by_itself = true,
@@ -217,10 +218,7 @@ impl Gateway {
 
     fn failed(&mut self, now: Time, id: OrderId, why: String, out: &mut Vec<Output>) {
         self.forced_end.answered(now, id, false);
-        let launch = self.control.failed(now, id);
-        if launch && !is_flying(self.state) {
-            self.give_up_launch(&format!("launch refused by the autopilot: {why}"), out);
-        }
+        self.not_armed(now, id, &why, false, out);
     }
 
     fn watch(&mut self, now: Time, out: &mut Vec<Output>) {

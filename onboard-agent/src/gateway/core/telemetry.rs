@@ -79,6 +79,7 @@ fn is_voice(report: &Report) -> bool {
         report,
         Report::Done(_)
             | Report::Failed(..)
+            | Report::Unanswered(..)
             | Report::PutOff(..)
             | Report::Adopted(..)
             | Report::Course(_)

@@ -166,11 +166,13 @@ pub struct Refusal {
     pub why: String,
     /// The autopilot says that it may be carried out later.
     pub for_now: bool,
+    /// The autopilot says so. If not, the command may still be carried out.
+    pub is_answer: bool,
 }
 
 impl From<String> for Refusal {
     fn from(why: String) -> Self {
-        Self { why, for_now: false }
+        Self { why, for_now: false, is_answer: false }
     }
 }
 
@@ -274,7 +276,7 @@ impl Commands {
             refused => {
                 let why = format!("the autopilot refused {:?}: {refused:?}", given.command);
                 let for_now = refused == MavResult::MAV_RESULT_TEMPORARILY_REJECTED;
-                self.end(Err(Refusal { why, for_now }))
+                self.end(Err(Refusal { why, for_now, is_answer: true }))
             }
         }
     }

@@ -69,6 +69,8 @@ pub struct MavlinkDriver {
     steps: Vec<Steps>,
     /// The order to arm, while it is in flight.
     arming: Option<OrderId>,
+    /// One was not answered, and may still be carried out.
+    may_arm: bool,
     /// What it is being made to do.
     steering: Option<(OrderId, Aim)>,
     /// It was sent to a place, and has not been sent elsewhere since.
@@ -230,11 +232,12 @@ impl MavlinkDriver {
             self.steered(aim, result.is_ok());
         }
         let arming = self.arming.take_if(|of| *of == id).is_some();
-        self.reports.push_back(match result {
+        let report = match result {
             Ok(()) => Report::Done(id),
             Err(refusal) if arming => self.not_armed(now, id, refusal),
             Err(refusal) => Report::Failed(id, refusal.why),
-        });
+        };
+        self.reports.push_back(report);
     }
 
     fn next_step(&mut self, id: OrderId) -> Option<Command> {

@@ -383,6 +383,7 @@ mod ended;
 mod faulted;
 mod faults;
 mod gliding;
+mod late;
 mod met_in_flight;
 mod million;
 mod narrow;

@@ -25,7 +25,7 @@ impl MavlinkDriver {
             self.session.take_back(Client::Order(arming));
             self.reports.push_back(Report::Failed(arming, "taken back".into()));
         }
-        let is_armed = self.seen.is_some_and(|seen| seen.armed);
+        let is_armed = std::mem::take(&mut self.may_arm) || self.seen.is_some_and(|seen| seen.armed);
         let would_fly = self.seen.is_some_and(|seen| (dialect.meaning)(seen.mode, false) == Mode::Waypoints);
         let stands = dialect.stands.filter(|_| arming.is_some() || would_fly);
         if arming.is_none() && !is_armed {
@@ -39,11 +39,17 @@ impl MavlinkDriver {
     }
 
     /// It gives its reasons in words of its own.
-    pub(super) fn not_armed(&self, now: Time, id: OrderId, Refusal { why, for_now }: Refusal) -> Report {
+    pub(super) fn not_armed(&mut self, now: Time, id: OrderId, refusal: Refusal) -> Report {
+        let Refusal { why, for_now, is_answer } = refusal;
         let why = match self.session.words.lately(now) {
             Some(words) => format!("{why} (it says: {words})"),
             None => why,
         };
-        if for_now { Report::PutOff(id, why) } else { Report::Failed(id, why) }
+        self.may_arm = !is_answer;
+        match (for_now, is_answer) {
+            (true, _) => Report::PutOff(id, why),
+            (_, true) => Report::Failed(id, why),
+            (_, false) => Report::Unanswered(id, why),
+        }
     }
 }

@@ -138,7 +138,9 @@ impl Rig {
     fn outcome(&self, id: OrderId) -> Option<Result<(), String>> {
         self.reports.iter().find_map(|report| match report {
             Report::Done(of) if *of == id => Some(Ok(())),
-            Report::Failed(of, why) | Report::PutOff(of, why) if *of == id => Some(Err(why.clone())),
+            Report::Failed(of, why) | Report::Unanswered(of, why) | Report::PutOff(of, why) if *of == id => {
+                Some(Err(why.clone()))
+            }
             _ => None,
         })
     }
