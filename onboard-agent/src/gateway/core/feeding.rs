@@ -39,6 +39,9 @@ impl Gateway {
         if self.state == GatewayState::Stop && join.last_token < self.highest {
             // a new FP Manager on the ground: a new flight
             self.highest = join.last_token;
+            if self.control.launch_since.is_some() {
+                self.give_up_launch("another FP Manager has joined", out);
+            }
             self.forget_waypoints(out);
         }
         self.recover(now, out);

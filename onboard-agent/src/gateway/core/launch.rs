@@ -23,13 +23,13 @@ impl Gateway {
         out.push(Output::Save);
     }
 
-    /// A launch waits until the list is aboard and the autopilot arms, but not for long, nor for an autopilot that is gone: whoever mends
+    /// A launch waits until the list is aboard and the autopilot flies it, armed or not, but not for long, nor for an autopilot that is gone: whoever mends
     /// what is in the way stands before the propeller.
     pub(super) fn wait_for_launch(&mut self, now: Time, out: &mut Vec<Output>) {
         self.disarm_late(now, out);
         let Some(since) = self.control.launch_since else { return };
         let on_ground = matches!(self.state, GatewayState::Stop | GatewayState::Off);
-        if !on_ground || self.control.intent != Intent::Fly || self.telemetry.armed {
+        if !on_ground || self.control.intent != Intent::Fly {
             self.control.launch_since = None;
         } else if self.state == GatewayState::Off {
             self.give_up_launch("the autopilot is not heard any more", out);
@@ -94,7 +94,8 @@ impl Gateway {
 
     /// What was ordered for it is not done any more, nor is it left half done.
     fn take_back_launch(&mut self, out: &mut Vec<Output>) {
-        self.control.given_up_at = self.control.arm.take().map(|_| self.now);
+        let may_be_armed = self.control.arm.take().is_some() || self.telemetry.armed;
+        self.control.given_up_at = may_be_armed.then_some(self.now);
         self.control.launch_since = None;
         self.control.was_armed = false;
         self.control.set_intent(Intent::Nothing, self.telemetry.mode);
