@@ -7,8 +7,8 @@ use std::sync::Arc;
 use terrain::Terrain;
 use usal::Instance;
 use usal::contract::{
-    Feed, FeedAnswer, GatewayEvent, GatewayRequest, Join, JoinAnswer, SafeParameters, SafeRunway, Token,
-    Waypoint,
+    Action, Feed, FeedAnswer, GatewayEvent, GatewayRequest, Join, JoinAnswer, SafeParameters, SafeRunway,
+    Token, Waypoint,
 };
 
 /// What the gateway knows before it starts.
@@ -124,4 +124,20 @@ pub struct Snapshot {
     /// The alarm of an engine that has failed, or seemed to.
     #[serde(default)]
     pub engine: Option<String>,
+}
+
+impl Snapshot {
+    /// A launch was granted, and the take-off was not flown yet.
+    pub fn takes_off(&self) -> bool {
+        let begins =
+            self.waypoints.first().is_some_and(|first| matches!(first.action, Action::TakeOff { .. }));
+        self.intent == Intent::Fly && begins
+    }
+
+    /// Of this flight, with what is known now of all that does not belong to a flight; an engine that has failed stays so.
+    pub fn with_news(&self, now: Self) -> Self {
+        let Self { runways, safe, terminated, terminated_unix_s, engine, .. } = now;
+        let engine = engine.or_else(|| self.engine.clone());
+        Self { runways, safe, terminated, terminated_unix_s, engine, ..self.clone() }
+    }
 }

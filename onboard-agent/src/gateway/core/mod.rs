@@ -158,8 +158,16 @@ impl Gateway {
         self.report_progress(out);
     }
 
-    /// What must survive a restart.
+    /// What must survive a restart. As long as it is not known what an earlier gateway left of a flight, that goes on to be kept.
     pub fn snapshot(&self) -> Snapshot {
+        let known = self.known();
+        match &self.adopting {
+            Some(earlier) => earlier.with_news(known),
+            None => known,
+        }
+    }
+
+    fn known(&self) -> Snapshot {
         Snapshot {
             runways: self.runways.clone(),
             safe: self.safe,

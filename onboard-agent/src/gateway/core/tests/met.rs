@@ -94,3 +94,22 @@ fn one_that_does_not_do_what_is_wanted_is_in_the_state_of_what_it_does() {
         assert!(core.join().accepted, "{wanted:?} in {mode:?}");
     }
 }
+
+/// A second restart, while the list was not read yet or the pilot flew, knew nothing.
+#[test]
+fn what_is_remembered_of_a_flight_is_kept_until_it_is_known_what_became_of_it() {
+    use usal::contract::{Engine, SafeParameters};
+    let known = Core::in_nav().gateway.snapshot();
+    let mut core = Core::started_anew(Some(known.clone()));
+    let dead = Report::Engine(Engine { rpm: 0.0, temperature_c: 60.0, throttle: 0.6 });
+    let mut by_pilot = flying(25.0, 25.0);
+    by_pilot[0] = beat(Mode::Other(5), true);
+    core.run(3, &[&by_pilot[..], &[dead]].concat());
+    assert!(core.raised("engine-out") && core.out.contains(&Output::Save));
+    let safe = SafeParameters { t2_s: 33.0, ..SafeParameters::default() };
+    core.step(Input::Request(4, GatewayRequest::SetSafe(safe)));
+    let kept = core.gateway.snapshot();
+    assert_eq!((kept.waypoints, kept.plan, kept.intent), (known.waypoints, known.plan, known.intent));
+    assert_eq!((kept.highest, kept.mode), (known.highest, known.mode));
+    assert_eq!((kept.safe, kept.engine.as_deref()), (safe, Some("engine-out")));
+}
