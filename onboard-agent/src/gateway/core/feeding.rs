@@ -1,7 +1,7 @@
 //! The FP Manager joins and feeds waypoints.
 
 use super::batch;
-use super::io::{Intent, Output};
+use super::io::{Intent, Output, Snapshot};
 use super::states::{Trigger, is_safe};
 use super::{Gateway, NOT_HEARD, OFF_AFTER};
 use crate::gateway::order::Time;
@@ -74,6 +74,12 @@ impl Gateway {
             _ if self.control.is_reading() => Err(BEING_READ.into()),
             GatewayState::Off if !self.telemetry.last_received.is_some_and(is_heard) => Err(NOT_HEARD.into()),
             GatewayState::Off => Err(BEING_READ.into()),
+            // armed, with what an earlier gateway launched
+            GatewayState::Stop
+                if self.telemetry.armed && self.adopting.as_ref().is_some_and(Snapshot::takes_off) =>
+            {
+                Err(BEING_READ.into())
+            }
             _ => Ok(()),
         }
     }

@@ -9,7 +9,7 @@ use std::time::Duration;
 use usal::contract::{GatewayEvent, GatewayState};
 
 /// A launch that does not begin is given up after this.
-const LAUNCHES_WITHIN: Duration = Duration::from_secs(60);
+pub(super) const LAUNCHES_WITHIN: Duration = Duration::from_secs(60);
 /// On a bad link an order to arm may be carried out so long after it was taken back.
 const ARMS_LATE: Duration = Duration::from_secs(10);
 
@@ -23,8 +23,8 @@ impl Gateway {
         out.push(Output::Save);
     }
 
-    /// A launch waits until the list is aboard and the autopilot flies it, armed or not, but not for long, nor for an autopilot that is gone: whoever mends
-    /// what is in the way stands before the propeller.
+    /// A launch waits until the list is aboard and the autopilot flies it, armed or not, but not for long, nor for an autopilot that is
+    /// gone: whoever mends what is in the way stands before the propeller.
     pub(super) fn wait_for_launch(&mut self, now: Time, out: &mut Vec<Output>) {
         self.disarm_late(now, out);
         let Some(since) = self.control.launch_since else { return };
@@ -80,6 +80,12 @@ impl Gateway {
         self.cause = format!("{cause}: start again");
         out.push(Output::Event(GatewayEvent::NotLaunched { reason: self.cause.clone() }));
         out.push(Output::Save);
+    }
+
+    /// That of a gateway that was killed before the take-off: what it ordered may still be carried out.
+    pub(super) fn give_up_earlier_launch(&mut self, out: &mut Vec<Output>) {
+        self.give_up_launch("the gateway started anew before the take-off", out);
+        self.control.given_up_at = Some(self.now);
     }
 
     /// Nothing is to be flown any more: a take-off that was granted is not begun.

@@ -3,6 +3,7 @@
 use super::Gateway;
 use super::control::mode_of;
 use super::io::{Intent, Output, Snapshot};
+use super::launch::LAUNCHES_WITHIN;
 use super::states::{Trigger, is_flying};
 use crate::gateway::order::{Mode, Order, OrderId, Time};
 use std::time::Duration;
@@ -60,8 +61,29 @@ impl Gateway {
     /// It stands: what an earlier gateway knew of its flight is over, and who takes off now without an order of ours is on his own.
     pub(super) fn forget_earlier_flight(&mut self, out: &mut Vec<Output>) {
         self.stood = true;
-        if self.adopting.take().is_some() {
+        match self.adopting.take() {
+            Some(earlier) if earlier.takes_off() => self.give_up_earlier_launch(out),
+            Some(_) => out.push(Output::Save),
+            None => {}
+        }
+    }
+
+    /// What an earlier gateway launched stands armed. It may roll, in the mode in which it takes off, but not for long.
+    pub(super) fn wait_for_earlier_launch(&mut self, now: Time, out: &mut Vec<Output>) {
+        let t = &self.telemetry;
+        let Some(earlier) = self.adopting.as_ref().filter(|earlier| earlier.takes_off()) else { return };
+        if self.state != GatewayState::Stop || !t.armed {
+            return;
+        }
+        let is_as_left = earlier.mode.as_deref() == Some(&*t.mode_name);
+        let rolls = t.mode == Some(Mode::Waypoints);
+        if matches!(t.mode, Some(Mode::Other(_))) && !is_as_left {
+            // somebody has it in a mode of his own
+            self.adopting = None;
             out.push(Output::Save);
+        } else if (is_as_left && !rolls) || t.first_beat.is_some_and(|at| now >= at + LAUNCHES_WITHIN) {
+            self.adopting = None;
+            self.give_up_earlier_launch(out);
         }
     }
 
@@ -82,7 +104,8 @@ impl Gateway {
         if mode == mode_of(intent) || is_as_before || at_end { intent } else { Intent::Nothing }
     }
 
-    /// Takes over a flight that was met in the air, if it flies waypoints of ours.
+    /// Takes over a flight that was met in the air, if its list is ours, also if none of its waypoints is known: what is wanted of it then
+    /// is that it flies them, unless somebody has switched it. Safe mode sees to it when it is at their end.
     pub(super) fn adopt(&mut self, id: OrderId, aboard: Option<usize>, out: &mut Vec<Output>) {
         self.control.forget(id);
         if self.state == GatewayState::Terminate {

@@ -24,6 +24,7 @@ impl Gateway {
         if self.telemetry.stands_disarmed(now) {
             self.forget_earlier_flight(out);
         }
+        self.wait_for_earlier_launch(now, out);
         self.took_off
             .take_if(|at| now.saturating_sub(*at) >= CLIMBS_OUT || self.telemetry.is_above_home(CLEAR_M));
         if self.telemetry.stands(now) {

@@ -188,14 +188,16 @@ mod tests {
             Trigger::Landed => "on the ground and disarmed",
             Trigger::HoldConfirmed => "it circles, as we asked, or as it is met",
             Trigger::DirectConfirmed => "it follows our direct command, or is met doing so",
-            Trigger::PilotTook => "its mode was changed, and not by us",
+            Trigger::PilotTook => "its mode was changed, or it took off, and not by us",
             Trigger::SafeNeeded => {
                 "FP Manager silent (T1), waypoints run dry, its waypoints do not come (T2), or by command"
             }
             Trigger::ReturnDue => "Safe.Hold has lasted T2, or the engine has failed",
             Trigger::Recovered => "the FP Manager is back and has waypoints aboard",
             Trigger::RecoveredDry => "the FP Manager is back and has to send waypoints first",
-            Trigger::Terminated => "by command, confirmed with the vehicle's name",
+            Trigger::Terminated => {
+                "by command, confirmed with the vehicle's name; again after a restart, until it stands"
+            }
         }
     }
 

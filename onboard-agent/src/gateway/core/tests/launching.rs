@@ -130,3 +130,90 @@ fn a_plan_that_is_taken_back_while_it_arms_is_not_armed_after_all() {
     core.step(Input::Feed(4, nothing, fp_manager()));
     assert_eq!(stands_down(&core), 1);
 }
+
+fn is_ordered_to_stand(core: &mut Core, armed: &[Report; 3]) -> bool {
+    core.done();
+    core.out.clear();
+    core.run(1, armed);
+    stands_down(core) > 0
+}
+
+/// Sixteen orders waited in the radio: it armed three seconds after it was told that nothing takes off.
+#[test]
+fn an_arming_that_was_not_answered_is_taken_back_if_it_is_carried_out_after_all() {
+    for (unanswered, taken_back) in [(true, true), (false, false)] {
+        let mut core = launched(true);
+        let (arm, _) = core.orders().into_iter().rfind(|(_, order)| *order == Order::Arm).unwrap();
+        let why = "did not answer".to_owned();
+        let report = if unanswered { Report::Unanswered(arm, why) } else { Report::Failed(arm, why) };
+        core.step(Input::Report(report));
+        is_told_once(&core, "did not answer");
+        core.run(3, &ground(false));
+        assert_eq!(
+            is_ordered_to_stand(&mut core, &on_ground(Mode::Waypoints, true)),
+            taken_back,
+            "{unanswered}"
+        );
+    }
+}
+
+/// He arms by his sticks and throws it.
+#[test]
+fn who_arms_it_in_a_mode_of_his_own_after_a_launch_was_given_up_has_it() {
+    for (mode, taken_back) in [(Mode::Other(5), false), (Mode::Hold, true)] {
+        let mut core = launched(true);
+        core.run(60, &ground(false));
+        assert_eq!(is_ordered_to_stand(&mut core, &on_ground(mode, true)), taken_back, "{mode:?}");
+    }
+}
+
+#[test]
+fn what_is_armed_and_does_not_take_off_within_a_minute_is_disarmed_and_told() {
+    // its list does not come aboard; or it does not change its mode
+    for ready in [false, true] {
+        let mut core = launched(ready);
+        core.run(50, &ground(true));
+        assert!(told(&core).is_empty() && stands_down(&core) == 0, "ready: {ready}");
+        core.run(15, &ground(true));
+        is_told_once(&core, "within a minute");
+        assert!(stands_down(&core) > 0, "ready: {ready}");
+        core.step(Input::Report(Report::Course(course(true))));
+        core.out.clear();
+        core.run(5, &ground(true));
+        assert!(!was_steered(&core), "ready: {ready}");
+    }
+}
+
+#[test]
+fn a_launch_ends_with_the_fp_manager_that_asked_for_it() {
+    let mut core = launched(true);
+    let join = Join { plan: Some("other".into()), earlier: vec![], last_token: Token(0) };
+    core.now += Duration::from_secs(2);
+    core.step(Input::Join(9, join, "f2".parse().ok()));
+    is_told_once(&core, "another FP Manager");
+    assert_eq!(stands_down(&core), 1);
+}
+
+/// A gateway that was killed between the start and the take-off; what it ordered may come late.
+#[test]
+fn a_launch_of_a_gateway_that_was_killed_before_the_take_off_is_given_up_and_told() {
+    let mut core = launched(true);
+    let mut known = core.gateway.snapshot();
+    known.waypoints[0].action = usal::contract::Action::TakeOff { heading_deg: 0.0 };
+    core = Core::started_anew(Some(known.clone()));
+    core.run(1, &ground(false));
+    is_told_once(&core, "started anew before the take-off");
+    assert!(is_ordered_to_stand(&mut core, &on_ground(Mode::Waypoints, true)), "it arms after all");
+
+    let mut armed = Core::started_anew(Some(known.clone()));
+    armed.run(5, &ground(true));
+    is_told_once(&armed, "started anew");
+    assert_eq!(stands_down(&armed), 1);
+
+    let mut rolls = Core::started_anew(Some(known));
+    rolls.run(5, &on_ground(Mode::Waypoints, true));
+    assert!(told(&rolls).is_empty() && stands_down(&rolls) == 0);
+    assert!(!rolls.join().accepted, "it may take off yet");
+    rolls.run(60, &on_ground(Mode::Waypoints, true));
+    is_told_once(&rolls, "started anew");
+}
