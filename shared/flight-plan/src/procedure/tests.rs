@@ -76,7 +76,7 @@ fn a_call_becomes_a_loop_of_one_pass_with_its_own_properties() {
     assert_eq!(body[0].speed_mps, Some(Value::Expression("size / 10.0".into())));
     let LegKind::Intersection { branches, default, .. } = &body[1].kind else { panic!() };
     assert_eq!((branches[0].next.clone(), default.clone()), (Some("c.out".into()), Some("left".into())));
-    assert_eq!(branches[0].when.as_deref(), Some("(50.0) > size"));
+    assert_eq!(branches[0].when.as_deref(), Some("50.0 > size"));
     // neither anchor nor bearing: where it was written
     let LegKind::Cf { to, course_deg } = &body[2].kind else { panic!() };
     assert_eq!(to.place, Place::Position(Value::Constant(LatLon::new(36.01, -84.0))));

@@ -90,8 +90,8 @@ fn alarm_raised_on_the_ground_is_answered_in_the_air() {
 #[test]
 fn alarm_less_severe_than_the_emergency_is_answered_when_that_is_left() {
     let mut flight = flown(10, STARTED);
-    flight.gateway.alarm("engine-hot", Cause::Engine);
     flight.gateway.alarm("energy-low", Cause::Energy);
+    flight.gateway.alarm("gps-lost", Cause::Gps);
     run(&mut flight, 4);
     assert_eq!(emergencies(&flight), 1);
     flight.ask_once(&What::Command(Command::ReturnToMain { leg: Id::new("back") }), "return").unwrap();
@@ -99,8 +99,8 @@ fn alarm_less_severe_than_the_emergency_is_answered_when_that_is_left() {
     assert_eq!(emergencies(&flight), 2);
     let starts = flight.events.iter().rev();
     let last = starts.filter(|e| matches!(e, Event::EmergencyStarted { .. })).take(1);
-    assert!(format!("{:?}", last.collect::<Vec<_>>()).contains("Energy"));
-    // the engine's was answered, and so is this now
+    assert!(format!("{:?}", last.collect::<Vec<_>>()).contains("Gps"));
+    // that of the energy was answered, and so is this now
     run(&mut flight, 4);
     assert_eq!(emergencies(&flight), 2);
     assert!(!flight.gateway.requests.contains(&GatewayRequest::Safe));
@@ -325,8 +325,8 @@ fn start_of_which_nothing_came_is_given_again() {
 #[test]
 fn alarm_less_severe_is_answered_when_another_plan_is_entered_as_well() {
     let mut flight = flown(10, STARTED);
-    flight.gateway.alarm("engine-hot", Cause::Engine);
     flight.gateway.alarm("energy-low", Cause::Energy);
+    flight.gateway.alarm("gps-lost", Cause::Gps);
     run(&mut flight, 4);
     let changed = asks::MISSION.replace("name=\"Kills\"", "name=\"Changed\"");
     flight.ask_once(&What::Propose(changed), "propose").unwrap();
