@@ -264,9 +264,10 @@ fn a_zone_is_selected_by_a_click_inside_and_moved_by_a_drag_there() {
     let mut window = Window::open(&SQUARE.replacen("<mainPlan", zone, 1));
     window.until_analysed();
     let [fix, other] = ["Fix A", "Fix C"].map(|fix| window.centre(fix));
-    let per_deg = (other - fix) / vec2(-84.178238 + 84.159836, 36.305396 - 36.327322);
+    // in degrees from Fix A, eastwards and northwards
+    let per_deg = (other - fix) / vec2(-0.018402, -0.021926);
     // its own handles are in its middle and at its rim
-    let inside = fix + per_deg * vec2(-84.215 + 84.159836, 36.345 - 36.327322) + vec2(0.0, 28.0);
+    let inside = fix + per_deg * vec2(-0.055164, 0.017678) + vec2(0.0, 28.0);
     window.click_at(inside);
     assert_eq!(window.selected(), "quarry");
     let before = window.plan();
