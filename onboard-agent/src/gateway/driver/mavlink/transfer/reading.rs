@@ -24,7 +24,8 @@ impl Transfer {
 
     /// Asks for what is missing, a window at a time.
     pub(super) fn ask(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
-        let copies = self.copies();
+        // asked twice for one it breaks off, if the second question comes after it gave the next
+        let copies = if self.rules.reads_in_order { 1 } else { self.copies() };
         let Phase::Reading { got, next } = &mut self.phase else { return };
         let have = got.iter().flatten().count();
         // asked for in order, it gives them all in a row, but breaks off if one is missing
