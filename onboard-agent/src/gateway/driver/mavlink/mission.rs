@@ -291,10 +291,10 @@ pub(super) fn thanks(peer: Peer) -> MavMessage {
 mod tests {
     use super::*;
 
-    const PEER: Peer = Peer { system: 1, component: 1 };
-    const RULES: Rules = Rules { same: is_same, id: Some(length), reads_in_order: false };
+    pub(super) const PEER: Peer = Peer { system: 1, component: 1 };
+    pub(super) const RULES: Rules = Rules { same: is_same, id: Some(length), reads_in_order: false };
 
-    fn is_same(one: &Entry, other: &Entry) -> bool {
+    pub(super) fn is_same(one: &Entry, other: &Entry) -> bool {
         one == other
     }
 

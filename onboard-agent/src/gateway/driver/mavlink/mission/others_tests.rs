@@ -1,18 +1,8 @@
 //! What is said while something is done to the list, and is not about it.
 
+use super::tests::{PEER, RULES, is_same};
 use super::*;
 use MavMissionType::{MAV_MISSION_TYPE_FENCE as FENCE, MAV_MISSION_TYPE_MISSION as PLAN};
-
-const PEER: Peer = Peer { system: 1, component: 1 };
-const RULES: Rules = Rules { same: is_same, id: Some(length), reads_in_order: false };
-
-fn is_same(one: &Entry, other: &Entry) -> bool {
-    one == other
-}
-
-fn length(list: &[Entry]) -> u32 {
-    list.len() as u32
-}
 
 /// Everything that is said of a list, of this kind.
 #[expect(deprecated, reason = "ArduPilot asks by the deprecated message")]
