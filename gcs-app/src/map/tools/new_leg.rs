@@ -212,7 +212,11 @@ pub fn leg(
     plan: &FlightPlan,
 ) -> Option<Leg> {
     let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
-    create::leg(plan, &profile, choice, drawn, approach, level(plan, aim))
+    let leg = create::leg(plan, &profile, choice, drawn, approach, level(plan, aim))?;
+    Some(match aim {
+        Aim::Spot(at) => create::like_beside(plan, leg, at),
+        Aim::Way { from, .. } => create::like_beside(plan, leg, &Spot::After(from.clone())),
+    })
 }
 
 /// Puts a leg into the plan, and selects it.

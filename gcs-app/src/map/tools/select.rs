@@ -77,7 +77,8 @@ impl Select {
                 let new = create::leg(plan, &Profile::default(), LegChoice::Tf, &place, None, None);
                 let Some(new) = new else { return };
                 let becomes = Handled::Waypoint(new.id.clone());
-                (create::insert(plan, new, Spot::Before(leg.clone())), becomes)
+                let at = Spot::Before(leg.clone());
+                (create::insert(plan, create::like_beside(plan, new, &at), at), becomes)
             }
             _ => return,
         };

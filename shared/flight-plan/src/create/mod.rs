@@ -2,6 +2,7 @@
 //! nothing else has, and values with which it can be flown; whoever drew it goes on with edits.
 
 mod arrange;
+mod beside;
 mod bind;
 mod binding;
 mod branch;
@@ -17,6 +18,7 @@ mod ways;
 pub use arrange::{
     delete_legs, delete_set, duplicate, fork_around, loop_around, procedure_of, shift, unloop,
 };
+pub use beside::like_beside;
 pub use bind::{Numeric, bind, bound_to, named_variable, put_at, unbind, variable_of_fix, variable_of_leg};
 pub use binding::{Binding, bindings, has_bindings, place_binding};
 pub use branch::{Way, begin_way, delete_leg, insert};
