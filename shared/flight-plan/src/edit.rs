@@ -200,6 +200,8 @@ pub enum Edit {
     CorrectName {
         /// The leg or stage.
         of: Id,
+        /// Only in expressions that read like this; `None`: in all of them.
+        within: Option<Arc<str>>,
         /// What it reads, or writes.
         from: Id,
         /// What it is to read, or write.
@@ -394,7 +396,9 @@ impl Edit {
             Edit::ReplaceLeg { leg, with } => *leg_mut(plan, leg)? = with.as_ref().clone(),
             Edit::Distinguish { id, to } => return repair::distinguish(plan, id, to),
             Edit::Refer { of, from, to } => return repair::refer(plan, of.as_ref(), from, to),
-            Edit::CorrectName { of, from, to } => return rename::in_expressions(plan, of, from, to),
+            Edit::CorrectName { of, within, from, to } => {
+                return rename::in_expressions(plan, of, within.as_deref(), [from, to]);
+            }
             Edit::SetId { id, to } => return rename::anything(plan, id, to),
             Edit::SetTitle(name) => plan.name.clone_from(name),
             Edit::SetAircraft(name) => plan.aircraft.clone_from(name),

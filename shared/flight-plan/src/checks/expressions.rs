@@ -36,7 +36,11 @@ fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, prob
         Err(error) => {
             let problem = Problem::error(error.code, error.to_string()).of(of);
             let correction = error.correction.clone();
-            let fix = correction.map(|(from, to)| Edit::CorrectName { of: of.clone(), from, to });
+            let fix = correction.map(|(from, to)| {
+                // a name is misspelt wherever it stands; the same number may be right elsewhere
+                let is_number = from.as_str().starts_with(|c: char| c.is_ascii_digit());
+                Edit::CorrectName { of: of.clone(), within: is_number.then(|| source.clone()), from, to }
+            });
             problems.push(problem.perhaps_fixed_by(fix));
         }
         Ok(compiled) if wanted.is_some_and(|wanted| !compiled.gives(wanted)) => {
@@ -98,6 +102,15 @@ mod tests {
             let text = crate::write(&fixed(&document_with(variables, &stages, ""), "wrong-type"));
             assert!(text.contains(&format!("= {mended}")), "{text}");
         }
+    }
+
+    #[test]
+    fn a_whole_number_is_corrected_only_where_it_is_wrong() {
+        let variables = r#"<variable name="base" type="number" initial="500"/>"#;
+        let stages = r#"<stage id="s" type="mission" altitude="= base + 2" altitudeReference="amsl"><IF id="a" fix="A"/>
+            <iterative id="l" form="forward" until="iteration % 2 == 0"><TF id="b" fix="B"/><TF id="c" fix="C"/></iterative></stage>"#;
+        let text = crate::write(&fixed(&document_with(variables, stages, ""), "wrong-type"));
+        assert!(text.contains("= base + 2.0") && text.contains("iteration % 2 == 0"), "{text}");
     }
 
     #[test]

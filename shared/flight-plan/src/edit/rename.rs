@@ -84,15 +84,20 @@ fn variable(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(), EditError> {
         return Err(not_applicable(id, TAKEN));
     }
     plan.variables.iter_mut().filter(|v| v.name == *id).for_each(|v| v.name.clone_from(to));
-    let reader = Reader { from: id, to };
+    let reader = Reader { from: id, to, within: None };
     stages_mut(plan).for_each(|stage| reader.stage(stage));
     plan.procedures.iter_mut().for_each(|procedure| reader.procedure(procedure));
     Ok(())
 }
 
-/// Whatever reads or writes a variable in a leg or stage reads or writes another one.
-pub(super) fn in_expressions(plan: &mut FlightPlan, of: &Id, from: &Id, to: &Id) -> Result<(), EditError> {
-    let reader = Reader { from, to };
+/// Whatever reads or writes a variable in a leg or stage reads or writes another one; `within`: only expressions that read like this.
+pub(super) fn in_expressions(
+    plan: &mut FlightPlan,
+    of: &Id,
+    within: Option<&str>,
+    [from, to]: [&Id; 2],
+) -> Result<(), EditError> {
+    let reader = Reader { from, to, within };
     if plan.stage(of).is_some() {
         stages_mut(plan).filter(|stage| stage.id == *of).for_each(|stage| reader.stage(stage));
     } else {
@@ -105,6 +110,8 @@ pub(super) fn in_expressions(plan: &mut FlightPlan, of: &Id, from: &Id, to: &Id)
 struct Reader<'a> {
     from: &'a Id,
     to: &'a Id,
+    /// Only expressions that read like this.
+    within: Option<&'a str>,
 }
 
 impl Reader<'_> {
@@ -151,6 +158,9 @@ impl Reader<'_> {
     }
 
     fn source(&self, source: &mut Arc<str>) {
+        if self.within.is_some_and(|within| within != source.as_ref()) {
+            return;
+        }
         *source = substitute(source, &|name| (name == self.from.as_str()).then_some(self.to.as_str())).into();
     }
 }
