@@ -1,6 +1,7 @@
 //! How much of a scanned area was seen.
 
 use super::record::{Area, PassageKey, Track};
+use geometry::polygon::is_in_ring;
 use geometry::{LatLon, LocalFrame, Vec2};
 
 /// Cells a side of the grid on which coverage is counted.
@@ -37,7 +38,7 @@ pub fn of(area: &Area, flown: &Track) -> Option<Coverage> {
     }
     let inside: Vec<bool> = (0..CELLS * CELLS)
         .map(|i| grid.centre(i))
-        .map(|p| contains(&outline, p) && !holes.iter().any(|hole| contains(hole, p)))
+        .map(|p| is_in_ring(&outline, p) && !holes.iter().any(|hole| is_in_ring(hole, p)))
         .collect();
     let total = inside.iter().filter(|i| **i).count();
     let covered = inside.iter().zip(&seen).filter(|(i, s)| **i && **s).count();
@@ -98,16 +99,6 @@ fn distance_m(a: Vec2, b: Vec2, p: Vec2) -> f64 {
     let length2 = along.dot(along);
     let t = if length2 > 0.0 { ((p - a).dot(along) / length2).clamp(0.0, 1.0) } else { 0.0 };
     (p - a - along * t).length()
-}
-
-/// Even-odd rule.
-fn contains(outline: &[Vec2], p: Vec2) -> bool {
-    let next = outline.iter().cycle().skip(1);
-    outline.iter().zip(next).filter(|(a, b)| crosses(**a, **b, p)).count() % 2 == 1
-}
-
-fn crosses(a: Vec2, b: Vec2, p: Vec2) -> bool {
-    (a.n > p.n) != (b.n > p.n) && p.e < a.e + (p.n - a.n) / (b.n - a.n) * (b.e - a.e)
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@ use crate::command::Selection;
 use crate::map::guard;
 use egui::Pos2;
 use flight_plan::{Id, Zone, ZoneKind};
+use geometry::Vec2;
+use geometry::polygon::is_in_ring;
 
 /// The grip's key that is the selected zone under the pointer.
 pub const ZONE: usize = usize::MAX - 1;
@@ -22,14 +24,15 @@ pub fn or_zone(things: Vec<Selection>, at: Pos2, canvas: &Canvas<'_>) -> Vec<Sel
     hatched.next().map(|zone| Selection::Zone(zone.id.clone())).into_iter().collect()
 }
 
-/// The selected zone, if a place of the screen is inside of it.
+/// The selected zone, if a place of the screen is inside of it and all of it is in view.
 pub fn selected(at: Pos2, canvas: &Canvas<'_>) -> Option<Id> {
     let view = canvas.scene.view;
     let Some(Selection::Zone(id)) = view.selection.as_ref().filter(|_| view.also.is_empty()) else {
         return None;
     };
     let zone = canvas.scene.document.plan().zone(id)?;
-    (zone.kind == ZoneKind::KeepOut && has_inside(zone, at, canvas)).then(|| id.clone())
+    let is_meant = zone.kind == ZoneKind::KeepOut && is_in_view(zone, canvas) && has_inside(zone, at, canvas);
+    is_meant.then(|| id.clone())
 }
 
 /// The grip that is the selected zone under the pointer, unless something else is beside that; it stays while it is dragged.
@@ -43,34 +46,16 @@ pub fn grip(dragged: Option<&Id>, others: &[Grip], canvas: &Canvas<'_>) -> Optio
 }
 
 fn has_inside(zone: &Zone, at: Pos2, canvas: &Canvas<'_>) -> bool {
-    let ring: Vec<Pos2> = chart::outline(zone).iter().map(|corner| canvas.view.place(*corner)).collect();
-    contains(&ring, at)
+    let on_screen = |at: Pos2| Vec2 { e: at.x.into(), n: at.y.into() };
+    let ring: Vec<Vec2> = on_map(zone, canvas).map(on_screen).collect();
+    is_in_ring(&ring, on_screen(at))
 }
 
-/// By the number of edges that a line to the right crosses.
-fn contains(ring: &[Pos2], at: Pos2) -> bool {
-    let edges = ring.iter().zip(ring.iter().cycle().skip(1));
-    let crossed = edges.filter(|(a, b)| {
-        let spans = (a.y > at.y) != (b.y > at.y);
-        spans && at.x < a.x + (at.y - a.y) / (b.y - a.y) * (b.x - a.x)
-    });
-    crossed.count() % 2 == 1
+/// All of its outline is seen: who drags inside of one that fills the map means the map.
+fn is_in_view(zone: &Zone, canvas: &Canvas<'_>) -> bool {
+    on_map(zone, canvas).all(|corner| canvas.view.rect.contains(corner))
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use egui::pos2;
-
-    #[test]
-    fn a_notch_of_an_outline_is_outside() {
-        let ring =
-            [(0.0, 0.0), (40.0, 0.0), (40.0, 40.0), (20.0, 10.0), (0.0, 40.0)].map(|(x, y)| pos2(x, y));
-        for (at, is_inside) in
-            [((20.0, 5.0), true), ((20.0, 20.0), false), ((3.0, 30.0), true), ((50.0, 5.0), false)]
-        {
-            assert_eq!(contains(&ring, pos2(at.0, at.1)), is_inside, "{at:?}");
-        }
-        assert!(!contains(&[], pos2(0.0, 0.0)));
-    }
+fn on_map<'a>(zone: &Zone, canvas: &'a Canvas<'_>) -> impl Iterator<Item = Pos2> + 'a {
+    chart::outline(zone).into_iter().map(|corner| canvas.view.place(corner))
 }

@@ -111,6 +111,11 @@ pub(crate) fn contains(rings: &[Vec<Vec2>], p: Vec2) -> bool {
     crosses_odd(rings.iter().flat_map(|ring| ring_edges(ring)), p)
 }
 
+/// Whether a point is in a ring that is not closed, by the even-odd rule.
+pub fn is_in_ring(ring: &[Vec2], p: Vec2) -> bool {
+    crosses_odd(ring_edges(ring), p)
+}
+
 /// Even-odd rule: a ray to the east crosses the edges an odd number of times.
 fn crosses_odd(edges: impl Iterator<Item = (Vec2, Vec2)>, p: Vec2) -> bool {
     edges

@@ -258,3 +258,15 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_notch_of_a_ring_is_outside() {
+    let at = |(e, n)| Vec2 { e, n };
+    let ring = [(0.0, 0.0), (40.0, 0.0), (40.0, 40.0), (20.0, 10.0), (0.0, 40.0)].map(at);
+    for (place, is_inside) in
+        [((20.0, 5.0), true), ((20.0, 20.0), false), ((3.0, 30.0), true), ((50.0, 5.0), false)]
+    {
+        assert_eq!(is_in_ring(&ring, at(place)), is_inside, "{place:?}");
+    }
+    assert!(!is_in_ring(&[], at((0.0, 0.0))));
+}
