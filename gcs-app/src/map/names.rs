@@ -16,12 +16,12 @@ const PLATE: Vec2 = vec2(4.0, 1.0);
 /// What a name is of, the most important first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rank {
-    /// What is selected or pointed at.
-    Selected,
     /// What is wrong, or would follow an alarm.
     Fault,
     /// The aircraft's height and speed.
     Aircraft,
+    /// What is selected or pointed at: that may be much at once.
+    Selected,
     /// A fix, a runway, a place that a variable gives.
     Place,
     /// A leg.
@@ -40,7 +40,7 @@ impl Rank {
 
     /// Rather over the scale or the edge of the map than not there at all.
     fn must_be_seen(self) -> bool {
-        self <= Self::Aircraft
+        self <= Self::Selected
     }
 }
 
@@ -205,6 +205,9 @@ fn placed(
         let rects = rects(measure(index));
         let found = rects.into_iter().find(is_free);
         let found = found.or_else(|| rects.into_iter().find(is_apart).filter(|_| must_be_seen));
+        // a plate can be read over what else is there, too
+        let is_never_left_out = name.rank <= Rank::Aircraft && name.ground == Ground::Plate;
+        let found = found.or_else(|| rects.first().copied().filter(|_| is_never_left_out));
         found.inspect(|rect| names.take((*rect).into()))
     };
     let places = wanted.iter().enumerate().map(&mut place).collect();
@@ -234,7 +237,7 @@ mod tests {
 
     /// Names at places as they come, the higher ranks first.
     fn crowd(shift: Vec2) -> Vec<Asked> {
-        let ranks = [Rank::Selected, Rank::Aircraft, Rank::Place, Rank::Leg, Rank::Zone];
+        let ranks = [Rank::Aircraft, Rank::Selected, Rank::Place, Rank::Leg, Rank::Zone];
         let mut seed = 7_u32;
         let mut next = || {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -300,12 +303,24 @@ mod tests {
         }
     }
 
+    fn plate(at: Pos2) -> Asked {
+        let (spots, ground, size) = (corners(at, vec2(12.0, 9.0)), Ground::Plate, vec2(120.0, 16.0));
+        (Wanted { rank: Rank::Aircraft, spots, ground, least: size }, size)
+    }
+
+    #[test]
+    fn however_much_is_selected_or_wrong_there_the_aircraft_has_its_plate() {
+        let at = pos2(400.0, 300.0);
+        assert!(Rank::Aircraft < Rank::Selected, "of much that is selected only the first are looked at");
+        let faults =
+            corners(at, vec2(30.0, 16.0)).map(|(at, _)| name(Rank::Fault, at - vec2(60.0, 0.0), 120.0));
+        let asked = faults.into_iter().chain([plate(at)]).collect();
+        assert!(places(asked, &[])[4].is_some());
+    }
+
     #[test]
     fn a_plate_at_the_edge_is_moved_inside() {
-        let at = pos2(780.0, 590.0);
-        let (spots, ground, size) = (corners(at, vec2(12.0, 9.0)), Ground::Plate, vec2(120.0, 16.0));
-        let asked = Wanted { rank: Rank::Aircraft, spots, ground, least: size };
-        let found = places(vec![(asked, size)], &[])[0];
+        let found = places(vec![plate(pos2(780.0, 590.0))], &[])[0];
         assert!(found.is_some_and(|rect| MAP.contains_rect(rect)), "{found:?}");
     }
 }
