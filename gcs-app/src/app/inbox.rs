@@ -143,6 +143,11 @@ impl App {
     /// The panel of a proposal takes room from the map: what differs is to be seen while one decides.
     fn show_what_is_proposed(&mut self) {
         let Some(proposal) = &self.vehicles.shown().proposal else { return };
+        // another plan that was opened meanwhile may have legs of the same names elsewhere
+        let here = self.analysis.hash_of(self.document.version());
+        if here.is_some_and(|hash| *hash != *proposal.report.hash) {
+            return;
+        }
         let differs: Vec<Id> =
             proposal.report.added.iter().chain(&proposal.report.changed).cloned().collect();
         let places = transform::places_of(self.document.plan(), &differs);

@@ -290,15 +290,17 @@ fn was_typing() -> Id {
     Id::unique("something was being typed")
 }
 
-/// A button was pressed, however long: who has just held another one holds this one, too.
+/// A button was pressed, however long: who has just held another one holds this one, too. By the primary button of the mouse only,
+/// as a click.
 pub fn is_pressed(button: &Response) -> bool {
     let id = button.id.with("is down");
-    let is_down = button.is_pointer_button_down_on();
+    let is_primary = button.ctx.input(|i| i.pointer.primary_down());
+    let is_down = button.enabled() && is_primary && button.is_pointer_button_down_on();
     let was_down = button.ctx.data(|d| d.get_temp::<bool>(id)).unwrap_or(false);
     if was_down != is_down {
         button.ctx.data_mut(|d| d.insert_temp(id, is_down));
     }
-    button.clicked() || (was_down && !is_down && button.contains_pointer())
+    button.clicked() || (was_down && !is_down && button.enabled() && button.contains_pointer())
 }
 
 /// Height of a button to hold, screen points.

@@ -104,12 +104,13 @@ fn verdict(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, p: &Palette) {
     }
 }
 
-/// What Problems say of the plan that is proposed, where that is more than was found aboard.
+/// What Problems say of the plan that is proposed, where that is more than was found aboard: any error, of a plan that was accepted
+/// there.
 fn found_here(scene: &Scene<'_>, proposal: &Proposal) -> Option<Verdict> {
     let report = &proposal.report;
     let is_shown = scene.analysis.hash_of(scene.document.version()).is_some_and(|hash| *hash == *report.hash);
     let found = Verdict::of(scene.problems());
-    (is_shown && found.errors + found.warnings > report.problems.len()).then_some(found)
+    (is_shown && (found.errors > 0 || found.warnings > report.problems.len())).then_some(found)
 }
 
 /// `1 stage and 2 legs`: a take-off or a landing is a stage without legs.

@@ -67,15 +67,15 @@ pub const READ_ABOARD: &str = "Read the plan aboard";
 pub const LOOK_AHEAD: &str = "Look ahead";
 /// Most requests remembered.
 const CAPACITY: usize = 64;
+/// Of those, most that the window made for itself: it asks again and again, and pushes out no command of the operator's.
+const OWN: usize = 8;
 
 impl Requests {
     /// Notes a request that is being sent now.
     pub fn open(&mut self, label: &str, now_s: f64) -> Ticket {
         self.count += 1;
         let ticket = Ticket(self.count);
-        if self.list.len() >= CAPACITY {
-            self.list.pop_front();
-        }
+        self.make_room();
         self.list.push_back(Request {
             ticket,
             label: label.into(),
@@ -86,6 +86,14 @@ impl Requests {
             is_read: false,
         });
         ticket
+    }
+
+    fn make_room(&mut self) {
+        let own = self.list.iter().filter(|r| !r.is_somebodys()).count();
+        let oldest_own = self.list.iter().position(|r| !r.is_somebodys()).filter(|_| own >= OWN);
+        if oldest_own.is_some() || self.list.len() >= CAPACITY {
+            self.list.remove(oldest_own.unwrap_or(0));
+        }
     }
 
     /// Notes which version of the document a request puts forward.
@@ -192,5 +200,16 @@ mod tests {
             requests.open("Hold", 0.0);
         }
         assert_eq!(requests.newest_first().count(), CAPACITY);
+    }
+
+    #[test]
+    fn a_command_is_remembered_however_often_the_window_looks_ahead() {
+        let mut requests = Requests::default();
+        let hold = requests.open("Hold", 1.0);
+        for _ in 0..1000 {
+            requests.open(LOOK_AHEAD, 2.0);
+        }
+        assert_eq!(requests.newest_first().count(), OWN + 1);
+        assert_eq!(requests.settle(hold, Outcome::Accepted, 3.0).as_deref(), Some("Hold"));
     }
 }
