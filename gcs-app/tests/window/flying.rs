@@ -225,6 +225,14 @@ fn a_proposal_without_the_current_leg_is_committed_only_with_an_entry() {
 }
 
 #[test]
+fn the_secondary_button_gives_no_command() {
+    let (mut window, _) = flying();
+    window.harness.get_by_label("⏸ Hold").click_secondary();
+    window.steps(3);
+    assert!(window.asked().is_none());
+}
+
+#[test]
 fn a_refused_command_says_why() {
     let (mut window, _) = flying();
     window.click("⏸ Hold");
