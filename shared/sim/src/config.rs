@@ -1,7 +1,7 @@
 //! How a simulator is set up, and what can be asked of it while it runs.
 
 use crate::core::autopilot::Home;
-use crate::core::faults::FaultRequest;
+use crate::core::faults::{Fault, FaultRequest};
 use crate::core::mode::Mode;
 use crate::core::personality::Personality;
 use aircraft::{Profile, Wind};
@@ -76,7 +76,7 @@ pub enum Control {
     /// A fault, now or at its time.
     Inject(FaultRequest),
     /// No more faults of that name.
-    Clear(String),
+    Clear(&'static str),
     /// Another wind.
     Wind(Wind),
     /// Another flight mode, as by the pilot's switch.
@@ -103,7 +103,7 @@ impl FromStr for Control {
         let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
         match word {
             "fault" => rest.trim().parse().map(Control::Inject).map_err(|e| format!("{e}")),
-            "clear" => Ok(Control::Clear(rest.trim().to_owned())),
+            "clear" => Fault::known_name(rest.trim()).map(Control::Clear),
             "wind" => parse_wind(rest).map(Control::Wind),
             "mode" => rest.trim().parse().map(Control::Mode),
             "fence" => parse_fence(rest).map(Control::Fence),
@@ -190,7 +190,8 @@ mod tests {
     #[test]
     fn lines_of_the_control_protocol() {
         assert_eq!("stop".parse(), Ok(Control::Stop));
-        assert_eq!("clear silence\n".parse(), Ok(Control::Clear("silence".into())));
+        assert_eq!("clear silence\n".parse(), Ok(Control::Clear("silence")));
+        assert_eq!("clear low-battery".parse(), Ok(Control::Clear("low-battery")));
         assert_eq!("wind 270,5".parse(), Ok(Control::Wind(Wind::from_direction(270.0, 5.0))));
         assert_eq!("mode rtl".parse(), Ok(Control::Mode(Mode::ReturnToLaunch)));
         assert!(matches!(" fault engine-out@3 ".parse(), Ok(Control::Inject(_))));
@@ -199,9 +200,20 @@ mod tests {
         let around = LatLon::new(36.5, -84.25);
         assert_eq!("upload 36.5,-84.25".parse(), Ok(Control::Visit { around, starts: false }));
         assert_eq!("upload-and-fly 36.5, -84.25".parse(), Ok(Control::Visit { around, starts: true }));
-        for bad in ["", "fault", "fault x", "wind 1", "wind 270,NaN", "mode", "mode upside-down", "dance"]
-            .into_iter()
-            .chain(["fence", "fence -1", "upload", "upload 91,0", "upload-and-fly here"])
+        for bad in [
+            "",
+            "fault",
+            "fault x",
+            "clear",
+            "clear x",
+            "wind 1",
+            "wind 270,NaN",
+            "mode",
+            "mode upside-down",
+            "dance",
+        ]
+        .into_iter()
+        .chain(["fence", "fence -1", "upload", "upload 91,0", "upload-and-fly here"])
         {
             assert!(bad.parse::<Control>().is_err(), "{bad}");
         }

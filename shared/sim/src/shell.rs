@@ -431,8 +431,8 @@ impl Runner {
                 }
             }
             Some(Control::Clear(name)) => {
-                if !self.simulator.clear_fault(&name) {
-                    tracing::warn!("no fault {name:?} to clear");
+                if !self.simulator.clear_fault(name) {
+                    tracing::warn!("nothing to clear: no {name} is on or to come");
                 }
             }
             Some(Control::Wind(wind)) => self.simulator.autopilot.wind = wind,

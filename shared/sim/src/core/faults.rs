@@ -1,5 +1,6 @@
 //! Faults on request: what is broken when, and a link that loses, doubles and swaps frames.
 
+use super::STEP_NS;
 use std::fmt;
 use std::str::FromStr;
 
@@ -20,7 +21,7 @@ pub enum Fault {
     GpsLoss,
     /// The engine gives nothing.
     EngineOut,
-    /// The battery drops to 15 % at once (it does not recover).
+    /// The battery drops to 15 % at once; when that ends, it is a full one.
     LowBattery,
     /// The radio is silent both ways.
     Silence,
@@ -32,11 +33,37 @@ pub enum Fault {
     Ice,
     /// It is down where it is: it stands, and its autopilot flies on.
     Crash,
-    /// Its autopilot starts anew, as after its watchdog: mode, arming and list stay, its clock begins again.
+    /// Its autopilot starts anew, as after its watchdog: mode, arming and list stay, its clock begins again. That is over at once.
     Reboot,
 }
 
+/// One of each kind.
+const KINDS: [Fault; 12] = [
+    Fault::PacketLoss(0.0),
+    Fault::Duplicate(0.0),
+    Fault::Reorder(0.0),
+    Fault::GpsLoss,
+    Fault::EngineOut,
+    Fault::LowBattery,
+    Fault::Silence,
+    Fault::NoRpm,
+    Fault::NoStream(0),
+    Fault::Ice,
+    Fault::Crash,
+    Fault::Reboot,
+];
+
 impl Fault {
+    /// The name of a kind, as it is said to end it.
+    ///
+    /// # Errors
+    /// There is none of that name.
+    pub fn known_name(name: &str) -> Result<&'static str, String> {
+        let names = KINDS.map(Fault::name);
+        let wrong = || format!("{name:?} is no fault; end one of {}", names.join(", "));
+        names.into_iter().find(|known| *known == name).ok_or_else(wrong)
+    }
+
     fn name(self) -> &'static str {
         match self {
             Fault::PacketLoss(_) => "packet-loss",
@@ -177,17 +204,24 @@ pub struct Schedule(Vec<Scheduled>);
 impl Schedule {
     /// Adds a request; false if there are too many already.
     pub fn add(&mut self, request: FaultRequest, now_ns: u64) -> bool {
+        self.0.retain(|s| s.until_ns > now_ns);
         if self.0.len() >= MAX_REQUESTS {
             return false;
         }
         let from_ns = request.at_s.map_or(now_ns, |s| (s * NS_PER_S) as u64);
-        let until_ns = request.for_s.map_or(u64::MAX, |s| from_ns.saturating_add((s * NS_PER_S) as u64));
+        let lasts_ns = match request.fault {
+            // as long as it is sure to be seen once
+            Fault::Reboot => STEP_NS + 1,
+            _ => request.for_s.map_or(u64::MAX, |s| (s * NS_PER_S) as u64),
+        };
+        let until_ns = from_ns.saturating_add(lasts_ns);
         self.0.push(Scheduled { fault: request.fault, from_ns, until_ns });
         true
     }
 
-    /// Forgets every request for the kind of fault that has this name; false if there was none.
-    pub fn clear(&mut self, name: &str) -> bool {
+    /// Forgets every request for the kind of fault that has this name; false if there was none that is not over.
+    pub fn clear(&mut self, name: &str, now_ns: u64) -> bool {
+        self.0.retain(|s| s.until_ns > now_ns);
         let before = self.0.len();
         self.0.retain(|s| s.fault.name() != name);
         self.0.len() < before
@@ -326,8 +360,19 @@ mod tests {
         assert_eq!(at(&schedule, 2), Effects::default());
         assert!(at(&schedule, 4).engine_out && !at(&schedule, 9).silent);
         assert!(at(&schedule, 10).silent && at(&schedule, 14).silent && !at(&schedule, 15).silent);
-        assert!(schedule.clear("engine-out") && !schedule.clear("engine-out"));
+        let now_ns = 20_000_000_000;
+        assert!(schedule.clear("engine-out", now_ns) && !schedule.clear("engine-out", now_ns));
+        assert!(!schedule.clear("silence", now_ns), "it is over");
         assert_eq!(at(&schedule, 20), Effects::default());
+    }
+
+    #[test]
+    fn only_a_kind_of_fault_can_be_ended() {
+        for kind in KINDS {
+            assert_eq!(Fault::known_name(kind.name()), Ok(kind.name()));
+        }
+        let error = Fault::known_name("fire").unwrap_err();
+        assert!(error.contains("fire") && error.contains("low-battery"), "{error}");
     }
 
     #[test]

@@ -145,9 +145,9 @@ impl Simulator {
         self.schedule.add(request, self.now_ns)
     }
 
-    /// Ends every fault of a name; false if there was none.
+    /// Ends every fault of a name; false if there was none that is not over.
     pub fn clear_fault(&mut self, name: &str) -> bool {
-        self.schedule.clear(name)
+        self.schedule.clear(name, self.now_ns)
     }
 
     /// A frame from a partner, answered at once (unless a fault is in the way).
@@ -214,8 +214,8 @@ impl Simulator {
         if new.reboot && !old.reboot {
             self.booted_ns = self.now_ns;
         }
-        if new.low_battery && !old.low_battery {
-            self.autopilot.aircraft.set_battery_share(LOW_BATTERY_SHARE);
+        if new.low_battery != old.low_battery {
+            self.autopilot.aircraft.set_battery_share(if new.low_battery { LOW_BATTERY_SHARE } else { 1.0 });
         }
         let changes = [
             (old.gps_lost, new.gps_lost, "GPS: fix lost", "GPS: fix is back"),

@@ -243,7 +243,7 @@ impl Relay {
                 }
             }
             Control::Clear(name) => {
-                if !self.faults.clear(&name) {
+                if !self.faults.clear(name, self.now_ns()) {
                     self.complain(format!("no {name} to clear"));
                 }
             }

@@ -384,6 +384,33 @@ fn low_battery_is_told_once() {
 }
 
 #[test]
+fn a_battery_that_is_no_longer_low_is_a_full_one() {
+    for ends in [true, false] {
+        let mut ground = Ground::new(Wind::CALM);
+        let fault = if ends { "low-battery+5" } else { "low-battery" };
+        assert!(ground.sim.inject(fault.parse().unwrap()));
+        ground.fly_until(3.0, |_| false);
+        assert!(ground.sim.autopilot.battery_pct() < 20.0);
+        assert!(ends || ground.sim.clear_fault("low-battery"));
+        ground.fly_until(3.0, |_| false);
+        assert!(ground.sim.autopilot.battery_pct() > 99.0);
+    }
+}
+
+#[test]
+fn each_reboot_is_one_and_over_at_once() {
+    let mut ground = Ground::new(Wind::CALM);
+    let mut booted = vec![ground.sim.booted_ns];
+    for _ in 0..2 {
+        assert!(ground.sim.inject("reboot".parse().unwrap()));
+        ground.fly_until(3.0, |_| false);
+        assert!(!ground.sim.clear_fault("reboot"), "there is nothing to end");
+        booted.push(ground.sim.booted_ns);
+    }
+    assert!(booted.windows(2).all(|pair| pair[0] < pair[1]), "{booted:?}");
+}
+
+#[test]
 fn silence_stops_everything_but_time() {
     let mut ground = Ground::new(Wind::CALM);
     ground.sim.inject("silence@1+5".parse().unwrap());
