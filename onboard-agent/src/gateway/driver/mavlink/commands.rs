@@ -4,6 +4,10 @@
 //! where the autopilot still shows the mode before it: one that shows the ordered mode has obeyed, whatever became of its answer, and
 //! one that shows a third mode has been given another order by somebody else.
 
+mod frames;
+mod late;
+#[cfg(test)]
+mod late_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
@@ -12,7 +16,9 @@ mod word_by_word;
 use super::Peer;
 use super::rto::Rto;
 use crate::gateway::order::{OrderId, Time};
+use frames::{encode, number};
 use geometry::LatLon;
+use late::LateAnswers;
 use mavlink::dialects::ardupilotmega::*;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -27,8 +33,6 @@ const UNSEEN: Duration = Duration::from_secs(15);
 const BLIND: Duration = Duration::from_millis(1600);
 /// Commands that wait; more than the core ever gives.
 const LONGEST_QUEUE: usize = 32;
-/// `MAV_CMD_COMPONENT_ARM_DISARM`: disarm even in flight.
-const FORCE: f32 = 21_196.0;
 
 /// Who gets the result of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -121,7 +125,7 @@ impl Given {
             (Command::Mode(wanted), Shown::Mode(mode, _)) => wanted.shown == mode,
             (Command::GoTo { shows: Some(wanted), .. }, Shown::Mode(mode, _)) => wanted == mode,
             (Command::Arm, Shown::Mode(_, armed)) => armed,
-            (Command::Disarm, Shown::Mode(_, armed)) => !armed,
+            (Command::Disarm | Command::Terminate | Command::ForceDisarm, Shown::Mode(_, armed)) => !armed,
             _ => return None,
         })
     }
@@ -130,11 +134,18 @@ impl Given {
     fn has_changed(&self, shown: Shown) -> bool {
         match (shown, self.before) {
             (Shown::Mode(mode, armed), Some((mode_before, armed_before))) => match self.command {
-                Command::Arm | Command::Disarm => armed != armed_before,
+                Command::Arm | Command::Disarm | Command::Terminate | Command::ForceDisarm => {
+                    armed != armed_before
+                }
                 _ => mode != mode_before,
             },
             _ => false,
         }
+    }
+
+    /// Not every autopilot is set up to end a flight; the engine can be stopped on all.
+    fn disarm_by_force(&mut self) {
+        (self.command, self.tries, self.acked) = (Command::ForceDisarm, 0, None);
     }
 
     /// It shows neither the mode before nor the one that was ordered: somebody else has chosen it.
@@ -154,6 +165,7 @@ impl Given {
 pub struct Commands {
     queue: VecDeque<(Client, Command)>,
     flight: Option<Given>,
+    late: LateAnswers,
     rto: Rto,
     /// Mode and arming as they were shown last.
     seen: Option<(u32, bool)>,
@@ -192,6 +204,7 @@ impl Commands {
         // it does not wait behind what is not, nor for the answer to that
         self.queue.push_front((client, command));
         let less = self.flight.take_if(|given| !is_urgent(given.command))?;
+        self.expect_late(&less);
         let why = format!("{command:?} came before the autopilot had done {:?}", less.command);
         Some((less.client, Err(why.into())))
     }
@@ -199,7 +212,16 @@ impl Commands {
     /// What is not to be carried out any more is not sent again.
     pub fn take_back(&mut self, client: Client) {
         self.queue.retain(|(of, _)| *of != client);
-        self.flight.take_if(|given| given.client == client);
+        if let Some(given) = self.flight.take_if(|given| given.client == client) {
+            self.expect_late(&given);
+        }
+    }
+
+    /// It is over, and may still be answered.
+    fn expect_late(&mut self, given: &Given) {
+        if given.acked.is_none() {
+            self.late.expect(number(given.command), given.sent_last);
+        }
     }
 
     /// How long it is there and back.
@@ -237,7 +259,8 @@ impl Commands {
                 self.end(Err(why.into()))
             }
             None => {
-                given.tries += 1;
+                // as long as its answers can't be told from another's, it is not given up for want of one
+                given.tries += u32::from(!self.late.may_be(now, number(given.command)));
                 (given.sent_last, given.is_as_before) = (now, false);
                 let message = encode(given.command, given.tries as u8 - 1, peer);
                 out.extend((0..self.rto.copies()).map(|_| message.clone()));
@@ -247,33 +270,34 @@ impl Commands {
     }
 
     fn end(&mut self, result: Result<(), Refusal>) -> Option<Ended> {
-        self.flight.take().map(|g| (g.client, result))
+        let given = self.flight.take()?;
+        self.expect_late(&given);
+        Some((given.client, result))
     }
 
     /// The autopilot answers a command.
     pub fn acked(&mut self, now: Time, ack: &COMMAND_ACK_DATA) -> Option<Ended> {
         let given = self.flight.as_mut()?;
-        if ack.command != number(given.command) || given.acked.is_some() {
+        let is_its = ack.command == number(given.command) && !self.late.may_be(now, ack.command);
+        if !is_its || given.acked.is_some() {
             return None;
         }
         if given.tries == 1 {
             self.rto.sample(now.saturating_sub(given.sent));
         }
         match ack.result {
-            MavResult::MAV_RESULT_ACCEPTED if is_seen(given.command) => {
-                given.acked = Some(now);
-                None
-            }
-            MavResult::MAV_RESULT_ACCEPTED => self.end(Ok(())),
             MavResult::MAV_RESULT_IN_PROGRESS => None,
+            MavResult::MAV_RESULT_ACCEPTED => {
+                given.acked = Some(now);
+                if is_seen(given.command) { None } else { self.end(Ok(())) }
+            }
             refused if given.command == Command::Terminate => {
-                // not every autopilot is set up for it; the engine can be stopped on all
                 tracing::warn!(?refused, "flight termination refused, disarming by force");
-                given.command = Command::ForceDisarm;
-                given.tries = 0;
+                given.disarm_by_force();
                 None
             }
             refused => {
+                given.acked = Some(now);
                 let why = format!("the autopilot refused {:?}: {refused:?}", given.command);
                 let for_now = refused == MavResult::MAV_RESULT_TEMPORARILY_REJECTED;
                 self.end(Err(Refusal { why, for_now, is_answer: true }))
@@ -295,6 +319,11 @@ impl Commands {
         match (given.is_obeyed(shown)?, given.acked) {
             (true, Some(_)) => self.end(Ok(())),
             (true, None) if given.has_changed(shown) => self.end(Ok(())),
+            (false, Some(at)) if now >= at + EFFECT && given.command == Command::Terminate => {
+                tracing::warn!("flight termination accepted and not done, disarming by force");
+                given.disarm_by_force();
+                None
+            }
             (false, Some(at)) if now >= at + EFFECT => {
                 let why = format!("the autopilot accepted {:?} and did not do it", given.command);
                 self.end(Err(why.into()))
@@ -321,70 +350,8 @@ fn is_seen(command: Command) -> bool {
             | Command::Mode(_)
             | Command::Arm
             | Command::Disarm
+            | Command::Terminate
+            | Command::ForceDisarm
             | Command::GoTo { shows: Some(_), .. }
     )
-}
-
-fn number(command: Command) -> MavCmd {
-    match command {
-        Command::Current(_) => MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT,
-        Command::Mode(_) => MavCmd::MAV_CMD_DO_SET_MODE,
-        Command::Arm | Command::Disarm | Command::ForceDisarm => MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
-        Command::Speed(_) => MavCmd::MAV_CMD_DO_CHANGE_SPEED,
-        Command::GoTo { .. } => MavCmd::MAV_CMD_DO_REPOSITION,
-        Command::Terminate => MavCmd::MAV_CMD_DO_FLIGHTTERMINATION,
-    }
-}
-
-fn encode(command: Command, confirmation: u8, peer: Peer) -> MavMessage {
-    let (param1, param2, param3) = match command {
-        Command::Current(seq) => (f32::from(seq), 0.0, 0.0),
-        // 1: the number is the autopilot's own
-        Command::Mode(mode) => (1.0, f32::from(mode.main), f32::from(mode.sub)),
-        Command::Arm | Command::Terminate => (1.0, 0.0, 0.0),
-        Command::Disarm => (0.0, 0.0, 0.0),
-        Command::ForceDisarm => (0.0, FORCE, 0.0),
-        // 0: airspeed; throttle −1: as it is
-        Command::Speed(mps) => (0.0, mps as f32, -1.0),
-        Command::GoTo { place, .. } => return reposition(place, peer),
-    };
-    MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-        param1,
-        param2,
-        param3,
-        param4: 0.0,
-        param5: 0.0,
-        param6: 0.0,
-        param7: 0.0,
-        command: number(command),
-        target_system: peer.system,
-        target_component: peer.component,
-        confirmation,
-    })
-}
-
-/// What is not given is "not used": NaN, or the greatest whole number.
-fn reposition(place: Option<(LatLon, f64)>, peer: Peer) -> MavMessage {
-    let degrees = |deg: f64| (deg * 1e7).round() as i32;
-    let (x, y, z, param4) = match place {
-        Some((at, altitude_amsl_m)) => {
-            (degrees(at.lat_deg), degrees(at.lon_deg), altitude_amsl_m as f32, 0.0)
-        }
-        None => (i32::MAX, i32::MAX, f32::NAN, f32::NAN),
-    };
-    MavMessage::COMMAND_INT(COMMAND_INT_DATA {
-        param1: -1.0,
-        param2: 1.0,
-        param3: 0.0,
-        param4,
-        x,
-        y,
-        z,
-        command: MavCmd::MAV_CMD_DO_REPOSITION,
-        target_system: peer.system,
-        target_component: peer.component,
-        frame: MavFrame::MAV_FRAME_GLOBAL,
-        current: 0,
-        autocontinue: 0,
-    })
 }

@@ -66,6 +66,7 @@ fn each_command_is_done_when_its_own_effect_is_shown() {
         (go, Shown::Mode(15, true), Shown::Mode(10, true)),
         (Command::Arm, Shown::Mode(10, true), Shown::Mode(10, false)),
         (Command::Disarm, Shown::Mode(10, false), Shown::Mode(10, true)),
+        (Command::ForceDisarm, Shown::Mode(10, false), Shown::Mode(10, true)),
     ];
     for (command, effect, other) in cases {
         let mut talk = Talk::giving(command);
@@ -86,7 +87,7 @@ fn each_command_is_done_when_its_own_effect_is_shown() {
 
 #[test]
 fn what_shows_no_effect_is_done_when_it_is_accepted() {
-    for command in [Command::Speed(25.0), Command::ForceDisarm, Command::GoTo { place: None, shows: None }] {
+    for command in [Command::Speed(25.0), Command::GoTo { place: None, shows: None }] {
         assert_eq!(Talk::giving(command).accept(command), Some((ORDER, Ok(()))), "{command:?}");
     }
 }
@@ -141,7 +142,25 @@ fn a_termination_that_is_refused_stops_the_engine() {
     assert_eq!(talk.ack(number(Command::Terminate), MavResult::MAV_RESULT_UNSUPPORTED), None);
     assert_eq!(talk.pass(4), None);
     assert!(talk.sent().contains(&MavCmd::MAV_CMD_COMPONENT_ARM_DISARM));
-    assert_eq!(talk.accept(Command::ForceDisarm), Some((ORDER, Ok(()))));
+    talk.accept(Command::ForceDisarm);
+    assert_eq!(talk.show(Shown::Mode(10, false)), Some((ORDER, Ok(()))));
+}
+
+/// Its circuit breaker is set, or it only writes that down.
+#[test]
+fn a_termination_that_is_accepted_and_not_done_stops_the_engine_and_is_no_deed() {
+    for obeys in [true, false] {
+        let mut talk = Talk::giving(Command::Terminate);
+        assert_eq!(talk.accept(Command::Terminate), None);
+        assert_eq!((talk.pass(1), talk.show(Shown::Mode(10, true))), (None, None));
+        talk.sent();
+        assert_eq!((talk.pass(2), talk.show(Shown::Mode(10, true)), talk.pass(1)), (None, None, None));
+        assert!(talk.sent().contains(&MavCmd::MAV_CMD_COMPONENT_ARM_DISARM));
+        assert_eq!(talk.accept(Command::ForceDisarm), None);
+        talk.pass(3);
+        let ended = talk.show(Shown::Mode(10, !obeys));
+        assert_eq!(ended.map(|(_, result)| result.is_ok()), Some(obeys));
+    }
 }
 
 #[test]
@@ -153,7 +172,8 @@ fn a_termination_waits_for_nothing_but_another_one() {
     talk.pass(0);
     assert_eq!(talk.sent(), [MavCmd::MAV_CMD_DO_FLIGHTTERMINATION]);
     assert_eq!(talk.commands.give(ORDER, Command::ForceDisarm), None, "what is as urgent goes on");
-    assert_eq!(talk.accept(Command::Terminate), Some((OTHER, Ok(()))));
+    assert_eq!(talk.accept(Command::Terminate), None);
+    assert_eq!(talk.show(Shown::Mode(10, false)), Some((OTHER, Ok(()))));
 }
 
 #[test]

@@ -38,6 +38,8 @@ pub struct Px4 {
     pub hears_station: bool,
     /// Why it won't be armed.
     pub refuses_arming: Option<&'static str>,
+    /// It says that it ends its flight, and does not.
+    pub only_accepts_the_end: bool,
     /// So many changes of mode are refused.
     pub refuses_modes: u32,
     /// Lists that were taken into use.
@@ -253,6 +255,7 @@ impl Px4 {
                 }
                 None => self.armed = p1 > 0.5,
             },
+            MavCmd::MAV_CMD_DO_FLIGHTTERMINATION if self.only_accepts_the_end => {}
             MavCmd::MAV_CMD_DO_CHANGE_SPEED => self.speeds.push(p2),
             // on the ground it says yes, and keeps its own
             MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT if !self.armed => {}

@@ -77,6 +77,20 @@ fn after_a_refused_arming_it_does_not_stay_in_the_mode_in_which_it_takes_off() {
     assert!(stands(&rig));
 }
 
+/// It says yes, as one whose circuit breaker is set may, and flies on.
+#[test]
+fn an_end_that_is_accepted_and_not_done_is_done_by_disarming() {
+    for only_accepts_the_end in [false, true] {
+        let mut rig = Rig::flying();
+        rig.px4.only_accepts_the_end = only_accepts_the_end;
+        let end = rig.order(Order::Terminate);
+        rig.step();
+        assert_eq!(rig.outcome(end), None, "an answer is no deed");
+        let took_s = rig.until("ended", |rig| rig.outcome(end).is_some());
+        assert!(!rig.px4.armed && rig.outcome(end) == Some(Ok(())) && took_s < 8.0, "{took_s} s");
+    }
+}
+
 /// It waited for up to sixteen tries of what was asked before.
 #[test]
 fn to_end_the_flight_by_force_waits_for_nothing() {
