@@ -227,6 +227,7 @@ impl MavlinkDriver {
         {
             return self.session.command(now, Client::Order(id), next, more);
         }
+        let is_whole = !self.steps.iter().any(|steps| steps.order == id && !steps.rest.is_empty());
         self.steps.retain(|steps| steps.order != id);
         if let Some((_, aim)) = self.steering.take_if(|(of, _)| *of == id) {
             self.steered(aim, result.is_ok());
@@ -234,7 +235,7 @@ impl MavlinkDriver {
         let arming = self.arming.take_if(|of| *of == id).is_some();
         let report = match result {
             Ok(()) => Report::Done(id),
-            Err(refusal) if arming => self.not_armed(now, id, refusal),
+            Err(refusal) if arming => self.not_armed(now, id, is_whole, refusal),
             Err(refusal) => Report::Failed(id, refusal.why),
         };
         self.reports.push_back(report);

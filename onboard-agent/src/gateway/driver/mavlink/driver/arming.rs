@@ -26,8 +26,10 @@ impl MavlinkDriver {
             self.reports.push_back(Report::Failed(arming, "taken back".into()));
         }
         let is_armed = std::mem::take(&mut self.may_arm) || self.seen.is_some_and(|seen| seen.armed);
-        let would_fly = self.seen.is_some_and(|seen| (dialect.meaning)(seen.mode, false) == Mode::Waypoints);
-        let stands = dialect.stands.filter(|_| arming.is_some() || would_fly);
+        let mode = self.seen.map(|seen| (dialect.meaning)(seen.mode, false));
+        let is_pilots = matches!(mode, Some(Mode::Other(_)));
+        let would_fly = arming.is_some() || mode == Some(Mode::Waypoints);
+        let stands = dialect.stands.filter(|_| would_fly && !is_pilots);
         if arming.is_none() && !is_armed {
             return self.give(now, id, stands.into_iter().collect(), events);
         }
@@ -38,13 +40,15 @@ impl MavlinkDriver {
         }
     }
 
-    /// It gives its reasons in words of its own.
-    pub(super) fn not_armed(&mut self, now: Time, id: OrderId, refusal: Refusal) -> Report {
+    /// It gives its reasons in words of its own. `sent`: the order to arm itself was sent, and not only what comes before it.
+    pub(super) fn not_armed(&mut self, now: Time, id: OrderId, sent: bool, refusal: Refusal) -> Report {
         let Refusal { why, for_now, is_answer } = refusal;
         let why = match self.session.words.lately(now) {
             Some(words) => format!("{why} (it says: {words})"),
             None => why,
         };
+        // what was not sent is not carried out late
+        let is_answer = is_answer || !sent;
         self.may_arm = !is_answer;
         match (for_now, is_answer) {
             (true, _) => Report::PutOff(id, why),

@@ -38,6 +38,27 @@ fn what_armed_before_that_was_heard_is_disarmed() {
     assert!(stands(&rig));
 }
 
+/// He flips to his own mode while ours is ordered: the order to arm behind it was not sent, and nothing is carried out late.
+#[test]
+fn who_has_it_before_the_order_to_arm_was_sent_is_told_apart_from_an_order_that_was_not_answered() {
+    for sent in [false, true] {
+        let mut rig = Rig::loaded();
+        rig.pass = Box::new(move |to, m| to == To::Driver || (sent && !is_arming(m)));
+        let arm = rig.order(Order::Arm);
+        rig.run(if sent { 3 } else { 0 });
+        rig.step();
+        rig.px4.mode(3, 0);
+        rig.run(60);
+        let answered = |report: &Report| matches!(report, Report::Failed(id, _) if *id == arm);
+        assert_eq!(rig.reports.iter().any(answered), !sent, "sent: {sent}, {:?}", rig.outcome(arm));
+        assert!(rig.outcome(arm).is_some());
+        rig.pass = Box::new(|_, _| true);
+        assert_eq!(rig.carry_out(Order::StandDown), Ok(()));
+        rig.run(5);
+        assert_eq!((rig.px4.main, rig.px4.sub), (3, 0), "his mode stays");
+    }
+}
+
 /// In Mission it would take off when somebody arms it.
 #[test]
 fn one_whose_disarming_is_not_answered_does_not_stay_in_the_mode_in_which_it_takes_off() {
