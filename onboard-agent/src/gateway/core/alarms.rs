@@ -43,11 +43,11 @@ pub struct AlarmInputs {
     pub fast: bool,
     /// It is far from the altitude that it was told to fly at, and comes no nearer.
     pub off_altitude: bool,
-    /// It ought to fly, and does not move.
-    pub stands_still: bool,
+    /// It ought to fly, and does not move; `None`: that is not known.
+    pub stands_still: Option<bool>,
     /// It flies, and is not armed.
     pub disarmed: bool,
-    /// It was to be ended by force, and that was not carried out.
+    /// It was ended by force, and is armed.
     pub flies_on: bool,
     /// Another station put its list aboard, which is not flown.
     pub list_replaced: bool,
@@ -169,7 +169,7 @@ impl Alarms {
             Watch::Slow => inputs.slow,
             Watch::Fast => inputs.fast,
             Watch::OffAltitude => inputs.off_altitude,
-            Watch::StandsStill => inputs.stands_still,
+            Watch::StandsStill => inputs.stands_still.unwrap_or(raised),
             Watch::Disarmed => inputs.disarmed,
             Watch::FliesOn => inputs.flies_on,
             Watch::ListReplaced => inputs.list_replaced,

@@ -108,8 +108,8 @@ impl Gateway {
     }
 
     /// It is armed or says that it is in the air, in a state that flies, and does not move. On a runway it may: that is a take-off or a
-    /// landing.
-    pub(super) fn stands_still(&self, now: Time) -> bool {
+    /// landing. `None`: it is not known where it is, and what was said of it holds.
+    pub(super) fn stands_still(&self, now: Time) -> Option<bool> {
         use GatewayState::{Land, Off, SafeLand, Stop, TakeOff, Terminate};
         let on_runway = match self.state {
             Off | Stop | TakeOff | Terminate => true,
@@ -123,7 +123,10 @@ impl Gateway {
         let hovers = air.is_some_and(|(_, air)| air.airspeed_mps >= flies_mps);
         let moves = |fix: Fix| !slow(fix.north_mps.hypot(fix.east_mps)) || !slow(fix.down_mps.abs());
         let may_fly = self.telemetry.armed || self.telemetry.is_up(now);
-        !on_runway && may_fly && !hovers && self.fix().is_some_and(|fix| !moves(fix))
+        if on_runway || !may_fly || hovers {
+            return Some(false);
+        }
+        self.fix().map(|fix| !moves(fix))
     }
 
     /// So far below what it was told to fly at, and sinking so fast.
@@ -169,7 +172,8 @@ impl Gateway {
         told || self.runways.iter().any(on) || at_home
     }
 
+    /// Where it is; not where it was.
     fn fix(&self) -> Option<Fix> {
-        self.telemetry.fix.map(|(_, fix)| fix)
+        self.telemetry.fix_now(self.now)
     }
 }

@@ -4,7 +4,6 @@ use super::io::{Intent, Output};
 use super::observe::CLEAR_M;
 use super::safe::{self, Situation};
 use super::states::Trigger;
-use super::telemetry::OUT_OF_DATE;
 use super::{Gateway, seconds};
 use crate::gateway::order::Time;
 use geometry::LatLon;
@@ -301,7 +300,7 @@ impl Gateway {
 
     /// Where the aircraft is, for the choice of a runway. Wind and battery change slowly: the last that was told of them counts.
     pub(super) fn situation(&self) -> Option<Situation<'_>> {
-        let (_, fix) = self.telemetry.fix.filter(|(at, _)| self.now.saturating_sub(*at) < OUT_OF_DATE)?;
+        let fix = self.telemetry.fix_now(self.now)?;
         Some(Situation {
             position: fix.position,
             altitude_amsl_m: fix.altitude_amsl_m,

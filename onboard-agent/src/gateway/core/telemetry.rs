@@ -167,6 +167,11 @@ impl Telemetry {
         Some(gps.unix_s?.saturating_add_unsigned(now.saturating_sub(at).as_secs()))
     }
 
+    /// Position and velocity, unless they are out of date.
+    pub fn fix_now(&self, now: Time) -> Option<Fix> {
+        self.fix.filter(|(at, _)| now.saturating_sub(*at) < OUT_OF_DATE).map(|(_, fix)| fix)
+    }
+
     /// What it says of its engine, if it still does.
     pub fn engine(&self, now: Time) -> Option<Engine> {
         self.engine.filter(|(at, _)| now.saturating_sub(*at) < OUT_OF_DATE).map(|(_, engine)| engine)

@@ -214,8 +214,8 @@ fn what_is_no_longer_said_is_named() {
 
 #[test]
 fn what_stands_still_or_is_steered_by_another_is_told() {
-    let still = AlarmInputs { stands_still: true, ..AlarmInputs::default() };
-    let other = AlarmInputs { not_in_command: true, ..AlarmInputs::default() };
+    let still = AlarmInputs { stands_still: Some(true), ..AlarmInputs::default() };
+    let other = AlarmInputs { not_in_command: true, stands_still: Some(false), ..AlarmInputs::default() };
     let events = story(&[(150, still, moving(0.0)), (2, other, moving(0.0))]);
     let told = [(100, "+stands-still"), (150, "-stands-still"), (150, "+not-in-command")];
     assert_eq!(events, told.map(|(tenth, name)| (tenth, name.to_owned())));
@@ -232,7 +232,7 @@ fn a_flooded_port_is_told_and_its_end_too() {
 fn what_stands_still_says_where_it_is() {
     let (mut alarms, mut telemetry) = (Alarms::default(), Telemetry::default());
     telemetry.take(Duration::ZERO, &moving(0.0));
-    let still = AlarmInputs { stands_still: true, ..AlarmInputs::default() };
+    let still = AlarmInputs { stands_still: Some(true), ..AlarmInputs::default() };
     for second in [0, 10] {
         alarms.update(Duration::from_secs(second), &telemetry, still, &mut vec![]);
     }
