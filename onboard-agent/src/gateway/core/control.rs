@@ -2,6 +2,7 @@
 
 use super::Gateway;
 use super::io::{Intent, Output};
+use super::launch::Launch;
 use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Time};
 use geometry::LatLon;
 use std::time::Duration;
@@ -9,8 +10,6 @@ use usal::contract::{Action, GatewayState};
 
 /// An order that failed is given again after this.
 pub(super) const RETRY: Duration = Duration::from_millis(1000);
-/// An aircraft that does not arm yet, while its autopilot still starts up, is ordered to again for so long.
-const ARMS_WITHIN: Duration = Duration::from_secs(20);
 /// An order of ours that was overtaken by another may still come into effect for so long.
 const OVERTAKEN: Duration = Duration::from_secs(3);
 /// A list that is not ours is flown for so long, where ours is wanted, before the aircraft is made to circle: nothing can be written
@@ -22,7 +21,7 @@ const SAME_SPEED_MPS: f64 = 0.1;
 const LOITER_REACHED: f64 = 2.0;
 
 /// Orders in flight and what they are for.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Control {
     /// What is wanted.
     pub intent: Intent,
@@ -58,18 +57,8 @@ pub struct Control {
     pub ordered: Option<Mode>,
     /// Since when the wanted mode is confirmed.
     confirmed_at: Option<Time>,
-    /// The order to arm.
-    pub arm: Option<OrderId>,
-    /// It was armed since the launch.
-    pub was_armed: bool,
-    /// Since when a launch waits that was granted.
-    pub launch_since: Option<Time>,
-    /// When a launch was given up whose order to arm may still be carried out.
-    pub given_up_at: Option<Time>,
-    /// The order to take that back.
-    pub stand_down: Option<OrderId>,
-    /// Since when it is to be armed, and puts it off.
-    put_off_since: Option<Time>,
+    /// The launch that waits, and the one that was given up.
+    pub launch: Launch,
     speed: Option<(OrderId, f64)>,
     /// The order to read what it has aboard.
     pub adopt: Option<OrderId>,
@@ -83,44 +72,6 @@ pub struct Control {
     pub taken: Option<(Time, Mode)>,
     /// Waypoints were fed in this step: what the driver said of its list before that is true no more.
     pub fed: bool,
-}
-
-impl Default for Control {
-    fn default() -> Self {
-        Self {
-            intent: Intent::Nothing,
-            mode_before: None,
-            confirmed: false,
-            disobeys_since: None,
-            retry_at: None,
-            safe_since: None,
-            safe_until_command: false,
-            way_home_glides: None,
-            looked_for: None,
-            capability: None,
-            direct: None,
-            direct_due: false,
-            adopting: vec![],
-            speed_mps: None,
-            last_id: 0,
-            mode: None,
-            ordered: None,
-            confirmed_at: None,
-            arm: None,
-            was_armed: false,
-            launch_since: None,
-            given_up_at: None,
-            stand_down: None,
-            put_off_since: None,
-            speed: None,
-            adopt: None,
-            strays_since: None,
-            holds_by_itself: false,
-            met_at: None,
-            taken: None,
-            fed: false,
-        }
-    }
 }
 
 impl Control {
@@ -142,7 +93,7 @@ impl Control {
         self.confirmed = false;
         self.confirmed_at = None;
         self.disobeys_since = None;
-        self.put_off_since = None;
+        self.launch.put_off_since = None;
         self.retry_at = None;
     }
 
@@ -181,17 +132,12 @@ impl Control {
         self.forget(id);
     }
 
-    /// It does not arm yet; true: it has had its time to.
-    pub fn is_put_off_for_good(&mut self, now: Time) -> bool {
-        now.saturating_sub(*self.put_off_since.get_or_insert(now)) >= ARMS_WITHIN
-    }
-
     /// An order is no longer in flight.
     pub fn forget(&mut self, id: OrderId) {
         if self.mode.is_some_and(|(mode, _)| mode == id) {
             self.mode = None;
         }
-        for lane in [&mut self.arm, &mut self.adopt, &mut self.stand_down] {
+        for lane in [&mut self.launch.arm, &mut self.adopt, &mut self.launch.stand_down] {
             if *lane == Some(id) {
                 *lane = None;
             }
@@ -266,7 +212,7 @@ impl Gateway {
             return;
         }
         if self.telemetry.armed {
-            (self.control.was_armed, self.control.arm) = (true, None);
+            self.control.launch.is_armed();
         } else if !self.telemetry.flies_disarmed(now) {
             if flies && self.state == GatewayState::Stop {
                 self.arm(now, out);

@@ -39,7 +39,7 @@ impl Gateway {
         if self.state == GatewayState::Stop && join.last_token < self.highest {
             // a new FP Manager on the ground: a new flight
             self.highest = join.last_token;
-            if self.control.launch_since.is_some() {
+            if self.control.launch.since.is_some() {
                 self.give_up_launch("another FP Manager has joined", out);
             }
             self.forget_waypoints(out);

@@ -82,10 +82,11 @@ pub enum Answer {
 }
 
 /// What the autopilot is meant to do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Intent {
     /// Whatever it or its pilot likes.
+    #[default]
     Nothing,
     /// Fly the list.
     Fly,

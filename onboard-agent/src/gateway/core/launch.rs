@@ -4,6 +4,7 @@ use super::Gateway;
 use super::control::RETRY;
 use super::io::{Intent, Output};
 use super::states::is_flying;
+use super::telemetry::FRESH;
 use crate::gateway::order::{Mode, Order, OrderId, Time};
 use std::time::Duration;
 use usal::contract::{GatewayEvent, GatewayState};
@@ -12,13 +13,47 @@ use usal::contract::{GatewayEvent, GatewayState};
 pub(super) const LAUNCHES_WITHIN: Duration = Duration::from_secs(60);
 /// On a bad link an order to arm may be carried out so long after it was taken back.
 const ARMS_LATE: Duration = Duration::from_secs(10);
+/// Higher above the take-off place it has left the ground, whatever its autopilot says yet, metres.
+const LEFT_GROUND_M: f64 = 10.0;
+
+/// An aircraft that does not arm yet, while its autopilot still starts up, is ordered to again for so long.
+const ARMS_WITHIN: Duration = Duration::from_secs(20);
+
+/// What is known of a launch.
+#[derive(Debug, Clone, Default)]
+pub struct Launch {
+    /// Since when one waits that was granted.
+    pub since: Option<Time>,
+    /// The order to arm.
+    pub arm: Option<OrderId>,
+    /// Since when that is put off.
+    pub put_off_since: Option<Time>,
+    /// It was armed since the launch.
+    was_armed: bool,
+    /// When one was given up whose order to arm may still be carried out.
+    given_up_at: Option<Time>,
+    /// The order to take that back.
+    pub stand_down: Option<OrderId>,
+}
+
+impl Launch {
+    /// It is seen to be armed.
+    pub fn is_armed(&mut self) {
+        (self.was_armed, self.arm) = (true, None);
+    }
+
+    /// It does not arm yet; true: it has had its time to.
+    pub fn is_put_off_for_good(&mut self, now: Time) -> bool {
+        now.saturating_sub(*self.put_off_since.get_or_insert(now)) >= ARMS_WITHIN
+    }
+}
 
 impl Gateway {
     /// A take-off is wanted from now on.
     pub(super) fn begin_launch(&mut self, out: &mut Vec<Output>) {
-        self.control.was_armed = false;
-        self.control.launch_since = Some(self.now);
-        self.control.given_up_at = None;
+        // what was ordered for an earlier one may be under way
+        let Launch { arm, stand_down, .. } = self.control.launch;
+        self.control.launch = Launch { since: Some(self.now), arm, stand_down, ..Launch::default() };
         self.control.set_intent(Intent::Fly, self.telemetry.mode);
         out.push(Output::Save);
     }
@@ -27,10 +62,10 @@ impl Gateway {
     /// gone: whoever mends what is in the way stands before the propeller.
     pub(super) fn wait_for_launch(&mut self, now: Time, out: &mut Vec<Output>) {
         self.disarm_late(now, out);
-        let Some(since) = self.control.launch_since else { return };
+        let Some(since) = self.control.launch.since else { return };
         let on_ground = matches!(self.state, GatewayState::Stop | GatewayState::Off);
         if !on_ground || self.control.intent != Intent::Fly {
-            self.control.launch_since = None;
+            self.control.launch.since = None;
         } else if self.state == GatewayState::Off {
             self.give_up_launch("the autopilot is not heard any more", out);
         } else if now.saturating_sub(since) >= LAUNCHES_WITHIN {
@@ -40,17 +75,18 @@ impl Gateway {
 
     /// Somebody switched it off and on again, and stands beside it.
     pub(super) fn rebooted(&mut self, out: &mut Vec<Output>) {
-        if self.control.launch_since.is_some() {
+        if self.control.launch.since.is_some() {
             self.give_up_launch("the autopilot started anew", out);
         }
     }
 
     /// The next step of a launch, on the ground.
     pub(super) fn arm(&mut self, now: Time, out: &mut Vec<Output>) {
-        if self.control.was_armed || self.control.launch_since.is_none() {
+        let launch = &self.control.launch;
+        if launch.was_armed || launch.since.is_none() {
             self.give_up_launch("disarmed before the take-off, and not by the gateway", out);
-        } else if self.control.arm.is_none() {
-            self.control.arm = Some(self.order(Order::Arm, out));
+        } else if launch.arm.is_none() {
+            self.control.launch.arm = Some(self.order(Order::Arm, out));
             self.control.retry_at = Some(now + RETRY);
         }
     }
@@ -64,12 +100,19 @@ impl Gateway {
         may_come: bool,
         out: &mut Vec<Output>,
     ) {
-        let is_launch = self.control.arm == Some(id) && !is_flying(self.state);
+        let is_launch = self.control.launch.arm == Some(id) && !is_flying(self.state);
         self.control.failed(now, id);
         if is_launch {
-            self.give_up_launch(&format!("launch refused by the autopilot: {why}"), out);
+            let cause = match may_come {
+                true => format!(
+                    "the launch was not answered, and it may still arm for {} s: {why}",
+                    ARMS_LATE.as_secs()
+                ),
+                false => format!("launch refused by the autopilot: {why}"),
+            };
+            self.give_up_launch(&cause, out);
             if may_come {
-                self.control.given_up_at = Some(now);
+                self.control.launch.given_up_at = Some(now);
             }
         }
     }
@@ -85,7 +128,7 @@ impl Gateway {
     /// That of a gateway that was killed before the take-off: what it ordered may still be carried out.
     pub(super) fn give_up_earlier_launch(&mut self, out: &mut Vec<Output>) {
         self.give_up_launch("the gateway started anew before the take-off", out);
-        self.control.given_up_at = Some(self.now);
+        self.control.launch.given_up_at = Some(self.now);
     }
 
     /// Nothing is to be flown any more: a take-off that was granted is not begun.
@@ -100,17 +143,27 @@ impl Gateway {
 
     /// What was ordered for it is not done any more, nor is it left half done.
     fn take_back_launch(&mut self, out: &mut Vec<Output>) {
-        let may_be_armed = self.control.arm.take().is_some() || self.telemetry.armed;
-        self.control.given_up_at = may_be_armed.then_some(self.now);
-        self.control.launch_since = None;
-        self.control.was_armed = false;
+        let may_be_armed = self.control.launch.arm.is_some() || self.telemetry.armed;
+        let given_up_at = may_be_armed.then_some(self.now);
+        let stand_down = Some(self.order(Order::StandDown, out));
+        self.control.launch = Launch { given_up_at, stand_down, ..Launch::default() };
         self.control.set_intent(Intent::Nothing, self.telemetry.mode);
-        self.control.stand_down = Some(self.order(Order::StandDown, out));
     }
 
-    /// It may arm by an order of ours that was taken back.
+    /// It may arm by an order of ours that was taken back. What flies by now did so, and has an owner like any other: it is not disarmed
+    /// up there.
     pub(super) fn may_arm_late(&self, now: Time) -> bool {
-        self.control.given_up_at.is_some_and(|at| now.saturating_sub(at) < ARMS_LATE)
+        let is_lately = self.control.launch.given_up_at.is_some_and(|at| now.saturating_sub(at) < ARMS_LATE);
+        is_lately && !self.telemetry.flies(now)
+    }
+
+    /// It may have left the ground though its autopilot has not said so yet: behind a silence the heartbeat comes first.
+    fn may_be_up(&self, now: Time) -> bool {
+        let fresh = self.telemetry.fix.filter(|(at, _)| now.saturating_sub(*at) < FRESH);
+        let flies_mps = self.settings.profile.min_airspeed_mps;
+        fresh.is_none_or(|(_, fix)| {
+            fix.altitude_home_m >= LEFT_GROUND_M || fix.north_mps.hypot(fix.east_mps) >= flies_mps
+        })
     }
 
     fn disarm_late(&mut self, now: Time, out: &mut Vec<Output>) {
@@ -118,9 +171,11 @@ impl Gateway {
         // in a mode of his own somebody else has armed it
         let mode = self.telemetry.mode;
         let is_his = matches!(mode, Some(Mode::Other(_))) && mode != self.control.mode_before;
-        let is_ours = self.telemetry.armed && self.may_arm_late(now) && !is_his;
-        if is_idle && is_ours && self.control.stand_down.is_none() {
-            self.control.stand_down = Some(self.order(Order::StandDown, out));
+        let is_ours = self.telemetry.armed && self.may_arm_late(now) && !is_his && !self.may_be_up(now);
+        let is_due =
+            self.control.launch.stand_down.is_none() && self.control.retry_at.is_none_or(|at| now >= at);
+        if is_idle && is_ours && is_due {
+            self.control.launch.stand_down = Some(self.order(Order::StandDown, out));
         }
     }
 }

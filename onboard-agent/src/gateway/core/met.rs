@@ -72,7 +72,7 @@ impl Gateway {
     pub(super) fn wait_for_earlier_launch(&mut self, now: Time, out: &mut Vec<Output>) {
         let t = &self.telemetry;
         let Some(earlier) = self.adopting.as_ref().filter(|earlier| earlier.takes_off()) else { return };
-        if self.state != GatewayState::Stop || !t.armed {
+        if self.state != GatewayState::Stop || !t.armed || t.flies(now) {
             return;
         }
         let is_as_left = earlier.mode.as_deref() == Some(&*t.mode_name);

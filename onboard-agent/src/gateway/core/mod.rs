@@ -217,7 +217,7 @@ impl Gateway {
 
     /// It is ordered again for a while, as long as nobody wants something else.
     fn put_off(&mut self, now: Time, id: OrderId, why: String, out: &mut Vec<Output>) {
-        if self.control.is_put_off_for_good(now) {
+        if self.control.launch.is_put_off_for_good(now) {
             return self.failed(now, id, why, out);
         }
         self.control.failed(now, id);

@@ -7,7 +7,12 @@ fn ground(armed: bool) -> [Report; 3] {
 }
 
 fn on_ground(mode: Mode, armed: bool) -> [Report; 3] {
-    [beat(mode, armed), Report::OnGround(true), fix(0.0)]
+    [beat(mode, armed), Report::OnGround(true), fix_at(0.0, 0.0)]
+}
+
+fn fix_at(altitude_home_m: f64, north_mps: f64) -> Report {
+    let Report::Fix(fix) = fix(north_mps) else { unreachable!() };
+    Report::Fix(Fix { altitude_home_m, ..fix })
 }
 
 /// Launched, with its list aboard or not.
@@ -155,6 +160,38 @@ fn an_arming_that_was_not_answered_is_taken_back_if_it_is_carried_out_after_all(
             "{unanswered}"
         );
     }
+}
+
+/// The link was away until it was in the air: an engine that is stopped there is worse than a flight that nobody wants any more.
+#[test]
+fn what_has_taken_off_by_an_order_that_was_taken_back_is_not_disarmed_and_has_an_owner() {
+    // its autopilot says that it flies, or not yet
+    for (on_ground, height_m) in [(false, 3.0), (true, 3.0), (true, 15.0)] {
+        let mut core = launched(true);
+        let (arm, _) = core.orders().into_iter().rfind(|(_, order)| *order == Order::Arm).unwrap();
+        core.step(Input::Report(Report::Unanswered(arm, "did not answer".into())));
+        core.run(3, &ground(false));
+        core.done();
+        core.out.clear();
+        core.now += Duration::from_secs(3);
+        let up = [beat(Mode::Waypoints, true), Report::OnGround(on_ground), fix_at(height_m, 25.0)];
+        core.run(2, &up);
+        core.run(2, &flying(25.0, 25.0));
+        assert_eq!(stands_down(&core), 0, "{height_m} m");
+        assert_eq!(core.gateway.state(), GatewayState::Nav, "{height_m} m");
+        assert_eq!(core.gateway.control.intent, Intent::Fly, "{height_m} m");
+    }
+}
+
+/// It was met rolling, and took off while its list was read.
+#[test]
+fn what_an_earlier_gateway_launched_is_not_disarmed_in_the_air_while_it_is_read() {
+    let mut known = launched(true).gateway.snapshot();
+    known.waypoints[0].action = usal::contract::Action::TakeOff { heading_deg: 0.0 };
+    let mut core = Core::started_anew(Some(known));
+    core.run(5, &on_ground(Mode::Waypoints, true));
+    core.run(58, &flying(25.0, 25.0));
+    assert_eq!(stands_down(&core), 0);
 }
 
 /// He arms by his sticks and throws it.
