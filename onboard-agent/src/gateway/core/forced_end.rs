@@ -21,7 +21,6 @@ pub struct ForcedEnd {
     order: Option<OrderId>,
     /// When that is ordered again.
     again_at: Option<Time>,
-    failed: bool,
 }
 
 impl ForcedEnd {
@@ -30,17 +29,11 @@ impl ForcedEnd {
         Self { is_wanted, unix_s, ..Self::default() }
     }
 
-    /// An order was answered; whether it was carried out.
-    pub fn answered(&mut self, now: Time, id: OrderId, done: bool) {
+    /// An order was answered, whatever came of it.
+    pub fn answered(&mut self, now: Time, id: OrderId) {
         if self.order.take_if(|of| *of == id).is_some() {
             self.again_at = Some(now + RETRY);
-            self.failed = !done;
         }
-    }
-
-    /// The order was not carried out, and nothing says that one given since was.
-    pub fn has_failed(&self) -> bool {
-        self.is_wanted && self.failed
     }
 
     fn is_due(&self, now: Time) -> bool {
@@ -53,20 +46,31 @@ impl Gateway {
         if confirm != self.settings.vehicle {
             return Err("To end the flight by force, repeat the vehicle's name in `confirm`.".into());
         }
-        if !is_flying(self.state) && !self.telemetry.armed {
+        let is_known = is_flying(self.state) || self.telemetry.armed;
+        if !is_known && !self.may_fly_unheard() {
             return Err("There is no flight to end.".into());
         }
         let unix_s = self.telemetry.unix_s(self.now);
         self.forced_end = ForcedEnd { order: self.forced_end.order, ..ForcedEnd::restored(true, unix_s) };
-        self.end_by_force("by command", out);
+        if is_known {
+            self.end_by_force("by command", out);
+        } else {
+            // the order may be heard though nothing comes back; what comes of it is seen when that is heard
+            self.order_end(out);
+            out.push(Output::Save);
+        }
         Ok(())
+    }
+
+    /// Nothing was heard of it yet, or an earlier gateway has left it in flight and nothing says that it is over.
+    fn may_fly_unheard(&self) -> bool {
+        let is_unheard = self.telemetry.last_received.is_none() || self.adopting.is_some();
+        self.state == GatewayState::Off && is_unheard
     }
 
     fn end_by_force(&mut self, cause: &str, out: &mut Vec<Output>) {
         self.control.set_intent(Intent::Nothing, self.telemetry.mode);
-        if self.forced_end.order.is_none() {
-            self.order_end(out);
-        }
+        self.order_end(out);
         self.change(Trigger::Terminated, cause, out);
         out.push(Output::Save);
     }
@@ -77,7 +81,8 @@ impl Gateway {
         if !self.forced_end.is_wanted || !is_known {
             return;
         }
-        let is_over = self.was_another_flight(now);
+        // what was ended by this gateway is ended until it is on the ground, however long it flies on
+        let is_over = self.state != GatewayState::Terminate && self.was_another_flight(now);
         if self.telemetry.stands_disarmed(now) || is_over {
             self.forced_end = ForcedEnd::default();
             self.adopting.take_if(|_| is_over);
@@ -85,7 +90,7 @@ impl Gateway {
         } else if self.state != GatewayState::Terminate {
             let may_fly = self.telemetry.armed || self.telemetry.flies_disarmed(now);
             if may_fly && self.knows_when(now) {
-                self.end_by_force("by command, before the gateway started anew", out);
+                self.end_by_force("by command, before it was heard", out);
             }
         } else if self.telemetry.armed && self.forced_end.is_due(now) {
             self.order_end(out);
@@ -93,6 +98,9 @@ impl Gateway {
     }
 
     fn order_end(&mut self, out: &mut Vec<Output>) {
+        if self.forced_end.order.is_some() {
+            return;
+        }
         self.forced_end.order = Some(self.order(Order::Terminate, out));
     }
 

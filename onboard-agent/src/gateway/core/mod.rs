@@ -193,7 +193,7 @@ impl Gateway {
             Report::Course(course) => self.set_course(course),
             Report::Done(id) => {
                 self.control.done(id);
-                self.forced_end.answered(now, id, true);
+                self.forced_end.answered(now, id);
             }
             Report::PutOff(id, why) => self.put_off(now, id, why, out),
             Report::Failed(id, why) => self.failed(now, id, why, out),
@@ -225,7 +225,7 @@ impl Gateway {
     }
 
     fn failed(&mut self, now: Time, id: OrderId, why: String, out: &mut Vec<Output>) {
-        self.forced_end.answered(now, id, false);
+        self.forced_end.answered(now, id);
         self.not_armed(now, id, &why, false, out);
     }
 
@@ -239,7 +239,7 @@ impl Gateway {
             off_altitude: self.is_off_altitude(now),
             stands_still: self.stands_still(now),
             disarmed: is_flying(self.state) && self.telemetry.flies_disarmed(now),
-            flies_on: self.telemetry.armed && self.forced_end.has_failed(),
+            flies_on: self.telemetry.armed && self.state == GatewayState::Terminate,
             list_replaced: self.list_lost && self.state != GatewayState::Manual,
             not_in_command: self.state == GatewayState::Manual,
             no_safe_runway: self.control.intent == Intent::Return,

@@ -232,7 +232,8 @@ const WORDS: [Words; WATCHES.len()] = [
         source: "autopilot",
         advice: "The flight was ended by force, and the autopilot has not done it: the engine may run. It is told again each second, as soon as it is heard. Keep everybody away; end it by hand if you can.",
         cause: None,
-        patience: Duration::from_secs(0),
+        // as long as it takes to tell it, and to see that it is done
+        patience: Duration::from_secs(3),
     },
     Words {
         watch: Watch::ListReplaced,

@@ -13,14 +13,16 @@ fn orders_to_end(core: &Core) -> Vec<OrderId> {
 }
 
 #[test]
-fn it_is_ordered_again_as_long_as_it_is_armed_and_told_from_the_first_failure_on() {
+fn it_is_ordered_again_as_long_as_it_is_armed_and_that_is_told() {
     let mut core = ended();
-    core.run(5, &flying(25.0, 25.0));
+    core.run(2, &flying(25.0, 25.0));
     let ids = orders_to_end(&core);
     assert!(ids.len() == 1 && !core.raised("not-terminated"), "one at a time: {ids:?}");
-    core.step(Input::Report(Report::Failed(ids[0], "no answer".into())));
     core.run(2, &flying(25.0, 25.0));
-    assert!(orders_to_end(&core).len() == 2 && core.raised("not-terminated"));
+    assert!(orders_to_end(&core).len() == 1 && core.raised("not-terminated"), "answered or not");
+    core.step(Input::Report(Report::Done(ids[0])));
+    core.run(2, &flying(25.0, 25.0));
+    assert!(orders_to_end(&core).len() == 2 && core.raised("not-terminated"), "it is armed all the same");
     core.done();
     let mut disarmed = flying(25.0, 25.0);
     disarmed[0] = beat(Mode::Waypoints, false);
@@ -54,4 +56,36 @@ fn what_was_ended_before_a_restart_waits_for_the_time_of_day_and_no_longer() {
     assert!(orders_to_end(&core).is_empty());
     core.run(2, &flying(25.0, 25.0));
     assert_eq!(orders_to_end(&core).len(), 1);
+}
+
+/// Its autopilot says what time it is, and that an hour has passed: an earlier gateway's end would be over.
+#[test]
+fn what_flies_on_for_an_hour_is_ended_all_the_same() {
+    let time = |unix_s| Report::Gps(Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: Some(unix_s) });
+    let mut core = Core::in_nav();
+    core.run(1, &[time(1_800_000_000)]);
+    core.step(Input::Request(4, GatewayRequest::Terminate { confirm: "test".into() }));
+    core.run(5, &[&flying(25.0, 25.0)[..], &[time(1_800_004_000)]].concat());
+    assert!(core.raised("not-terminated") && core.gateway.snapshot().terminated);
+}
+
+#[test]
+fn what_is_not_heard_is_ended_by_force_if_it_may_fly_and_when_it_is_heard() {
+    let end = || Input::Request(4, GatewayRequest::Terminate { confirm: "test".into() });
+    let mut core = Core::new();
+    assert_eq!(core.answer(end()), Answer::Request(Ok(())));
+    assert_eq!(
+        (core.gateway.state(), orders_to_end(&core).len()),
+        (GatewayState::Off, 1),
+        "it may hear that"
+    );
+    core.done();
+    core.run(15, &flying(25.0, 25.0));
+    assert_eq!((core.gateway.state(), orders_to_end(&core).len()), (GatewayState::Terminate, 1));
+
+    let mut stands = Core::in_stop_with_a_plan();
+    assert!(matches!(stands.answer(end()), Answer::Request(Err(why)) if why.contains("no flight")));
+    stands.run(15, &[]);
+    assert_eq!(stands.gateway.state(), GatewayState::Off);
+    assert!(matches!(stands.answer(end()), Answer::Request(Err(_))), "it stood when it was heard last");
 }
