@@ -7,7 +7,7 @@ use super::launch::LAUNCHES_WITHIN;
 use super::states::{Trigger, is_flying};
 use crate::gateway::order::{Mode, Order, OrderId, Time};
 use std::time::Duration;
-use usal::contract::{GatewayState, Token};
+use usal::contract::GatewayState;
 
 /// What an aircraft has aboard that was met in flight is read within this, or it is in somebody else's hands.
 const READ_WITHIN: Duration = Duration::from_secs(60);
@@ -33,6 +33,7 @@ impl Gateway {
         }
         let is_unread = now.saturating_sub(*self.control.met_at.get_or_insert(now)) >= READ_WITHIN;
         match (self.state, self.telemetry.mode) {
+            (Off | Stop, Some(_)) if self.returns_as_left() => self.take_up_return(out),
             (Off | Stop, Some(_)) if is_unread => {
                 self.change(Trigger::PilotTook, "met in flight, and what it has aboard can't be read", out);
             }
@@ -115,17 +116,14 @@ impl Gateway {
         let known = self.adopting.take();
         let given_back = |intent: &Intent| *intent == Intent::Nothing && self.flies_waypoints();
         let intent = known.as_ref().map(|k| k.intent).filter(|i| !given_back(i)).unwrap_or(Intent::Fly);
-        self.fp_manager.plan = known.as_ref().and_then(|k| k.plan.clone()).or(self.fp_manager.plan.take());
+        self.knows_plan(known.as_ref());
         if let Some(count) = aboard {
             waypoints.truncate(count);
             self.buffer.adopt(waypoints);
             let wanted = self.still_wanted(intent, known.as_ref());
-            if let Some(engine) = known.as_ref().and_then(|k| k.engine.as_deref()) {
-                let mut events = vec![];
-                self.alarms.take_up(engine, &mut events);
-                out.extend(events.into_iter().map(Output::Event));
+            if let Some(known) = &known {
+                self.take_up(known, out);
             }
-            self.highest = self.highest.max(known.map_or(Token(0), |k| k.highest));
             self.control.set_intent(wanted, self.telemetry.mode);
             self.is_met(wanted, out);
             out.push(Output::Save);
@@ -135,6 +133,40 @@ impl Gateway {
         } else if !is_flying(self.state) {
             self.change(Trigger::PilotTook, NOT_OURS, out);
         }
+    }
+
+    /// What does not belong to a list is known again.
+    fn take_up(&mut self, known: &Snapshot, out: &mut Vec<Output>) {
+        if let Some(engine) = &known.engine {
+            let mut events = vec![];
+            self.alarms.take_up(engine, &mut events);
+            out.extend(events.into_iter().map(Output::Event));
+        }
+        self.highest = self.highest.max(known.highest);
+    }
+
+    fn knows_plan(&mut self, known: Option<&Snapshot>) {
+        self.fp_manager.plan = known.and_then(|k| k.plan.clone()).or(self.fp_manager.plan.take());
+    }
+
+    /// An earlier gateway sent it home by its own means: it does so, or was not seen to yet. Nothing aboard says that.
+    fn returns_as_left(&self) -> bool {
+        let t = &self.telemetry;
+        let is_as_left = |k: &Snapshot| {
+            let is_told = t.mode == Some(Mode::Return) || k.mode.as_deref() == Some(&*t.mode_name);
+            k.intent == Intent::Return && is_told
+        };
+        self.adopting.as_ref().is_some_and(is_as_left)
+    }
+
+    /// It stays ours, in Safe mode: a way to a runway is looked for from there.
+    fn take_up_return(&mut self, out: &mut Vec<Output>) {
+        let Some(known) = self.adopting.take() else { return };
+        self.knows_plan(Some(&known));
+        self.take_up(&known, out);
+        self.control.set_intent(Intent::Return, self.telemetry.mode);
+        self.change(Trigger::ReturnMet, "met on its way home by its own means, as it was left", out);
+        out.push(Output::Save);
     }
 
     /// What is wanted may never be confirmed: until then the state is what it is seen to do.

@@ -41,13 +41,20 @@ impl Gateway {
         } else if self.control.ordered == Some(mode) {
             // an order of ours that has been overtaken: what is wanted is ordered again
             self.control.overtaken(mode);
+            self.note_disobedience(now);
         } else if self.control.confirmed || Some(mode) != self.control.mode_before {
             let cause = self.who_switched(now, wanted);
             self.control.set_intent(Intent::Nothing, Some(mode));
             self.control.taken = Some((now, wanted));
             self.change(Trigger::PilotTook, &cause, out);
             out.push(Output::Save);
-        } else if is_flying(self.state) {
+        } else {
+            self.note_disobedience(now);
+        }
+    }
+
+    fn note_disobedience(&mut self, now: Time) {
+        if is_flying(self.state) {
             self.control.disobeys_since.get_or_insert(now);
         }
     }

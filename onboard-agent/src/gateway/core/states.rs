@@ -29,6 +29,8 @@ pub enum Trigger {
     SafeNeeded,
     /// Safe.Hold has lasted T2, or the engine has failed.
     ReturnDue,
+    /// It returns by its own means, as an earlier gateway told it.
+    ReturnMet,
     /// The FP Manager is back and has waypoints aboard.
     Recovered,
     /// The FP Manager is back and has to send waypoints first.
@@ -39,7 +41,7 @@ pub enum Trigger {
 
 /// All triggers, for exhaustive tests.
 #[cfg(test)]
-pub const TRIGGERS: [Trigger; 15] = [
+pub const TRIGGERS: [Trigger; 16] = [
     Trigger::Heartbeat,
     Trigger::Lost,
     Trigger::Departing,
@@ -52,6 +54,7 @@ pub const TRIGGERS: [Trigger; 15] = [
     Trigger::PilotTook,
     Trigger::SafeNeeded,
     Trigger::ReturnDue,
+    Trigger::ReturnMet,
     Trigger::Recovered,
     Trigger::RecoveredDry,
     Trigger::Terminated,
@@ -96,6 +99,7 @@ pub fn next(from: GatewayState, trigger: Trigger) -> Option<GatewayState> {
         (Off | Stop, HoldConfirmed) => Hold,
         (Off | Stop, DirectConfirmed) => Directed,
         (Off | Stop, PilotTook) => Manual,
+        (Off | Stop, ReturnMet) => SafeReturn,
         (Off | Stop, _) => return None,
 
         // the end of the flight; the human pilot; both from anywhere in the air
@@ -142,20 +146,20 @@ mod tests {
     /// One line per state: the triggers that mean something and where they lead, in the order of
     /// [`TRIGGERS`]; `.` is nothing.
     const TABLE: &str = "
-    Off          Stop . TakeOff Nav Approach Land . Hold Directed Manual . . . . Terminate
-    Stop         . Off TakeOff Nav Approach Land . Hold Directed Manual . . . . Terminate
-    TakeOff      . . . Nav Approach Land Stop Hold Directed Manual SafeHold . . . Terminate
-    Nav          . . . . Approach Land Stop Hold Directed Manual SafeHold . . . Terminate
-    Hold         . . TakeOff Nav Approach Land Stop . Directed Manual SafeHold . . . Terminate
-    Directed     . . TakeOff Nav Approach Land Stop Hold . Manual SafeHold . . . Terminate
-    Manual       . . TakeOff Nav Approach Land Stop Hold . . . . . . Terminate
-    Approach     . . . Nav . Land Stop Hold Directed Manual SafeHold . . . Terminate
-    Land         . . . Nav Approach . Stop Hold Directed Manual . . . . Terminate
-    SafeHold     . . . . . . Stop . . Manual . SafeReturn Nav Hold Terminate
-    SafeReturn   . . . . SafeApproach SafeLand Stop . . Manual . . . Hold Terminate
-    SafeApproach . . . . . SafeLand Stop . . Manual . . . . Terminate
-    SafeLand     . . . . . . Stop . . Manual . . . . Terminate
-    Terminate    . . . . . . . . . . . . . . .
+    Off          Stop . TakeOff Nav Approach Land . Hold Directed Manual . . SafeReturn . . Terminate
+    Stop         . Off TakeOff Nav Approach Land . Hold Directed Manual . . SafeReturn . . Terminate
+    TakeOff      . . . Nav Approach Land Stop Hold Directed Manual SafeHold . . . . Terminate
+    Nav          . . . . Approach Land Stop Hold Directed Manual SafeHold . . . . Terminate
+    Hold         . . TakeOff Nav Approach Land Stop . Directed Manual SafeHold . . . . Terminate
+    Directed     . . TakeOff Nav Approach Land Stop Hold . Manual SafeHold . . . . Terminate
+    Manual       . . TakeOff Nav Approach Land Stop Hold . . . . . . . Terminate
+    Approach     . . . Nav . Land Stop Hold Directed Manual SafeHold . . . . Terminate
+    Land         . . . Nav Approach . Stop Hold Directed Manual . . . . . Terminate
+    SafeHold     . . . . . . Stop . . Manual . SafeReturn . Nav Hold Terminate
+    SafeReturn   . . . . SafeApproach SafeLand Stop . . Manual . . . . Hold Terminate
+    SafeApproach . . . . . SafeLand Stop . . Manual . . . . . Terminate
+    SafeLand     . . . . . . Stop . . Manual . . . . . Terminate
+    Terminate    . . . . . . . . . . . . . . . .
     ";
 
     #[test]
@@ -193,6 +197,7 @@ mod tests {
                 "FP Manager silent (T1), waypoints run dry, its waypoints do not come (T2), or by command"
             }
             Trigger::ReturnDue => "Safe.Hold has lasted T2, or the engine has failed",
+            Trigger::ReturnMet => "it is met on its way home by its own means, as an earlier gateway told it",
             Trigger::Recovered => "the FP Manager is back and has waypoints aboard",
             Trigger::RecoveredDry => "the FP Manager is back and has to send waypoints first",
             Trigger::Terminated => {

@@ -185,3 +185,71 @@ fn a_gateway_that_starts_anew_in_a_glide_knows_that_the_engine_is_out() {
     core.run(2, &with_engine(Mode::Waypoints, 5000.0));
     assert!(!core.raised("engine-out"), "it runs");
 }
+
+/// In its own circles behind the end of nothing, and told of nothing.
+#[test]
+fn a_way_home_whose_list_is_gone_is_circled_and_told() {
+    let mut core = Core::in_nav();
+    core.step(Input::Request(4, GatewayRequest::SetRunways { runways: vec![near()] }));
+    core.step(Input::Request(5, GatewayRequest::Safe));
+    core.run(1, &with_engine(Mode::Hold, 5000.0));
+    core.done();
+    core.run(core.gateway.safe.t2_s as u64 + 1, &with_engine(Mode::Hold, 5000.0));
+    core.step(Input::Report(Report::Course(course(true))));
+    core.run(1, &with_engine(Mode::Waypoints, 5000.0));
+    core.done();
+    assert_eq!(core.gateway.state(), GatewayState::SafeReturn);
+    core.step(Input::Report(Report::Course(Course { aboard: false, ready: false, target: Target::None })));
+    core.run(3, &with_engine(Mode::Waypoints, 5000.0));
+    assert!(
+        core.was_ordered(&Order::Steer(crate::gateway::order::Aim::Hold)),
+        "rather than what is not ours"
+    );
+    core.run(1, &with_engine(Mode::Hold, 5000.0));
+    core.done();
+    core.run(10, &with_engine(Mode::Hold, 5000.0));
+    assert_eq!(core.gateway.state(), GatewayState::SafeReturn);
+    assert!(core.raised("autopilot-disobeys"), "{:?}", core.gateway.alarms.raised());
+}
+
+/// A gateway that starts anew while the one before it had sent the aircraft home by its own means, and what it shows then.
+fn met_returning(mode: Mode, runways: Vec<SafeRunway>) -> Core {
+    let known = returns_blind(runways).gateway.snapshot();
+    assert_eq!(known.intent, Intent::Return);
+    let mut core = Core::started_anew(Some(known));
+    core.run(1, &without_position(mode, 5000.0));
+    core
+}
+
+#[test]
+fn a_return_by_its_own_means_that_an_earlier_gateway_told_it_is_ours() {
+    // the second is shown until it does what it was told last
+    for mode in [Mode::Return, Mode::Hold] {
+        let mut core = met_returning(mode, vec![]);
+        assert_eq!(core.gateway.state(), GatewayState::SafeReturn, "{mode:?}: {}", cause(&core));
+        assert!(core.raised("no-safe-runway") && !core.raised("not-in-command"), "{mode:?}");
+        assert_eq!(core.was_ordered(&Order::Steer(crate::gateway::order::Aim::Return)), mode == Mode::Hold);
+        let stranger = Join { plan: Some("another".into()), earlier: vec![], last_token: Token(99) };
+        let Answer::Join(answer) = core.answer(Input::Join(7, stranger, fp_manager())) else { panic!() };
+        assert!(!answer.accepted && answer.reason.contains("plan of this flight"), "{}", answer.reason);
+        core.run(1, &without_position(Mode::Other(5), 5000.0));
+        assert_eq!(core.gateway.state(), GatewayState::Manual, "a pilot takes it as ever");
+    }
+}
+
+#[test]
+fn from_a_return_that_was_met_a_runway_is_looked_for() {
+    let mut core = met_returning(Mode::Return, vec![near()]);
+    core.run(1, &high(Mode::Return, 5000.0));
+    assert!(cause(&core).starts_with("returning to runway"), "{}", cause(&core));
+}
+
+/// Somebody has sent it home, and not the gateway.
+#[test]
+fn a_return_that_nobody_remembers_is_somebody_elses() {
+    for known in [None, Some(Core::in_nav().gateway.snapshot())] {
+        let mut core = Core::started_anew(known);
+        core.run(1, &with_engine(Mode::Return, 5000.0));
+        assert_eq!(core.gateway.state(), GatewayState::Manual);
+    }
+}
