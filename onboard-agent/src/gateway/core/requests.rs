@@ -110,6 +110,8 @@ impl Gateway {
         if !self.fp_manager.waits_to_join(now, &self.safe) || !self.telemetry.is_airborne() {
             return Err(NO_WAYPOINTS.into());
         }
+        // what an earlier gateway knew of it is not flown any more
+        self.adopting = None;
         self.control.set_intent(Intent::Hold, self.telemetry.mode);
         self.fp_manager.expect(now);
         self.fp_manager.awaited_since = Some(now);

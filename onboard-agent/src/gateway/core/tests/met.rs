@@ -113,3 +113,20 @@ fn what_is_remembered_of_a_flight_is_kept_until_it_is_known_what_became_of_it() 
     assert_eq!((kept.highest, kept.mode), (known.highest, known.mode));
     assert_eq!((kept.safe, kept.engine.as_deref()), (safe, Some("engine-out")));
 }
+
+/// Had back from the pilot, it flies what the FP Manager sends: a third gateway would take up what the first one flew.
+#[test]
+fn what_an_earlier_gateway_knew_is_forgotten_when_the_aircraft_is_had_back_without_it() {
+    let mut core = Core::started_anew(Some(Core::in_nav().gateway.snapshot()));
+    let mut by_pilot = flying(25.0, 25.0);
+    by_pilot[0] = beat(Mode::Other(5), true);
+    core.run(3, &by_pilot);
+    assert!(core.gateway.state() == GatewayState::Manual && !core.join().accepted);
+    assert_eq!(core.answer(Input::Request(4, GatewayRequest::Resume)), Answer::Request(Ok(())));
+    let mut holds = flying(25.0, 25.0);
+    holds[0] = beat(Mode::Hold, true);
+    core.run(1, &holds);
+    let known = core.gateway.snapshot();
+    assert_eq!((core.gateway.state(), known.intent), (GatewayState::Hold, Intent::Hold));
+    assert!(known.waypoints.is_empty());
+}
