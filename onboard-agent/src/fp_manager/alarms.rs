@@ -24,8 +24,8 @@ pub struct Alarms {
     unread: bool,
     /// The engine gives no power, or seems to, whoever answered that.
     engine_out: bool,
-    /// The one for which Safe mode is wanted of the gateway, and not granted yet.
-    asks_for_safe: Option<String>,
+    /// Those for which Safe mode is wanted of the gateway, and not granted yet.
+    ask_for_safe: BTreeSet<String>,
 }
 
 /// An alarm that asks for an emergency plan.
@@ -41,7 +41,7 @@ impl Alarms {
     /// With what an earlier FP Manager of this flight answered.
     pub fn restored(answered: BTreeSet<String>) -> Self {
         let engine_out = ENGINE_OUT.iter().any(|id| answered.contains(*id));
-        Self { answered, unread: false, engine_out, asks_for_safe: None }
+        Self { answered, unread: false, engine_out, ask_for_safe: BTreeSet::new() }
     }
 
     /// Identifiers of what was answered, to be kept for a restart.
@@ -73,22 +73,24 @@ impl Alarms {
 
     /// Safe mode is wanted for it.
     pub fn asks_for_safe(&mut self, call: &Call) {
-        self.asks_for_safe = Some(call.id.clone());
+        self.ask_for_safe.insert(call.id.clone());
     }
 
     /// Safe mode was granted, or is wanted for a reason that does not go away with an alarm.
     pub fn safe_is_settled(&mut self) {
-        self.asks_for_safe = None;
+        self.ask_for_safe.clear();
     }
 
-    /// Whether Safe mode was wanted for an alarm that is not among those raised now, or from a pilot who has the aircraft by now. It asks
-    /// again, if it is still raised when he gives that back.
+    /// Whether Safe mode was wanted only for alarms that are not among those raised now, or from a pilot who has the aircraft by now. They
+    /// ask again, if they are still raised when he gives that back.
     pub fn no_longer_ask_for_safe(&mut self, alarms: &[Alarm], is_pilots: bool) -> bool {
         let is_raised = |id: &str| alarms.iter().any(|alarm| alarm.id == id);
-        let Some(id) = self.asks_for_safe.take_if(|id| is_pilots || !is_raised(id)) else { return false };
-        self.answered.remove(&id);
-        self.unread = true;
-        true
+        let over: Vec<String> = self.ask_for_safe.extract_if(.., |id| is_pilots || !is_raised(id)).collect();
+        for id in &over {
+            self.answered.remove(id);
+            self.unread = true;
+        }
+        !over.is_empty() && self.ask_for_safe.is_empty()
     }
 
     /// An alarm went away.
@@ -168,6 +170,42 @@ mod tests {
         for (alarm, cause) in cases {
             assert_eq!(call(&alarm).map(|call| call.cause), cause, "{alarm:?}");
         }
+    }
+
+    /// Asks for Safe mode for each of a list.
+    fn asking_for_safe(list: &[Alarm]) -> Alarms {
+        let mut alarms = Alarms::default();
+        for call in list.iter().filter_map(call) {
+            alarms.asks_for_safe(&call);
+            alarms.answer(call);
+        }
+        alarms
+    }
+
+    /// The voltage sags at full throttle, and the position is still not known when it is back.
+    #[test]
+    fn safe_mode_is_wanted_until_the_last_alarm_that_asks_for_it_is_over() {
+        let list = [warning("gps-lost", Cause::Gps), warning("energy-low", Cause::Energy)];
+        for (first, second) in [(0, 1), (1, 0)] {
+            let mut alarms = asking_for_safe(&list);
+            assert!(!alarms.no_longer_ask_for_safe(&list, false));
+            assert!(!alarms.no_longer_ask_for_safe(&list[first..=first], false), "the other one is raised");
+            assert_eq!(
+                answered(&mut alarms, &list),
+                [[Cause::Gps, Cause::Energy][second]],
+                "it is over and comes anew"
+            );
+            assert!(alarms.no_longer_ask_for_safe(&[], false));
+            assert!(!alarms.no_longer_ask_for_safe(&[], false), "once");
+        }
+    }
+
+    #[test]
+    fn whatever_asked_before_a_pilot_took_the_aircraft_asks_again_behind_him() {
+        let list = [warning("gps-lost", Cause::Gps), warning("energy-low", Cause::Energy)];
+        let mut alarms = asking_for_safe(&list);
+        assert!(alarms.no_longer_ask_for_safe(&list, true));
+        assert_eq!(answered(&mut alarms, &list).len(), 2);
     }
 
     /// Reads a list and answers what it asks for.
