@@ -31,7 +31,15 @@ pub trait Terrain: Send + Sync {
     fn at_most_m(&self, _south_west: LatLon, _north_east: LatLon) -> Option<f64> {
         None
     }
+
+    /// How far apart the elevations around a place are known, metres; `None`: that is not said.
+    fn spacing_m(&self, _at: LatLon) -> Option<f64> {
+        None
+    }
 }
+
+/// A degree along a meridian, metres, as good as a spacing of elevations has to be.
+pub(crate) const METRES_PER_DEGREE: f64 = 111_000.0;
 
 /// The same elevation everywhere (tests, and flights without terrain data).
 #[derive(Debug, Clone, Copy)]

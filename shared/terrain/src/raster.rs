@@ -1,8 +1,8 @@
 //! Elevations on a grid in any projection that is understood: what a GeoTIFF becomes.
 
-use crate::Terrain;
 use crate::grid::Grid;
 use crate::projection::Projection;
+use crate::{METRES_PER_DEGREE, Terrain};
 use geometry::LatLon;
 
 /// A box of positions that is wider, degrees, is answered with the highest elevation of all.
@@ -77,6 +77,16 @@ impl Terrain for Raster {
     fn elevation_m(&self, p: LatLon) -> Option<f64> {
         let (column, row) = self.cell(self.projection.forward(p)?);
         self.grid.at(column, row)
+    }
+
+    fn spacing_m(&self, at: LatLon) -> Option<f64> {
+        self.elevation_m(at)?;
+        let unit_m = match self.projection {
+            Projection::Geographic => METRES_PER_DEGREE,
+            Projection::WebMercator => at.lat_deg.to_radians().cos(),
+            Projection::Transverse(_) => 1.0,
+        };
+        Some(self.step.0.min(self.step.1) * unit_m)
     }
 
     fn at_most_m(&self, south_west: LatLon, north_east: LatLon) -> Option<f64> {

@@ -13,6 +13,10 @@ impl Terrain for Stack {
         self.0.iter().find_map(|terrain| terrain.elevation_m(p))
     }
 
+    fn spacing_m(&self, at: LatLon) -> Option<f64> {
+        self.0.iter().filter_map(|terrain| terrain.spacing_m(at)).reduce(f64::min)
+    }
+
     fn at_most_m(&self, south_west: LatLon, north_east: LatLon) -> Option<f64> {
         // any of them may answer for a part of the box
         self.0.iter().try_fold(f64::NEG_INFINITY, |highest, terrain| {

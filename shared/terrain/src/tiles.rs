@@ -1,6 +1,6 @@
 //! Several tiles as one terrain.
 
-use crate::{Terrain, Tile, TileError};
+use crate::{METRES_PER_DEGREE, Terrain, Tile, TileError};
 use geometry::LatLon;
 use std::collections::BTreeMap;
 
@@ -58,6 +58,11 @@ impl Terrain for Tiles {
             .find_map(|corner| self.by_corner.get(&corner)?.elevation_m(p))
     }
 
+    fn spacing_m(&self, at: LatLon) -> Option<f64> {
+        let corner = (at.lat_deg.floor() as i32, at.lon_deg.floor() as i32);
+        Some(self.by_corner.get(&corner)?.spacing_deg() * METRES_PER_DEGREE)
+    }
+
     fn at_most_m(&self, south_west: LatLon, north_east: LatLon) -> Option<f64> {
         if !south_west.is_valid() || !north_east.is_valid() {
             return None;
@@ -83,6 +88,9 @@ mod tests {
         let (a, b) = (hgt(|_, _| 100), hgt(|_, _| 200));
         let tiles = Tiles::from_hgt_files([("N36W085.hgt", &a[..]), ("N37W085.hgt", &b[..])]).unwrap();
         assert_eq!(tiles.iter().count(), 2);
+        let spacing_m = tiles.spacing_m(LatLon::new(36.5, -84.5)).unwrap();
+        assert!((spacing_m - 92.5).abs() < 0.1, "{spacing_m}");
+        assert_eq!(tiles.spacing_m(LatLon::new(40.0, -84.5)), None);
         for (lat, lon, expected) in [
             (36.5, -84.5, Some(100.0)),
             (37.5, -84.5, Some(200.0)),

@@ -2,7 +2,8 @@
 //!
 //! The autopilot flies straight from altitude to altitude.
 
-use super::{Situation, along};
+use super::Situation;
+use super::ground::along_high;
 use aircraft::glide::Circle;
 use geometry::LatLon;
 use geometry::near::distance_m;
@@ -78,7 +79,7 @@ fn possible_m(s: &Situation, has_m: f64, asked_m: f64, place: LatLon) -> f64 {
 }
 
 /// It stays above all ground that is known until the last gate, by the altitudes that it is told: by so much as is asked for at one of
-/// them, metres, and possible there.
+/// them, metres (no less at a higher one), and possible there.
 pub(super) fn is_over_ground(gates: &[Gate], s: &Situation, asked_m: impl Fn(f64) -> f64) -> bool {
     let Some(terrain) = s.terrain else { return true };
     // it is there, whatever the elevation model says
@@ -87,8 +88,14 @@ pub(super) fn is_over_ground(gates: &[Gate], s: &Situation, asked_m: impl Fn(f64
     gates.iter().all(|gate| {
         let ((start, start_m), end_m) = (from, gate.altitude_amsl_m);
         from = (gate.position, end_m);
-        along(start, gate.position).all(|(share, place)| {
-            let height_m = start_m + share * (end_m - start_m);
+        let height_m = |share: f64| start_m + share * (end_m - start_m);
+        let most_asked_m = asked_m(start_m.max(end_m));
+        let is_low = |most_m: f64, shares: [f64; 2]| {
+            let [begins_m, ends_m] = shares.map(height_m);
+            begins_m.min(ends_m) > most_m + most_asked_m
+        };
+        along_high(terrain, start, gate.position, is_low).all(|(share, place)| {
+            let height_m = height_m(share);
             let clear_m = || possible_m(s, has_m, asked_m(height_m), place);
             terrain.elevation_m(place).is_none_or(|ground_m| height_m > ground_m + clear_m())
         })

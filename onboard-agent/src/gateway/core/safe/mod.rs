@@ -2,6 +2,7 @@
 
 mod gates;
 mod gliding;
+mod ground;
 #[cfg(test)]
 mod limits_tests;
 mod powered;
@@ -16,12 +17,8 @@ use terrain::Terrain;
 use usal::contract::{Air, SafeRunway};
 pub use way::path;
 
-/// Spacing at which the ground on the way is sampled, metres.
-const GROUND_STEP_M: f64 = 200.0;
 /// No runway is longer, metres.
 const LONGEST_RUNWAY_M: f64 = 20_000.0;
-/// Most samples of the ground on one way.
-const MAX_SAMPLES: f64 = 1000.0;
 
 /// Where the aircraft is, for the choice.
 pub struct Situation<'a> {
@@ -91,16 +88,6 @@ pub fn is_usable(runway: &SafeRunway, profile: &Profile) -> bool {
         && (profile.min_runway_m..=LONGEST_RUNWAY_M).contains(&runway.length_m)
         && ALTITUDES_M.contains(&runway.elevation_amsl_m)
         && runway.elevation_amsl_m < profile.ceiling_amsl_m
-}
-
-/// Places along the straight way between two, both included, each with its share of the way.
-fn along(from: LatLon, to: LatLon) -> impl Iterator<Item = (f64, LatLon)> {
-    let way = from.inverse(to);
-    let steps = (way.distance_m / GROUND_STEP_M).ceil().clamp(1.0, MAX_SAMPLES) as u32;
-    (0..=steps).map(move |i| {
-        let share = f64::from(i) / f64::from(steps);
-        (share, from.destination(way.bearing_start_deg, way.distance_m * share))
-    })
 }
 
 #[cfg(test)]

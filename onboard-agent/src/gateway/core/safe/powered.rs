@@ -6,8 +6,9 @@
 
 use super::gates::{CORNERS, Circles, Gate, is_over_ground, turned_m};
 use super::gliding::SPARE_M;
+use super::ground::along_high;
 use super::way::{INITIAL_M, gates};
-use super::{Approach, Situation, along};
+use super::{Approach, Situation};
 use aircraft::power::demanded_power_w;
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
@@ -54,7 +55,7 @@ type InCircles = Option<bool>;
 /// `None`: the ground on the way is too high, or the wind too strong.
 pub(super) fn powered(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Option<Powered> {
     let [initial, last] = gates(runway, Approach::Whole, safe);
-    let needed_m = ground_to_clear_m(s, initial.0).unwrap_or(initial.1);
+    let needed_m = ground_to_clear_m(s, initial).unwrap_or(initial.1);
     if needed_m > s.profile.ceiling_amsl_m {
         return None;
     }
@@ -159,15 +160,19 @@ fn takes(gates: &[Gate], runway: &SafeRunway, s: &Situation) -> Option<(f64, f64
     Some((time_s, energy_j))
 }
 
-/// The altitude that clears the ground between here and a place, metres AMSL; `None`: nothing is known of it.
-fn ground_to_clear_m(s: &Situation, to: LatLon) -> Option<f64> {
+/// The altitude that clears the ground between here and a place, metres AMSL; `None`: no higher one than it has here or is told there, as
+/// far as is known.
+fn ground_to_clear_m(s: &Situation, (to, to_m): (LatLon, f64)) -> Option<f64> {
     let terrain = s.terrain?;
-    let ground = along(s.position, to).filter_map(|(_, place)| terrain.elevation_m(place));
+    let has_m = s.altitude_amsl_m.max(to_m);
+    let high = along_high(terrain, s.position, to, |most_m, _| most_m + CLEARANCE_M <= has_m);
+    let ground = high.filter_map(|(_, place)| terrain.elevation_m(place));
     ground.max_by(f64::total_cmp).map(|ground_m| ground_m + CLEARANCE_M)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::ground::along;
     use super::super::tests::{HOME, Wall, runway, situation};
     use super::super::{choose, path};
     use super::*;
@@ -191,7 +196,7 @@ mod tests {
         for waypoint in &way {
             let (start, start_m) =
                 std::mem::replace(&mut from, (waypoint.position, waypoint.altitude_amsl_m));
-            for (share, place) in along(start, waypoint.position) {
+            for (share, place) in along(&wall, start, waypoint.position) {
                 let told_m = start_m + share * (waypoint.altitude_amsl_m - start_m);
                 if terrain::Terrain::elevation_m(&wall, place) == Some(700.0) {
                     least_m = least_m.min(told_m - 700.0);
@@ -209,6 +214,36 @@ mod tests {
         {
             let over_m = over_the_ridge_m(threshold_km, ridge_km, altitude_amsl_m);
             assert!((99.0..1000.0).contains(&over_m), "{threshold_km} km, {ridge_km} km: {over_m} m");
+        }
+    }
+
+    /// A ridge of 500 m that is as narrow as its elevations are close together.
+    struct NarrowRidge(f64);
+
+    impl terrain::Terrain for NarrowRidge {
+        fn elevation_m(&self, at: LatLon) -> Option<f64> {
+            let off_m = 111_000.0 * (at.lat_deg - self.0).abs();
+            Some(300.0 + 200.0 * (1.0 - off_m / 30.0).max(0.0))
+        }
+
+        fn spacing_m(&self, _: LatLon) -> Option<f64> {
+            Some(30.0)
+        }
+    }
+
+    #[test]
+    fn no_ridge_is_missed_between_two_places_that_are_looked_at() {
+        let profile = Profile::default();
+        for ridge_m in (0..20).map(|i| 4000.0 + 37.0 * f64::from(i)) {
+            let ground = NarrowRidge(HOME.lat_deg + ridge_m / 111_000.0);
+            let s = Situation { altitude_amsl_m: 430.0, terrain: Some(&ground), ..situation(&profile) };
+            let it = runway("behind", 0.0, 12.0, 0.0, 1);
+            let way = powered(&it, &SafeParameters::default(), &s).unwrap_or_else(|| panic!("{ridge_m}"));
+            let over = told(&way, &s)
+                .into_iter()
+                .filter(|(place, _)| 111_000.0 * (place.lat_deg - ground.0).abs() < 60.0);
+            let lowest_m = over.map(|(_, told_m)| told_m).fold(f64::INFINITY, f64::min);
+            assert!((545.0..900.0).contains(&lowest_m), "ridge at {ridge_m} m: {lowest_m} m");
         }
     }
 

@@ -6,9 +6,10 @@
 //! one make it worse.
 
 use super::gliding::glide_in;
+use super::ground::along;
 use super::powered::powered;
 use super::way::gates;
-use super::{Approach, Landing, Situation, along, is_usable};
+use super::{Approach, Landing, Situation, is_usable};
 use geometry::LatLon;
 use usal::contract::{SafeParameters, SafeRunway};
 
@@ -86,9 +87,10 @@ fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Optio
         ground_m.is_some_and(|m| m < reversed.elevation_amsl_m + CLEAR_SHARE * height_m + MODEL_ERROR_M)
     };
     let height_m = last.1 - reversed.elevation_amsl_m;
-    let level = along(initial.0, last.0).all(|(_, place)| is_low(place, height_m));
+    let level = along(terrain, initial.0, last.0).all(|(_, place)| is_low(place, height_m));
     let is_clear = level
-        && along(last.0, reversed.threshold).all(|(share, place)| is_low(place, height_m * (1.0 - share)));
+        && along(terrain, last.0, reversed.threshold)
+            .all(|(share, place)| is_low(place, height_m * (1.0 - share)));
     is_clear.then_some((reversed, true))
 }
 
