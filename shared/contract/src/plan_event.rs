@@ -113,6 +113,7 @@ pub enum PlanEvent {
     /// A command took effect that leads along a way of its own (a go-to, a leg skipped, a return to the main plan), and what is ahead has
     /// this problem now, which it did not have before. It is flown nevertheless unless another command comes. Told by the FP Manager.
     /// Also `glide-shortened`: with the engine out the height does not suffice for all of the emergency plan, and a part is left out.
+    /// `glide-long`: with the engine out it comes to its landing so high that it ends beyond the runway.
     ProblemAhead {
         /// The leg, if it is one's.
         leg: Option<Id>,

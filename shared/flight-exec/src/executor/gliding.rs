@@ -1,9 +1,11 @@
 //! The engine is out, and an emergency plan is flown: as much of it as the height allows. Where it does not suffice for the rest of the
-//! plan, what lies between is left out; a holding is left when the way home from there takes what is left.
+//! plan, what lies between is left out; a holding is left when the way home from there takes what is left. Where it is more than the way
+//! to the landing can lose, that is said in time.
 
 use super::Executor;
 use crate::api::{AircraftState, Event, Output};
 use crate::layout::homeward::{Arrival, Halt, halts};
+use crate::layout::touch_down::TouchDown;
 use aircraft::glide::GlideStart;
 use flight_plan::{Id, Runway};
 
@@ -31,6 +33,34 @@ impl Executor {
         if let Some(shortcut) = self.shortcut(&state) {
             self.take(shortcut, out);
         }
+        self.tell_long_landing(&state, out);
+    }
+
+    /// The way down that is laid out up to its landing ends beyond the runway, whatever is left out of it: told once, until another way is
+    /// laid out.
+    fn tell_long_landing(&mut self, state: &AircraftState, out: &mut Vec<Output>) {
+        let Some((leg, runway, end)) = self.long_landing(state) else { return };
+        if !self.flight.emergencies.first_told_long() {
+            return;
+        }
+        let TouchDown { over_m, behind_m, beyond_m } = end;
+        let reason = format!(
+            "the engine is out, and the height can't be lost on the way ahead: it comes over the threshold of `{runway}` at least \
+             {over_m:.0} m high, touches down {behind_m:.0} m behind it, and comes to rest about {beyond_m:.0} m beyond the runway's end"
+        );
+        let code = "glide-long".into();
+        out.push(Output::Event(Event::ProblemAhead { leg: Some(leg), code, reason }));
+    }
+
+    /// The landing ahead, its runway, and where it ends if that is beyond it.
+    fn long_landing(&self, state: &AircraftState) -> Option<(Id, Id, TouchDown)> {
+        let horizon = &self.flight.horizon;
+        let (landing, section) = (horizon.back()?, horizon.tail()?.section?);
+        let plan = self.setup.program.flown().emergency_plans.get(section)?;
+        let runway = self.setup.program.plan.runway(&plan.runway)?;
+        let ahead = horizon.iter().map(|issued| &issued.waypoint);
+        let end = TouchDown::of(&self.setup.profile, state, ahead, runway)?;
+        (end.beyond_m > 0.0).then(|| (landing.place.leg.clone(), runway.id.clone(), end))
     }
 
     /// Where to go at once, if the height does not suffice for all that is ahead: the first part from which it does, else the landing.

@@ -133,6 +133,7 @@ impl Executor {
             self.flight.emergencies.end();
         }
         self.flight.emergencies.is_laid_out();
+        self.flight.emergencies.another_way();
         self.flight.horizon.clear_issued();
         self.flight.questions.forget_distant();
         self.life.mode.forget_place();

@@ -13,6 +13,9 @@ pub(crate) struct Emergencies {
     /// The engine has stopped since the way ahead was laid out.
     #[serde(default)]
     engine_stopped: bool,
+    /// It was told that the way down ends beyond the runway.
+    #[serde(default)]
+    told_long: bool,
 }
 
 /// Why an emergency plan is flown, and from where.
@@ -54,6 +57,7 @@ impl Emergencies {
 
     /// True if the plan is the one that is being flown already.
     pub fn begin(&mut self, emergency: Emergency) -> bool {
+        self.told_long = false;
         let goes_on = self.plan() == Some(&emergency.plan);
         self.running = Some(emergency);
         goes_on
@@ -73,9 +77,19 @@ impl Emergencies {
         std::mem::take(&mut self.engine_stopped)
     }
 
+    /// Another way is flown: what is told of its end is told anew.
+    pub fn another_way(&mut self) {
+        self.told_long = false;
+    }
+
+    /// It is found that the way down ends beyond the runway; true: for the first time on this way.
+    pub fn first_told_long(&mut self) -> bool {
+        !std::mem::replace(&mut self.told_long, true)
+    }
+
     pub fn is_equivalent(&self, other: &Self) -> bool {
-        let Self { running, engine_stopped } = self;
-        *running == other.running && *engine_stopped == other.engine_stopped
+        let Self { running, engine_stopped, told_long } = self;
+        *running == other.running && *engine_stopped == other.engine_stopped && *told_long == other.told_long
     }
 }
 

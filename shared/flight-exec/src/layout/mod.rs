@@ -9,6 +9,7 @@ pub mod expand;
 pub(crate) mod homeward;
 pub mod path;
 pub mod stretch;
+pub(crate) mod touch_down;
 pub(crate) mod translate;
 mod way_back;
 pub mod world;

@@ -28,6 +28,15 @@ fn left_out(rig: &Rig) -> Option<&Event> {
     rig.events.iter().find(|e| matches!(e, Event::ProblemAhead { code, .. } if code == "glide-shortened"))
 }
 
+/// What is told of landings that end beyond the runway.
+fn told_long(rig: &Rig) -> Vec<String> {
+    let reason = |event: &Event| match event {
+        Event::ProblemAhead { code, reason, .. } if code == "glide-long" => Some(reason.clone()),
+        _ => None,
+    };
+    rig.events.iter().filter_map(reason).collect()
+}
+
 #[test]
 fn what_the_height_does_not_allow_is_left_out_and_said() {
     let mut rig = emergency_at(220.0, true);
@@ -180,4 +189,41 @@ fn nobody_is_told_to_land_elsewhere_who_comes_to_the_runway_straight() {
     let Event::ProblemAhead { reason, .. } = told else { panic!() };
     assert!(reason.contains("above the threshold"), "{reason}");
     assert_eq!(rig.buffer.len(), 1, "straight in: {:?}", rig.buffer);
+}
+
+/// Abeam of the threshold, so far away and so high, metres, with the landing to come: too low for the way by where the final begins.
+fn abeam_at(away_m: f64, height_m: f64) -> Rig {
+    let mut rig = emergency_at(1500.0, true);
+    rig.fly_to("b-hold");
+    rig.events.clear();
+    rig.position = HOME.destination(0.0, away_m);
+    rig.altitude_amsl_m = Some(GROUND_M + height_m);
+    rig.report();
+    rig
+}
+
+#[test]
+fn a_way_down_that_ends_beyond_the_runway_is_told_once_and_with_its_figures() {
+    let heights_m = (15..40).map(|i| 10.0 * f64::from(i));
+    let mut long = heights_m.map(|m| abeam_at(500.0, m)).filter(|rig| !told_long(rig).is_empty());
+    let mut rig = long.next().expect("between the runway and the way round there is too much height");
+    let told = told_long(&rig);
+    assert!(told.len() == 1 && told[0].contains("m beyond the runway's end"), "{told:?}");
+    rig.report();
+    assert_eq!(told_long(&rig).len(), 1, "not with each report");
+    rig.command(Command::GoTo { leg: "b-land".into() }).unwrap();
+    rig.report();
+    assert_eq!(told_long(&rig).len(), 2, "again of another way");
+}
+
+#[test]
+fn of_a_landing_that_ends_on_the_runway_nothing_is_told() {
+    for (away_m, height_m) in [(1000.0, 170.0), (600.0, 100.0)] {
+        assert_eq!(told_long(&abeam_at(away_m, height_m)), [""; 0], "{away_m} m away, {height_m} m high");
+    }
+    for height_m in (0..20).map(|i| 240.0 + 40.0 * f64::from(i)) {
+        let mut rig = before_the_threshold(height_m);
+        rig.report();
+        assert_eq!(told_long(&rig), [""; 0], "{height_m} m: it is lost in circles");
+    }
 }
