@@ -67,7 +67,7 @@ fn load(args: &Args) -> anyhow::Result<Loaded> {
 fn air(args: &Args) -> Air {
     let autopilot = match args.autopilot {
         sim::Personality::ArduPlane => Some(Autopilot::ArduPlane { wp_radius_m: None }),
-        sim::Personality::Px4 | sim::Personality::Px4Vtol => None,
+        sim::Personality::Px4 | sim::Personality::Px4Vtol => Some(Autopilot::Px4),
     };
     Air { wind: args.wind, autopilot, ..Air::default() }
 }

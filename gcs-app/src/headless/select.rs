@@ -39,7 +39,7 @@ pub struct Selection {
     /// is written then.
     #[arg(long)]
     pub leave_out_legs: bool,
-    /// Fly as this autopilot does: arduplane, or with its WP_RADIUS in metres arduplane,50. It has its own corners, and indicated
+    /// Fly as this autopilot does: px4, arduplane, or with its WP_RADIUS in metres arduplane,50. It has its own corners, and indicated
     /// airspeeds; without this option the plan is flown close to its lines at true airspeeds, as by the review in any case.
     #[arg(long, value_name = "AUTOPILOT")]
     pub autopilot: Option<Autopilot>,

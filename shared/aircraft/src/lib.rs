@@ -40,7 +40,7 @@ pub mod profile;
 pub mod strip;
 pub mod wind;
 
-pub use autopilot::{Action, Autopilot, Guidance, Guided, Habits, Target};
+pub use autopilot::{Action, Autopilot, Corners, Guidance, Guided, Habits, Target, wp_radius_m};
 pub use dynamics::{Aircraft, Demand, State};
 pub use power::{Battery, Engine};
 pub use profile::{DESIGN_WIND_MPS, Profile, ProfileError};

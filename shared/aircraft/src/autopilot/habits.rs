@@ -16,31 +16,58 @@ pub enum Autopilot {
         /// Its parameter WP_RADIUS, metres; `None`: the aircraft's turn radius at cruise speed.
         wp_radius_m: Option<f64>,
     },
+    /// PX4 with a fixed wing.
+    Px4,
 }
 
 impl Autopilot {
     /// How it flies an aircraft.
     pub fn habits(self, profile: &Profile) -> Habits {
-        let Autopilot::ArduPlane { wp_radius_m } = self;
-        let usual = Habits::arduplane(profile);
-        Habits { corner_m: wp_radius_m.or(usual.corner_m), ..usual }
+        match self {
+            Autopilot::ArduPlane { wp_radius_m } => {
+                let usual = Habits::arduplane(profile);
+                Habits { corners: wp_radius_m.map_or(usual.corners, Corners::Radius), ..usual }
+            }
+            Autopilot::Px4 => Habits::PX4,
+        }
     }
 }
 
-/// `arduplane`, or with its WP_RADIUS in metres `arduplane,50`.
+/// `arduplane`, or with its WP_RADIUS in metres `arduplane,50`; or `px4`.
 impl FromStr for Autopilot {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if text == "arduplane" {
-            return Ok(Autopilot::ArduPlane { wp_radius_m: None });
+        match text {
+            "arduplane" => return Ok(Autopilot::ArduPlane { wp_radius_m: None }),
+            "px4" => return Ok(Autopilot::Px4),
+            _ => {}
         }
         let radius_m = text.strip_prefix("arduplane,").and_then(|radius| radius.trim().parse::<f64>().ok());
         match radius_m.filter(|m| WP_RADII_M.contains(m)) {
             Some(m) => Ok(Autopilot::ArduPlane { wp_radius_m: Some(m) }),
-            None => Err("write arduplane, or arduplane,50 with its WP_RADIUS in metres, 1 to 32767".into()),
+            None => {
+                Err("write px4, arduplane, or arduplane,50 with its WP_RADIUS in metres, 1 to 32767".into())
+            }
         }
     }
+}
+
+/// When a follower goes on to the next leg where it is told nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Corners {
+    /// By the turn anticipation.
+    Anticipated,
+    /// So far before a corner of 90° or more, in thin air farther, but no farther than it looks ahead, and before others in proportion,
+    /// metres (WP_RADIUS, `AP_L1_Control::turn_distance`).
+    Radius(f64),
+    /// So long before any corner, however sharp it is, at its speed over the ground, seconds, and no nearer than so many metres.
+    Early {
+        /// Seconds.
+        s: f64,
+        /// Metres.
+        least_m: f64,
+    },
 }
 
 /// How a follower keeps to lines, when it goes on to the next one, and which airspeed it holds.
@@ -50,9 +77,8 @@ pub struct Habits {
     pub period_s: f64,
     /// Its damping (NAVL1_DAMPING).
     pub damping: f64,
-    /// Where it is told nothing, it goes on to the next leg this far before a corner of 90° or more, in thin air farther, but no
-    /// farther than it looks ahead, and before others in proportion, metres (WP_RADIUS, `AP_L1_Control::turn_distance`). `None`: by the turn anticipation.
-    pub corner_m: Option<f64>,
+    /// When it goes on to the next leg, where it is told nothing.
+    pub corners: Corners,
     /// It leaves corners from as near as it is told, by [`arc_acceptance_m`](super::arc_acceptance_m) and
     /// [`turn_acceptance_m`](super::turn_acceptance_m).
     pub is_told_corners: bool,
@@ -68,10 +94,21 @@ impl Habits {
     pub const CLOSE: Habits = Habits {
         period_s: 9.0,
         damping: 0.8,
-        corner_m: None,
+        corners: Corners::Anticipated,
         is_told_corners: false,
         turn_share: 1.0,
         is_indicated: false,
+    };
+
+    /// PX4's on a wing: by its source, as far as that says it, and not held against a flight; but with this lead its arcs come out as near to
+    /// the plan's as the real one's.
+    ///
+    /// It goes on `DirectionalGuidance::switchDistance` before a waypoint, 0.32 of its speed times NPFG_PERIOD (10 s) times
+    /// NPFG_DAMPING (0.7), or NAV_ACC_RAD (10 m) if that is more; and its airspeeds are calibrated ones (FW_AIRSPD_TRIM).
+    pub const PX4: Habits = Habits {
+        corners: Corners::Early { s: 0.32 * 10.0 * 0.7, least_m: 10.0 },
+        is_indicated: true,
+        ..Habits::CLOSE
     };
 
     /// ArduPlane's: it follows lines by `AP_L1_Control`, goes on by `Plane::verify_nav_wp`, and holds indicated airspeeds.
@@ -83,7 +120,7 @@ impl Habits {
         Habits {
             period_s: 15.0,
             damping: 0.75,
-            corner_m: Some(profile.turn_radius_m(profile.cruise_airspeed_mps).round()),
+            corners: Corners::Radius(wp_radius_m(profile)),
             is_told_corners: true,
             turn_share: 0.73,
             is_indicated: true,
@@ -95,16 +132,21 @@ impl Habits {
         if self.is_indicated { told_mps * air::true_per_indicated(altitude_amsl_m) } else { told_mps }
     }
 
-    /// How far before a corner of 90° it goes on to the next leg by its own radius, at an altitude AMSL; metres.
-    pub(super) fn corner_at_m(&self, altitude_amsl_m: f64) -> Option<f64> {
+    /// A radius as it is in thin air, at an altitude AMSL; metres.
+    pub(super) fn in_thin_air_m(&self, radius_m: f64, altitude_amsl_m: f64) -> f64 {
         let thin = self.true_mps(1.0, altitude_amsl_m);
-        self.corner_m.map(|metres| metres * thin * thin)
+        radius_m * thin * thin
     }
 
     /// The airspeed that it takes a true one for, at an altitude AMSL; m/s and metres.
     pub fn told_mps(&self, true_mps: f64, altitude_amsl_m: f64) -> f64 {
         if self.is_indicated { true_mps / air::true_per_indicated(altitude_amsl_m) } else { true_mps }
     }
+}
+
+/// What WP_RADIUS is taken to be, metres: the turn radius at cruise speed.
+pub fn wp_radius_m(profile: &Profile) -> f64 {
+    profile.turn_radius_m(profile.cruise_airspeed_mps).round()
 }
 
 #[cfg(test)]
@@ -122,12 +164,14 @@ mod tests {
 
     #[test]
     fn autopilots_are_known_by_their_names() {
-        let radius = |text: &str| text.parse().map(|Autopilot::ArduPlane { wp_radius_m }| wp_radius_m);
-        assert_eq!(radius("arduplane"), Ok(None));
-        assert_eq!(radius("arduplane,50"), Ok(Some(50.0)));
-        for bad in ["", "px4", "arduplane,", "arduplane,0", "arduplane,NaN", "arduplane,1e9", "arduplane:50"]
+        let read = |text: &str| text.parse::<Autopilot>();
+        assert_eq!(read("arduplane"), Ok(Autopilot::ArduPlane { wp_radius_m: None }));
+        assert_eq!(read("arduplane,50"), Ok(Autopilot::ArduPlane { wp_radius_m: Some(50.0) }));
+        assert_eq!(read("px4"), Ok(Autopilot::Px4));
+        for bad in
+            ["", "px4,50", "arduplane,", "arduplane,0", "arduplane,NaN", "arduplane,1e9", "arduplane:50"]
         {
-            assert!(radius(bad).unwrap_err().contains("write arduplane"), "{bad}");
+            assert!(read(bad).unwrap_err().contains("arduplane,50"), "{bad}");
         }
     }
 }

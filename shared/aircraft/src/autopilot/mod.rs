@@ -22,7 +22,7 @@ mod told;
 
 use crate::{Demand, Profile, State};
 use geometry::LatLon;
-pub use habits::{Autopilot, Habits};
+pub use habits::{Autopilot, Corners, Habits, wp_radius_m};
 use leg::{Corner, Leg, Place};
 pub use told::{FLY_OVER_M, arc_acceptance_m, turn_acceptance_m};
 
@@ -203,11 +203,15 @@ impl Guidance {
     /// How far before a corner it goes on to the next leg, metres.
     fn early_m(&self, leg: &Leg, corner: Corner, state: &State) -> f64 {
         let ground_speed_mps = state.ground_speed_mps();
-        match self.habits.corner_at_m(state.altitude_amsl_m) {
-            Some(most_m) => {
+        match self.habits.corners {
+            Corners::Radius(radius_m) => {
+                let most_m = self.habits.in_thin_air_m(radius_m, state.altitude_amsl_m);
                 corner.share() * most_m.min(lateral::look_ahead_m(&self.habits, ground_speed_mps))
             }
-            None => corner.anticipation_m(self.profile.turn_radius_m(ground_speed_mps), leg.length_m),
+            Corners::Early { s, least_m } => (s * ground_speed_mps).max(least_m),
+            Corners::Anticipated => {
+                corner.anticipation_m(self.profile.turn_radius_m(ground_speed_mps), leg.length_m)
+            }
         }
     }
 

@@ -82,6 +82,31 @@ fn straight_legs_settle_within_three_metres_whatever_the_wind() {
     }
 }
 
+/// However sharp a corner is, PX4 leaves it as long before: past sharp ones it flies farther, and arcs come out close to the plan's.
+#[test]
+fn px4_leaves_every_corner_as_early_at_the_airspeed_that_it_measures() {
+    let corner = HOME.destination(0.0, 3000.0);
+    for angle in [20.0, 90.0, 150.0] {
+        let targets = [fly_to(corner), fly_to(corner.destination(angle, 3000.0))];
+        let samples = fly_list_as(Habits::PX4, cruising(0.0), &targets, Wind::CALM, 400.0);
+        let last = samples.iter().rfind(|sample| sample.target == 0).unwrap();
+        let early_m = last.state.position.distance_m(corner);
+        assert!((56.0..62.0).contains(&early_m), "{angle}: {early_m}");
+        let mps = last.state.ground_speed_mps();
+        assert!((25.9..26.3).contains(&mps), "{angle}: {mps} m/s at 900 m");
+    }
+    let radius_m = 400.0;
+    let centre = HOME.destination(90.0, 2000.0).destination(180.0, radius_m);
+    let vertex_m = radius_m / 7.5_f64.to_radians().cos();
+    let mut targets = vec![fly_to(centre.destination(0.0, radius_m))];
+    targets.extend((0..12).map(|i| fly_to(centre.destination(15.0 * (f64::from(i) + 0.5), vertex_m))));
+    targets.push(fly_to(centre.destination(180.0, radius_m).destination(270.0, 1500.0)));
+    let samples = fly_list_as(Habits::PX4, cruising(90.0), &targets, Wind::from_direction(300.0, 5.0), 600.0);
+    let on_arc = samples.iter().filter(|s| (2..=12).contains(&s.target));
+    let worst_m = on_arc.map(|s| (s.state.position.distance_m(centre) - radius_m).abs()).fold(0.0, f64::max);
+    assert!(worst_m < 6.0, "{worst_m}");
+}
+
 #[test]
 fn a_polyline_around_an_arc_is_flown_as_the_arc() {
     let radius_m = 1.2 * Profile::default().turn_radius_m(25.0);

@@ -1,7 +1,7 @@
 //! ArduPlane's parameters: those it is asked for.
 
 use crate::core::params::{Param, Params, Setting as S};
-use aircraft::{Habits, Profile};
+use aircraft::{Habits, Profile, wp_radius_m};
 
 pub fn params(profile: &Profile) -> Params {
     let speeds = (profile.min_airspeed_mps as f32, profile.max_airspeed_mps as f32);
@@ -17,7 +17,7 @@ pub fn params(profile: &Profile) -> Params {
         fixed("AIRSPEED_MIN", speeds.0).is(S::MinAirspeed),
         fixed("AIRSPEED_MAX", speeds.1).is(S::MaxAirspeed),
         fixed("ROLL_LIMIT_DEG", profile.max_bank_deg as f32),
-        fixed("WP_RADIUS", habits.corner_m.unwrap_or_default() as f32),
+        fixed("WP_RADIUS", wp_radius_m(profile) as f32),
         free("WP_LOITER_RAD", turn_m, any_radius).is(S::LoiterRadius),
         free("RTL_ALTITUDE", 100.0, (-1.0, 5000.0)).is(S::ReturnHeight),
         free("RTL_RADIUS", 0.0, any_radius).is(S::ReturnRadius),

@@ -52,7 +52,7 @@ const FIXED_WING: Rules = Rules {
     fence_text: "Maximum distance from home exceeded",
     lands_short_s: 0.0,
     params: params::fixed_wing,
-    habits: |_| Habits::CLOSE,
+    habits: |_| Habits::PX4,
     streams: &STREAMS,
     knows_old_requests: false,
     tells_unknown_params: true,
