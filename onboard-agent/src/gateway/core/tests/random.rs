@@ -23,7 +23,7 @@ const ORDERS_A_SECOND: u64 = 4;
 /// Orders that follow from one thing that happens.
 const ORDERS_EACH: u64 = 8;
 /// Kinds of things that happen.
-const KINDS: u8 = 26;
+const KINDS: u8 = 27;
 /// Number of every request: each is answered before the next.
 const REQUEST: u64 = 1;
 
@@ -146,6 +146,8 @@ impl World {
             _ => true,
         };
         assert!(!steers || is_ours, "{order:?} in {:?}", self.core.gateway.state());
+        let stops_engine = *order == Order::StandDown && !self.autopilot.shown_on_ground;
+        assert!(!stops_engine, "{order:?} in the air, {:?}", self.core.gateway.state());
         // of the plan nothing is left, but where its own waypoints are fed
         if *order == Order::Forget || matches!(order, Order::Feed { .. }) && !self.feeds {
             self.sent.clear();
@@ -266,6 +268,7 @@ impl World {
             }
             23 => self.autopilot.armed = self.autopilot.on_ground && !self.autopilot.armed || how > 0,
             24 => (self.autopilot.on_ground, self.autopilot.armed) = (true, false),
+            25 => self.autopilot.fate = Fate::Unanswered([0, 1, 10, 60][pick]),
             _ => self.say(how),
         }
     }

@@ -14,6 +14,10 @@ pub enum Fate {
     Failed,
     /// Refused for now, if that may be.
     PutOff,
+    /// If it is an order to arm, not answered, and carried out so many ticks later all the same (0: never).
+    Unanswered(u32),
+    /// Carried out, and that is not said.
+    Late,
 }
 
 /// Ticks in which the list aboard is neither what it was nor what it is to be.
@@ -48,8 +52,9 @@ pub struct Autopilot {
     /// What was said last of the waypoints, and the token steered to then.
     pub said: Course,
     pub said_token: Option<Token>,
-    /// The mode that was shown last.
+    /// The mode that was shown last, and whether it stood.
     pub shown: Mode,
+    pub shown_on_ground: bool,
     /// Token of the last waypoint that was flown.
     pub flown: u64,
 }
@@ -77,6 +82,7 @@ impl Autopilot {
             said: Course::default(),
             said_token: None,
             shown: Mode::Hold,
+            shown_on_ground: true,
             flown: 0,
         }
     }
@@ -182,9 +188,10 @@ impl Autopilot {
         let mut reports = self.obey();
         self.roll();
         if self.silent {
-            return reports.into_iter().filter(|report| matches!(report, Report::Failed(..))).collect();
+            let is_driver_s = |report: &Report| matches!(report, Report::Failed(..) | Report::Unanswered(..));
+            return reports.into_iter().filter(is_driver_s).collect();
         }
-        self.shown = self.mode;
+        (self.shown, self.shown_on_ground) = (self.mode, self.on_ground);
         reports.insert(0, self.heartbeat());
         reports.extend([Report::OnGround(self.on_ground), self.fix()]);
         self.ticks += 1;
@@ -249,13 +256,26 @@ impl Autopilot {
             (Fate::PutOff, Order::Arm) if !self.silent => {
                 return vec![Report::PutOff(id, "it still starts up".into())];
             }
+            (Fate::Unanswered(ticks), Order::Arm) => {
+                if ticks > 0 {
+                    self.under_way.push((ticks, id, order, Fate::Late));
+                }
+                return vec![Report::Unanswered(id, "it does not answer".into())];
+            }
+            (Fate::Late, _) => {
+                self.armed = true;
+                return vec![];
+            }
             (Fate::Done(_), _) if !self.silent => {}
             _ => return vec![Report::Failed(id, "it does not want to".into())],
         }
         match order {
             Order::Steer(aim) => self.steer(aim),
             Order::Arm => self.armed = true,
-            Order::StandDown => self.armed &= !self.on_ground,
+            Order::StandDown => {
+                self.under_way.retain(|(.., fate)| *fate != Fate::Late);
+                self.armed &= !self.on_ground;
+            }
             Order::Terminate => (self.armed, self.engine_runs) = (false, false),
             _ => {}
         }
