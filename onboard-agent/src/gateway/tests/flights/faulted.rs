@@ -1,11 +1,11 @@
-//! Whatever goes wrong in whatever state, on either autopilot: the aircraft has an owner, the state is true, and it steers to nothing
-//! stale.
+//! Whatever goes wrong in whatever state, on either autopilot: the aircraft has an owner, the state is true, it steers to nothing
+//! stale, and what must be told is told by its alarm.
 
 use super::*;
 use Fault::*;
 use GatewayState as S;
 use sim::Mode;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What goes wrong.
 #[derive(Debug, Clone, Copy)]
@@ -44,6 +44,29 @@ const FAULTS: [Fault; 20] = [
     GatewayRestarted,
 ];
 
+impl Fault {
+    /// The alarms of which one has to tell it in this state; none: it is no matter for an alarm there.
+    fn alarms(self, state: S) -> &'static [&'static str] {
+        let is_up = state != S::Stop;
+        // before it rolls it is not in the air, and before it stands nothing is asked of its engine
+        let is_near_ground = matches!(state, S::Stop | S::TakeOff | S::Land | S::SafeLand);
+        let is_level = matches!(state, S::Nav | S::Hold | S::Directed);
+        match self {
+            Simulated("gps-loss+30", _) => &["gps-lost"],
+            Simulated("engine-out", _) if !is_near_ground => &["engine-out", "engine-suspected"],
+            Simulated("ice+30", _) if is_level => &["slow", "sinks", "off-altitude", "engine-suspected"],
+            Simulated("low-battery", _) => &["energy-low"],
+            Simulated("silence+5" | "silence+30", _) => &["autopilot-silent"],
+            Simulated("no-stream=33+30", _) if is_up => &["stream-stopped"],
+            Simulated("crash", _) if !is_near_ground => &["stands-still"],
+            DiskFull => &["not-stored"],
+            Switched(_) if !matches!(state, S::Stop | S::Manual) => &["not-in-command"],
+            ListReplaced if !matches!(state, S::Stop | S::Manual) => &["list-replaced", "not-in-command"],
+            _ => &[],
+        }
+    }
+}
+
 /// How long a fault is looked at, seconds.
 const WATCHED_S: f64 = 100.0;
 /// What is said may be late by so much: heartbeats come once a second, and some are lost.
@@ -66,6 +89,8 @@ struct Trial {
     /// Since when something is not so.
     wrong_since: [Option<Time>; 3],
     joins: bool,
+    /// The alarms that were raised since the fault.
+    told: BTreeSet<String>,
 }
 
 impl Trial {
@@ -80,6 +105,7 @@ impl Trial {
             silent_until: Time::ZERO,
             wrong_since: [None; 3],
             joins: false,
+            told: BTreeSet::new(),
         };
         let lands = matches!(state, S::Approach | S::Land);
         let rest = if lands { [zigzag(0, 3, 300.0), landing()].concat() } else { zigzag(0, 30, 300.0) };
@@ -155,6 +181,7 @@ impl Trial {
         let steered = self.flight.steered.len();
         self.flight.step();
         let now = self.flight.now;
+        self.told.extend(self.alarms());
         if self.joins && now.as_millis().is_multiple_of(1000) {
             let last = self.flight.next - 1;
             self.joins = !self.flight.join_knowing("plan", last).accepted;
@@ -233,6 +260,7 @@ fn direct() -> GatewayRequest {
 }
 
 fn every_fault(personality: Personality, state: S) {
+    let mut untold = vec![];
     for fault in FAULTS {
         let mut trial = Trial::in_state(personality, state);
         trial.what = format!("{personality} in {state:?}, {fault:?}");
@@ -246,8 +274,13 @@ fn every_fault(personality: Personality, state: S) {
         while trial.flight.now < begun + Duration::from_secs_f64(WATCHED_S) {
             trial.step();
         }
+        let wanted = fault.alarms(state);
+        if !wanted.is_empty() && !wanted.iter().any(|id| trial.told.contains(*id)) {
+            untold.push(format!("{fault:?}: none of {wanted:?}, but {:?}", trial.told));
+        }
         println!("  {:?}: {}", trial.flight.state(), trial.flight.station.gateway().status(begun).cause);
     }
+    assert!(untold.is_empty(), "{personality} in {state:?}: {untold:#?}");
 }
 
 /// A test for each state and autopilot.
