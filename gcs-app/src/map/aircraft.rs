@@ -1,9 +1,8 @@
 //! The aircraft, where it was, and what it flies next.
 
-use super::names::{self, Ground, Name, Names, Rank};
+use super::names::{self, Ground, Name, Rank};
 use super::polyline::{self, Cached, Style};
-use super::view::{Mercator, View};
-use crate::panels::Scene;
+use super::sheet::Sheet;
 use crate::state::VehicleName;
 use crate::theme::Palette;
 use crate::units;
@@ -19,36 +18,36 @@ pub struct Layer {
 
 impl Layer {
     /// The flown track: grey.
-    pub fn draw_trail(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+    pub fn draw_trail(&mut self, sheet: &Sheet<'_>) {
+        let Sheet { painter, view, scene, p, .. } = *sheet;
         let shown = scene.vehicles.shown_name();
         if self.of.as_ref() != shown {
             *self = Self { of: shown.cloned(), ..Self::default() };
         }
-        let vehicle = scene.vehicle;
-        let line = || vehicle.trail.points().iter().map(|at| (*at).into()).collect();
-        let parts = self.trail.parts(line, vehicle.trail.changes(), view);
+        let trail = &scene.vehicle.trail;
+        let line = || trail.points().iter().map(|at| (*at).into()).collect();
+        let parts = self.trail.parts(line, trail.changes(), view);
         polyline::draw(painter, parts, Stroke::new(2.6, p.flown), Style::Solid, p.halo);
     }
 }
 
 /// Waypoints handed out and not flown: the active leg magenta and thick, what follows thin.
-pub fn draw_ahead(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+pub fn draw_ahead(sheet: &Sheet<'_>) {
+    let Sheet { scene, p, .. } = *sheet;
     let (Some(ahead), Some(position)) = (&scene.vehicle.ahead, &scene.vehicle.position) else { return };
     if position.value.on_ground {
         return;
     }
     let leg = scene.vehicle.current_leg();
-    let mut before: Mercator = position.value.position.into();
+    let mut before = position.value.position;
     for waypoint in ahead.value.waypoints.iter().filter(|w| w.position.is_valid()) {
-        let here: Mercator = waypoint.position.into();
         let active = leg.is_some_and(|leg| leg.as_str() == waypoint.leg.as_str());
         let (width, colour) = if active { (3.6, p.active) } else { (1.6, p.active.gamma_multiply(0.6)) };
-        let parts = polyline::visible_parts(&[before, here], view);
-        polyline::draw(painter, &parts, Stroke::new(width, colour), Style::Solid, p.halo);
-        before = here;
+        sheet.line([before, waypoint.position], Stroke::new(width, colour), Style::Solid);
+        before = waypoint.position;
     }
     if let Some(next) = ahead.value.waypoints.first().filter(|w| w.position.is_valid()) {
-        diamond(painter, view.place(next.position), p);
+        diamond(sheet.painter, sheet.place(next.position), p);
     }
 }
 
@@ -58,7 +57,8 @@ fn diamond(painter: &Painter, at: Pos2, p: &Palette) {
 }
 
 /// The aircraft symbol along its heading, with height and speed; hollow when its position has expired.
-pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, names: &mut Names, p: &Palette) {
+pub fn draw(sheet: &Sheet<'_>) {
+    let Sheet { painter, view, scene, p, .. } = *sheet;
     let Some(position) = &scene.vehicle.position else { return };
     let v = &position.value;
     let at = view.place(v.position);
@@ -75,9 +75,9 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, names: &mut Names
     } else {
         format!("{} AMSL · {}", u.altitude().show(v.altitude_amsl_m), u.speed().show(v.ground_speed_mps))
     };
-    names.keep_clear(Rect::from_center_size(at, Vec2::splat(COVERED)));
+    sheet.names.borrow_mut().keep_clear(Rect::from_center_size(at, Vec2::splat(COVERED)));
     let (rank, spots) = (Rank::Aircraft, names::corners(at, vec2(12.0, 9.0)));
-    names.ask(painter, Name { rank, spots, text, size: 12.0, colour: p.text, ground: Ground::Plate });
+    sheet.ask(Name { rank, spots, text, size: 12.0, colour: p.text, ground: Ground::Plate });
 }
 
 /// Side of the square that no name covers, screen points.

@@ -1,11 +1,12 @@
 //! The bundled world: land, coasts, borders and country names.
 
+use super::sheet::Sheet;
 use super::view::{Mercator, View};
 use super::{places, polyline};
 use crate::assets::{self, Basemap, Polyline, basemap::Bounds};
 use crate::chart::labels::Labels;
 use crate::theme::Palette;
-use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, epaint::Vertex};
+use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Shape, Stroke, epaint::Vertex};
 use geometry::LatLon;
 use std::sync::Arc;
 
@@ -20,7 +21,8 @@ pub struct Layer {
 
 impl Layer {
     /// Draws water, land and lines.
-    pub fn draw(&mut self, painter: &Painter, view: &View, p: &Palette) {
+    pub fn draw(&mut self, sheet: &Sheet<'_>) {
+        let Sheet { painter, view, p, .. } = *sheet;
         painter.rect_filled(view.rect, 0.0, p.water);
         let Ok(map) = assets::basemap() else { return };
         if self.key != Some((*view, p.land)) {
@@ -36,10 +38,10 @@ impl Layer {
     }
 
     /// Names of countries, cities and airports, where there is room beside what is written already.
-    pub fn names(&self, painter: &Painter, view: &View, placed: &mut Labels, p: &Palette) -> Vec<Shape> {
+    pub fn names(&self, sheet: &Sheet<'_>, placed: &mut Labels) -> Vec<Shape> {
         let Ok(map) = assets::basemap() else { return Vec::new() };
-        let mut shapes = countries(painter, map, view, placed, p);
-        places::add(painter, view, placed, &mut shapes, p);
+        let mut shapes = countries(sheet, map, placed);
+        places::add(sheet, placed, &mut shapes);
         shapes
     }
 
@@ -94,7 +96,8 @@ fn corners_of(corners: &[Pos2], [a, b, c]: [u32; 3]) -> Option<[Pos2; 3]> {
 }
 
 /// Names of countries big enough on the screen, without overlaps.
-fn countries(painter: &Painter, map: &Basemap, view: &View, placed: &mut Labels, p: &Palette) -> Vec<Shape> {
+fn countries(sheet: &Sheet<'_>, map: &Basemap, placed: &mut Labels) -> Vec<Shape> {
+    let Sheet { painter, view, p, .. } = *sheet;
     let mut shapes = Vec::new();
     let most = (view.points_per_metre() * 4.0e6).clamp(4.0, 300.0) as u32;
     for label in map.labels().iter().filter(|l| l.rank < most) {

@@ -1,15 +1,13 @@
 //! What is seen on the pictures that are taken along legs: a footprint for each, and how much of it the next one shows again.
 
-use super::names::{self, Ground, Name, Names, Rank};
-use super::sketch::Sketch;
+use super::names::{self, Ground, Name, Rank};
+use super::sheet::Sheet;
 use super::sketch::photos::{Photos, Spot, USUAL_ACROSS_DEG};
-use super::view::View;
 use crate::command::Selection;
 use crate::forecast::{Forecast, Point};
 use crate::panels::Scene;
-use crate::theme::Palette;
 use crate::units::Units;
-use egui::{Painter, Pos2, Shape, Stroke, vec2};
+use egui::{Pos2, Shape, Stroke, vec2};
 use flight_plan::{Act, Edit, Id, Leg, LegAction, Trigger, Value};
 use geometry::LatLon;
 use std::collections::HashMap;
@@ -75,14 +73,8 @@ fn every_m(forecast: &Forecast, leg: &Id) -> f64 {
 }
 
 /// Draws them, where they are large enough to be seen.
-pub fn draw(
-    painter: &Painter,
-    view: &View,
-    sketch: &Sketch,
-    scene: &Scene<'_>,
-    names: &mut Names,
-    p: &Palette,
-) {
+pub fn draw(sheet: &Sheet<'_>) {
+    let Sheet { view, sketch, scene, p, .. } = *sheet;
     let mut left = MOST;
     for photos in &sketch.photos {
         let selected = scene.is_selected(&Selection::Leg(photos.leg.clone()));
@@ -96,23 +88,24 @@ pub fn draw(
                 }
                 left -= 1;
                 first = first.or(Some(footprint));
-                paint(painter, view, &footprint, selected, p);
+                paint(sheet, &footprint, selected);
             }
         }
         if let Some(footprint) = first.filter(|_| selected) {
             let (text, is_covered) = words(photos, &footprint, scene.units());
             let colour = if is_covered { p.text } else { p.caution };
             let (rank, spots) = (Rank::Selected, names::corners(view.place(footprint.at), vec2(14.0, 14.0)));
-            names.ask(painter, Name { rank, spots, text, size: 12.0, colour, ground: Ground::Halo });
+            sheet.ask(Name { rank, spots, text, size: 12.0, colour, ground: Ground::Halo });
         }
     }
 }
 
-fn paint(painter: &Painter, view: &View, footprint: &Footprint, selected: bool, p: &Palette) {
-    let corners: Vec<Pos2> = footprint.corners().iter().map(|at| view.place(*at)).collect();
+fn paint(sheet: &Sheet<'_>, footprint: &Footprint, selected: bool) {
+    let corners: Vec<Pos2> = footprint.corners().iter().map(|at| sheet.place(*at)).collect();
+    let p = sheet.p;
     let fill = p.accent.gamma_multiply(if selected { 0.04 } else { 0.02 });
     let stroke = Stroke::new(if selected { 1.2 } else { 0.7 }, p.accent.gamma_multiply(0.8));
-    painter.add(Shape::convex_polygon(corners, fill, stroke));
+    sheet.painter.add(Shape::convex_polygon(corners, fill, stroke));
 }
 
 /// A part of the path on which pictures are taken.

@@ -1,11 +1,10 @@
 //! What lies over the map on request: lines of latitude and longitude, and rings of equal distance.
 
+use super::sheet::Sheet;
 use super::text;
-use super::view::View;
-use crate::panels::Scene;
 use crate::theme::Palette;
 use crate::units::{Unit, Units};
-use egui::{Align2, Color32, Painter, Pos2, Shape, Stroke, pos2};
+use egui::{Align2, Color32, Pos2, Shape, Stroke, pos2};
 use geometry::LatLon;
 
 /// Between two lines, screen points at least.
@@ -21,7 +20,8 @@ const RINGS: u32 = 5;
 const TOOLS: f32 = 50.0;
 
 /// Lines of latitude and longitude, with their numbers at the edges.
-pub fn draw(painter: &Painter, view: &View, p: &Palette) {
+pub fn draw(sheet: &Sheet<'_>) {
+    let Sheet { painter, view, p, .. } = *sheet;
     let step_s = step_s(view.degrees_per_point());
     let stroke = Stroke::new(1.0, faint(p));
     let (from, to) = (view.geo(view.rect.left_bottom()), view.geo(view.rect.right_top()));
@@ -74,7 +74,8 @@ fn arc(seconds: f64, step_s: f64, [plus, minus]: [char; 2]) -> String {
 }
 
 /// Rings of equal distance around the aircraft, or else around the runway of departure.
-pub fn draw_rings(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+pub fn draw_rings(sheet: &Sheet<'_>) {
+    let Sheet { painter, view, scene, p, .. } = *sheet;
     let aircraft = scene.vehicle.position.as_ref().map(|position| position.value.position);
     let Some(middle) = aircraft.or_else(|| scene.document.plan().home().map(|runway| runway.threshold))
     else {

@@ -1,5 +1,6 @@
 //! What goes with the selection. While something is selected, the rest is a little fainter.
 
+use super::sheet::Sheet;
 use super::tools::in_force;
 use crate::command::Selection;
 use crate::panels::Scene;
@@ -31,8 +32,8 @@ impl Kin {
     }
 
     /// Paints it as it is, or fainter.
-    pub fn painter(&self, painter: &Painter, id: &Id) -> Painter {
-        let mut painter = painter.clone();
+    pub fn painter(&self, sheet: &Sheet<'_>, id: &Id) -> Painter {
+        let mut painter = sheet.painter.clone();
         if !self.has(id) {
             painter.multiply_opacity(FAINT);
         }

@@ -1,13 +1,14 @@
 //! Marks on the path: where a preview ends early, where a plan is wrong, and the way out after an alarm.
 
-use super::names::{self, Ground, Name, Names, Rank};
-use super::polyline::{self, Style};
-use super::sketch::{Line, Sketch, Way};
-use super::view::{Mercator, View};
+use super::names::{self, Ground, Name, Rank};
+use super::polyline::Style;
+use super::reveal::place_of;
+use super::sheet::Sheet;
+use super::sketch::{Line, Way};
 use crate::panels::what_if::{cause_name, reach_name};
 use crate::panels::{Scene, problems};
 use crate::theme::Palette;
-use egui::{Color32, Painter, Pos2, Shape, Stroke, vec2};
+use egui::{Pos2, Shape, Stroke, vec2};
 use flight_exec::rehearse::Diversion;
 use flight_exec::review::Margins;
 use flight_plan::{FlightPlan, FlownAt, Id, Problem};
@@ -40,12 +41,11 @@ pub fn off_path<'a>(scene: &Scene<'a>) -> impl Iterator<Item = &'a Problem> {
 }
 
 /// The pieces of ways on from forks on which a plan is wrong, where the flight as planned is not: they are red instead of it.
-pub fn draw_off_plan(painter: &Painter, view: &View, scene: &Scene<'_>, sketch: &Sketch, p: &Palette) {
-    let errors = scene.problems().filter(|problem| problem.is_error() && problem.is_off_plan());
+fn draw_off_plan(sheet: &Sheet<'_>) {
+    let errors = sheet.scene.problems().filter(|problem| problem.is_error() && problem.is_off_plan());
     for spot in errors.filter_map(|problem| problem.place.as_deref()).take(MOST) {
-        if let Some(line) = piece(&sketch.ways, spot) {
-            let parts = polyline::visible_parts(&[line.from.into(), line.to.into()], view);
-            polyline::draw(painter, &parts, Stroke::new(3.2, p.warning), Style::Dashed, p.halo);
+        if let Some(line) = piece(&sheet.sketch.ways, spot) {
+            sheet.line([line.from, line.to], Stroke::new(3.2, sheet.p.warning), Style::Dashed);
         }
     }
 }
@@ -62,25 +62,37 @@ fn piece<'a>(ways: &'a [Way], spot: &FlownAt) -> Option<&'a Line> {
     ways.flat_map(|way| &way.lines).min_by(|a, b| detour_m(a).total_cmp(&detour_m(b)))
 }
 
-/// A cross where the path ends too early, and one where the plan is wrong. `error_at`: where that is; `others`: where else.
-pub fn draw_failures(
-    painter: &Painter,
-    view: &View,
-    scene: &Scene<'_>,
-    (error_at, others): (Option<LatLon>, &[LatLon]),
-    names: &mut Names,
-    p: &Palette,
-) {
-    others.iter().for_each(|at| cross(painter, view.place(*at), p.warning, p));
+/// What is wrong with the plan, where it is.
+pub fn draw_faults(sheet: &Sheet<'_>) {
+    draw_off_plan(sheet);
+    let others = off_path(sheet.scene).filter_map(|problem| place_of_problem(problem, sheet));
+    others.for_each(|at| cross(sheet, sheet.place(at)));
+    draw_failures(sheet);
+}
+
+/// Where something is wrong: the place that is named, or else where that is whose problem it is.
+fn place_of_problem(problem: &Problem, sheet: &Sheet<'_>) -> Option<LatLon> {
+    let Sheet { sketch, scene, .. } = *sheet;
+    match &problem.place {
+        Some(spot) => Some(spot.position),
+        None => place_of(&selection_of(problem, scene)?, scene.document.plan(), sketch),
+    }
+}
+
+/// A cross where the path ends too early, and one where the plan is wrong.
+fn draw_failures(sheet: &Sheet<'_>) {
+    let scene = sheet.scene;
     let end = scene.forecast().points.last().zip(scene.forecast().cut_short.as_ref());
     if let Some((end, why)) = end.filter(|_| scene.analysis.no_forecast.is_none()) {
-        failure(painter, view.place(end.position), why, names, p);
+        failure(sheet, end.position, why);
     }
     // what has no place of its own is wrong where the path ends
     let ends = scene.forecast().points.last().filter(|_| scene.forecast().is_beginning);
-    if let Some((problem, at)) = first_error(scene).zip(error_at.or(ends.map(|end| end.position))) {
-        let why = scene.document.plan().in_names(&problem.message);
-        failure(painter, view.place(at), &why, names, p);
+    let wrong = first_error(scene).and_then(|problem| {
+        Some((problem, place_of_problem(problem, sheet).or(ends.map(|end| end.position))?))
+    });
+    if let Some((problem, at)) = wrong {
+        failure(sheet, at, &scene.document.plan().in_names(&problem.message));
     }
 }
 
@@ -89,18 +101,21 @@ pub fn selection_of(problem: &Problem, scene: &Scene<'_>) -> Option<crate::comma
     problems::find(scene.document, problem.subject.as_ref()?)
 }
 
-fn failure(painter: &Painter, at: Pos2, why: &str, names: &mut Names, p: &Palette) {
-    cross(painter, at, p.warning, p);
-    ask_words(painter, at, shortened(why), names, p);
+fn failure(sheet: &Sheet<'_>, at: LatLon, why: &str) {
+    let at = sheet.place(at);
+    cross(sheet, at);
+    ask_words(sheet, at, shortened(why));
 }
 
 /// Below the name of what is there.
-fn ask_words(painter: &Painter, at: Pos2, text: String, names: &mut Names, p: &Palette) {
-    let (rank, spots) = (Rank::Fault, names::corners(at, vec2(8.0, 9.0)));
-    names.ask(painter, Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Plate });
+fn ask_words(sheet: &Sheet<'_>, at: Pos2, text: String) {
+    let (rank, spots, colour) = (Rank::Fault, names::corners(at, vec2(8.0, 9.0)), sheet.p.text);
+    sheet.ask(Name { rank, spots, text, size: 11.5, colour, ground: Ground::Plate });
 }
 
-fn cross(painter: &Painter, at: Pos2, colour: Color32, p: &Palette) {
+fn cross(sheet: &Sheet<'_>, at: Pos2) {
+    let Sheet { painter, p, .. } = *sheet;
+    let colour = p.warning;
     painter.circle(at, 9.0, p.halo, Stroke::new(2.0, colour));
     for d in [vec2(1.0, 1.0), vec2(1.0, -1.0)] {
         painter.add(Shape::line_segment([at - d * 4.0, at + d * 4.0], Stroke::new(2.5, colour)));
@@ -115,17 +130,19 @@ fn shortened(text: &str) -> String {
 }
 
 /// The way out after the alarm: after an engine failure the glide, else the alternate; and fainter the other one.
-pub fn draw_diversion(painter: &Painter, view: &View, scene: &Scene<'_>, names: &mut Names, p: &Palette) {
+pub fn draw_diversion(sheet: &Sheet<'_>) {
+    let Sheet { scene, p, .. } = *sheet;
     let Some(found) = scene.diversion() else { return };
     let [chosen, other] = found.ways().map(|way| Vec::from_iter(way.iter().map(|point| point.position)));
-    way(painter, view, &other, (Stroke::new(1.2, p.weak), Style::Dashed), p);
-    way(painter, view, &chosen, way_out(found, p), p);
+    let (stroke, style) = way_out(found, p);
+    sheet.line(other, Stroke::new(1.2, p.weak), Style::Dashed);
+    sheet.line(chosen.iter().copied(), stroke, style);
     if let Some(end) = chosen.last() {
-        let at = view.place(*end);
+        let at = sheet.place(*end);
         if !reaches(found) {
-            cross(painter, at, p.warning, p);
+            cross(sheet, at);
         }
-        ask_words(painter, at, label(found, scene.document.plan()), names, p);
+        ask_words(sheet, at, label(found, scene.document.plan()));
     }
 }
 
@@ -148,14 +165,10 @@ fn label(found: &Diversion, flown: &FlightPlan) -> String {
     format!("{}: {plan}, {reach}", cause_name(found.cause))
 }
 
-fn way(painter: &Painter, view: &View, places: &[LatLon], (stroke, style): (Stroke, Style), p: &Palette) {
-    let line: Vec<Mercator> = places.iter().map(|at| (*at).into()).collect();
-    polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, style, p.halo);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::map::sketch::Sketch;
 
     /// The close look leads through a zone; what is flown without a decision does not.
     #[test]

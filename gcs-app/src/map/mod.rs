@@ -12,6 +12,7 @@ pub mod footprints;
 pub mod foreseen;
 pub mod furniture;
 pub mod graticule;
+mod ground;
 pub mod guard;
 mod items;
 mod kept;
@@ -27,6 +28,7 @@ pub mod plan;
 pub mod polyline;
 pub mod rasters;
 mod reveal;
+mod sheet;
 pub mod sketch;
 pub mod text;
 pub mod tools;
@@ -37,14 +39,11 @@ pub mod zones;
 use crate::command::{Clip, Queue, ViewCommand};
 use crate::layers::Opened;
 use crate::panels::{Scene, field, start};
-use crate::tiles::{Reader, Relief};
 use egui::{DragPanButtons, Pos2, Ui};
 use flight_plan::Variables;
 use flight_plan::create::Way;
 use geometry::LatLon;
-use rasters::Raster;
 use sketch::Sketch;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use terrain::Terrain;
 use tools::Toolbox;
@@ -72,10 +71,7 @@ pub struct MapState {
     fit: bool,
     /// Show where a new plan begins, likewise.
     begin: Option<LatLon>,
-    basemap: basemap::Layer,
-    relief: Option<Raster>,
-    /// Maps that users brought, by the number of their layer.
-    rasters: BTreeMap<u64, Raster>,
+    ground: ground::Ground,
     /// What is to be brought into view, if it is not.
     reveal: Option<reveal::Wanted>,
     /// A box to be shown in the next frame.
@@ -176,24 +172,22 @@ impl MapState {
 
     /// Shades this ground, or none.
     pub fn shade(&mut self, ground: Option<&Arc<dyn Terrain>>, ctx: &egui::Context) {
-        let relief = ground.map(|ground| Box::new(Relief::new(ground.clone())) as Box<dyn Reader>);
-        self.relief = relief.map(|relief| Raster::new(vec![relief], Relief::about(), &Arc::default(), ctx));
+        self.ground.shade(ground, ctx);
     }
 
     /// The ground is shaded.
     pub fn is_shaded(&self) -> bool {
-        self.relief.is_some()
+        self.ground.is_shaded()
     }
 
     /// Shows a map's tiles from now on, as long as its layer is there.
     pub fn add_raster(&mut self, opened: Opened, ctx: &egui::Context) {
-        let raster = Raster::new(opened.readers, opened.about, &opened.health, ctx);
-        self.rasters.insert(opened.id, raster);
+        self.ground.add_raster(opened, ctx);
     }
 
     /// So many pictures of a layer's tiles are here.
     pub fn pictures_of(&self, layer: u64) -> usize {
-        self.rasters.get(&layer).map_or(0, Raster::pictures)
+        self.ground.pictures_of(layer)
     }
 
     /// Draws the map and takes what the operator does on it.

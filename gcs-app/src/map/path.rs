@@ -1,9 +1,9 @@
 //! The path that will be flown and the waypoints that will be sent.
 
 use super::kept::Kept;
-use super::names::{self, Ground, Name, Names, Rank};
+use super::names::{self, Ground, Name, Rank};
 use super::polyline::{self, Style};
-use super::sketch::Sketch;
+use super::sheet::Sheet;
 use super::view::{Mercator, View};
 use crate::command::{PreviewCommand, Queue, Selection};
 use crate::forecast::{Coverage, Line, Passage, Point};
@@ -11,7 +11,7 @@ use crate::jobs::{Taken, Task};
 use crate::map::coverage;
 use crate::panels::{Scene, bar, decision};
 use crate::theme::Palette;
-use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use egui::{Color32, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use flight_plan::Id;
 use std::collections::{BTreeSet, HashSet};
 
@@ -47,38 +47,45 @@ impl Layer {
     }
 
     /// Draws the forecast; where there is none, the plan's places as a draft.
-    pub fn draw(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, sketch: &Sketch, p: &Palette) {
+    pub fn draw(&mut self, sheet: &Sheet<'_>) {
+        let Sheet { view, scene, p, .. } = *sheet;
         let forecast = scene.forecast();
         self.tend(view, scene);
         if forecast.points.is_empty() || forecast.is_beginning {
-            draft(painter, view, sketch, colour(scene, p), p);
+            draft(sheet);
         }
         if forecast.points.is_empty() {
             return;
         }
         match scene.analysis.coverage().filter(|_| scene.view.coverage && scene.out_of_date().is_none()) {
-            Some(known) => self.draw_covered(painter, view, scene, known, p),
-            None => self.draw_path(painter, view, scene, p),
+            Some(known) => self.draw_covered(sheet, known),
+            None => self.draw_path(sheet),
         }
         let analysis = scene.analysis;
         let of = (analysis.forecast_version, scene.document.version(), analysis.found, p.warning);
         self.faulty.draw(
-            painter,
-            view,
+            sheet.painter,
+            sheet.view,
             |made| *made == of,
             |wide| {
                 let faulty = scene.faulty();
                 (of, highlight(wide, scene, (p.warning, p), |passage| faulty.contains(&passage.leg)))
             },
         );
-        self.draw_looked_at(painter, view, scene, p);
+        self.draw_looked_at(sheet);
         if view.points_per_metre() > WAYPOINTS_FROM {
             let of = (analysis.forecast_version, p.accent);
-            self.waypoints.draw(painter, view, |made| *made == of, |wide| (of, waypoints(wide, scene, p)));
+            self.waypoints.draw(
+                sheet.painter,
+                view,
+                |made| *made == of,
+                |wide| (of, waypoints(wide, scene, p)),
+            );
         }
     }
 
-    fn draw_path(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+    fn draw_path(&mut self, sheet: &Sheet<'_>) {
+        let Sheet { view, scene, p, .. } = *sheet;
         let (_, standing) = bar::plan_state(scene);
         // a draft that differs from what is aboard is dashed
         let is_draft = standing == bar::Standing::Draft && scene.vehicle.active_hash().is_some();
@@ -86,8 +93,8 @@ impl Layer {
         let (octave, line) = line(view, scene);
         let of = (scene.analysis.forecast_version, octave, (colour(scene, p), style, p.halo));
         self.path.draw(
-            painter,
-            view,
+            sheet.painter,
+            sheet.view,
             |made| *made == of,
             |wide| {
                 let (colour, style, halo) = of.2;
@@ -120,18 +127,12 @@ impl Layer {
     }
 
     /// In the look of how alarms would end.
-    fn draw_covered(
-        &mut self,
-        painter: &Painter,
-        view: &View,
-        scene: &Scene<'_>,
-        known: &Coverage,
-        p: &Palette,
-    ) {
+    fn draw_covered(&mut self, sheet: &Sheet<'_>, known: &Coverage) {
+        let Sheet { scene, p, .. } = *sheet;
         let of = (scene.analysis.forecast_version, scene.analysis.found, p.halo);
         self.covered.draw(
-            painter,
-            view,
+            sheet.painter,
+            sheet.view,
             |made| *made == of,
             |wide| {
                 let mut shapes = Vec::new();
@@ -151,10 +152,11 @@ impl Layer {
     }
 
     /// A stronger line along what is selected, or pointed out.
-    fn draw_looked_at(&mut self, painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+    fn draw_looked_at(&mut self, sheet: &Sheet<'_>) {
+        let Sheet { scene, p, .. } = *sheet;
         self.looked_at.draw(
-            painter,
-            view,
+            sheet.painter,
+            sheet.view,
             |made| made.is_still(scene, p),
             |wide| {
                 let looked_at = LookedAt::of(scene, p);
@@ -215,10 +217,9 @@ fn colour(scene: &Scene<'_>, p: &Palette) -> Color32 {
     if scene.out_of_date().is_some() { p.weak } else { p.accent }
 }
 
-fn draft(painter: &Painter, view: &View, sketch: &Sketch, colour: Color32, p: &Palette) {
-    let line: Vec<Mercator> = sketch.main.iter().flatten().map(|at| (*at).into()).collect();
-    let parts = polyline::visible_parts(&line, view);
-    polyline::draw(painter, &parts, Stroke::new(2.0, colour), Style::Dashed, p.halo);
+fn draft(sheet: &Sheet<'_>) {
+    let line = sheet.sketch.main.iter().flatten().copied();
+    sheet.line(line, Stroke::new(2.0, colour(sheet.scene, sheet.p)), Style::Dashed);
 }
 
 /// A stronger line along some passages.
@@ -271,25 +272,26 @@ fn disc(at: Pos2, radius: f32, fill: Color32, edge: Stroke) -> [Shape; 2] {
 }
 
 /// Where each branch of the decision that is asked for leads; the default's is the stronger line.
-pub fn draw_decision(painter: &Painter, view: &View, scene: &Scene<'_>, names: &mut Names, p: &Palette) {
+pub fn draw_decision(sheet: &Sheet<'_>) {
+    let Sheet { scene, p, .. } = *sheet;
     let Some((request, _)) = decision::open(scene) else { return };
     for (number, option) in (1..).zip(&request.options) {
-        let line: Vec<Mercator> = option.preview.iter().map(|at| (*at).into()).collect();
         let is_default = request.default.as_ref() == Some(&option.branch);
         let stroke = Stroke::new(if is_default { 2.6 } else { 1.8 }, p.active);
         let style = if is_default { Style::Solid } else { Style::Dashed };
-        polyline::draw(painter, &polyline::visible_parts(&line, view), stroke, style, p.halo);
-        let places: Vec<Pos2> = option.preview.iter().map(|at| view.place(*at)).collect();
+        sheet.line(option.preview.iter().copied(), stroke, style);
+        let places: Vec<Pos2> = option.preview.iter().map(|at| sheet.place(*at)).collect();
         // beside the middle of its way: at its end is the name of a fix
         let Some(middle) = polyline::middle(&places) else { continue };
         let (rank, spots) = (Rank::Selected, names::corners_above(middle, vec2(6.0, 6.0)));
         let text = format!("{number} {}", option.label);
-        names.ask(painter, Name { rank, spots, text, size: 12.0, colour: p.active, ground: Ground::Halo });
+        sheet.ask(Name { rank, spots, text, size: 12.0, colour: p.active, ground: Ground::Halo });
     }
 }
 
 /// The preview's cursor.
-pub fn draw_cursor(painter: &Painter, view: &View, scene: &Scene<'_>, p: &Palette) {
+pub fn draw_cursor(sheet: &Sheet<'_>) {
+    let Sheet { painter, view, scene, p, .. } = *sheet;
     let Some(point) = scene.view.cursor_s.and_then(|t| scene.forecast().at(t)) else { return };
     let at = view.place(point.position);
     painter.circle_stroke(at, 7.0, Stroke::new(4.0, p.halo));

@@ -1,10 +1,10 @@
 //! Cities and airports with their names: the more important ones from farther away, and none over another.
 
-use super::view::View;
+use super::sheet::Sheet;
 use crate::assets;
 use crate::chart::labels::{Labels, beside};
 use crate::theme::Palette;
-use egui::{Align2, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
+use egui::{Align2, FontId, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
 /// The zoom level from which each group is shown: cities, then airports from the largest to the smallest.
 const FROM: [f64; assets::places::GROUPS] = [3.0, 6.5, 8.0, 8.5, 10.0];
@@ -14,7 +14,8 @@ const MOST: usize = 120;
 const MOST_OF_GROUP: usize = 400;
 
 /// Adds marks and names where there is room beside what is written already.
-pub fn add(painter: &Painter, view: &View, labels: &mut Labels, shapes: &mut Vec<Shape>, p: &Palette) {
+pub fn add(sheet: &Sheet<'_>, labels: &mut Labels, shapes: &mut Vec<Shape>) {
+    let Sheet { view, p, .. } = *sheet;
     let Ok(groups) = assets::places() else { return };
     let corners = (view.geo(view.rect.left_bottom()), view.geo(view.rect.right_top()));
     let mut left = MOST;
@@ -27,7 +28,7 @@ pub fn add(painter: &Painter, view: &View, labels: &mut Labels, shapes: &mut Vec
             if left == 0 {
                 return;
             }
-            if let Some(name) = name(painter, at, (place.name, number == 0), labels, p) {
+            if let Some(name) = name(sheet, at, (place.name, number == 0), labels) {
                 left -= 1;
                 shapes.push(name);
                 mark(shapes, at, number, p);
@@ -37,13 +38,8 @@ pub fn add(painter: &Painter, view: &View, labels: &mut Labels, shapes: &mut Vec
 }
 
 /// `None`: there is no room.
-fn name(
-    painter: &Painter,
-    at: Pos2,
-    (name, is_city): (&str, bool),
-    labels: &mut Labels,
-    p: &Palette,
-) -> Option<Shape> {
+fn name(sheet: &Sheet<'_>, at: Pos2, (name, is_city): (&str, bool), labels: &mut Labels) -> Option<Shape> {
+    let Sheet { painter, p, .. } = *sheet;
     let size = if is_city { 12.0 } else { 10.5 };
     let colour = if is_city { p.text } else { p.weak };
     let galley = painter.layout_no_wrap(name.to_owned(), FontId::proportional(size), colour);

@@ -1,34 +1,27 @@
 //! The plan's areas, runways and emergency plans.
 
 use super::kin::Kin;
-use super::names::{self, Ground, Name, Names, Rank};
-use super::polyline::{self, Style};
-use super::sketch::{Circle, Line, Sketch};
-use super::view::{Mercator, View};
+use super::names::{self, Ground, Name, Rank};
+use super::polyline::Style;
+use super::sheet::Sheet;
+use super::sketch::{Circle, Line};
 use crate::command::Selection;
 use crate::panels::Scene;
-use crate::theme::Palette;
-use egui::{Painter, Pos2, Shape, Stroke, vec2};
-use flight_plan::{FlightPlan, Id};
+use egui::{Pos2, Shape, Stroke, vec2};
+use flight_plan::Id;
 
 /// Areas to be scanned and orbits.
-pub fn draw_areas(
-    painter: &Painter,
-    view: &View,
-    sketch: &Sketch,
-    (scene, kin): (&Scene<'_>, &Kin),
-    p: &Palette,
-) {
-    for circle in &sketch.circles {
-        draw_circle(&kin.painter(painter, &circle.leg), view, circle, is_selected(scene, &circle.leg), p);
+pub fn draw_areas(sheet: &Sheet<'_>, kin: &Kin) {
+    for circle in &sheet.sketch.circles {
+        let is_selected = is_selected(sheet.scene, &circle.leg);
+        draw_circle(&sheet.with(&kin.painter(sheet, &circle.leg)), circle, is_selected);
     }
-    for (leg, rings) in &sketch.polygons {
-        let width = if is_selected(scene, leg) { 2.2 } else { 1.4 };
-        let painter = kin.painter(painter, leg);
+    for (leg, rings) in &sheet.sketch.polygons {
+        let width = if is_selected(sheet.scene, leg) { 2.2 } else { 1.4 };
+        let painter = kin.painter(sheet, leg);
         for ring in rings {
-            let closed: Vec<Mercator> = ring.iter().chain(ring.first()).map(|at| (*at).into()).collect();
-            let parts = polyline::visible_parts(&closed, view);
-            polyline::draw(&painter, &parts, Stroke::new(width, p.text), Style::Dashed, p.halo);
+            let closed = ring.iter().chain(ring.first()).copied();
+            sheet.with(&painter).line(closed, Stroke::new(width, sheet.p.text), Style::Dashed);
         }
     }
 }
@@ -40,7 +33,8 @@ fn is_selected(scene: &Scene<'_>, leg: &Id) -> bool {
 /// Smaller circles are not drawn, screen points.
 const LEAST: f32 = 5.0;
 
-fn draw_circle(painter: &Painter, view: &View, circle: &Circle, selected: bool, p: &Palette) {
+fn draw_circle(sheet: &Sheet<'_>, circle: &Circle, selected: bool) {
+    let Sheet { painter, view, p, .. } = *sheet;
     let centre = view.place(circle.centre);
     let radius = (circle.radius_m * view.points_per_metre()) as f32;
     if !view.rect.expand(radius).contains(centre) || radius > 20_000.0 {
@@ -61,30 +55,21 @@ fn draw_circle(painter: &Painter, view: &View, circle: &Circle, selected: bool, 
 }
 
 /// The ways on from forks, each with its name; the flown path is drawn over the one that is taken.
-pub fn draw_ways(
-    painter: &Painter,
-    view: &View,
-    sketch: &Sketch,
-    (scene, kin): (&Scene<'_>, &Kin),
-    names: &mut Names,
-    p: &Palette,
-) {
+pub fn draw_ways(sheet: &Sheet<'_>, kin: &Kin) {
+    let Sheet { view, sketch, scene, p, .. } = *sheet;
     for way in &sketch.ways {
         let selected = is_selected(scene, &way.fork);
         let of = way.lines.iter().map(|line| &line.leg).find(|leg| kin.has(leg)).unwrap_or(&way.fork);
-        let painter = &kin.painter(painter, of);
-        let points: Vec<Mercator> = way.places().map(Mercator::from).collect();
-        let parts = polyline::visible_parts(&points, view);
-        let stroke = Stroke::new(if selected { 2.2 } else { 1.4 }, p.accent);
-        polyline::draw(painter, &parts, stroke, Style::Dashed, p.halo);
+        let painter = kin.painter(sheet, of);
+        let sheet = sheet.with(&painter);
+        sheet.line(way.places(), Stroke::new(if selected { 2.2 } else { 1.4 }, p.accent), Style::Dashed);
         // of the fork itself what leads to the first leg of the way, not what leads back from the last
         let is_meant = |(number, line): &(usize, &Line)| match line.leg == way.fork {
             true => false,
             false => is_looked_at(scene, &line.leg) || (selected && *number == 0),
         };
         for (_, line) in way.lines.iter().enumerate().filter(is_meant) {
-            let parts = polyline::visible_parts(&[line.from.into(), line.to.into()], view);
-            polyline::draw(painter, &parts, Stroke::new(3.2, p.text), Style::Dashed, p.halo);
+            sheet.line([line.from, line.to], Stroke::new(3.2, p.text), Style::Dashed);
         }
         let Some(first) = way.lines.first() else { continue };
         let (from, to) = (view.place(first.from), view.place(first.to));
@@ -92,7 +77,7 @@ pub fn draw_ways(
         if (selected || from.distance(to) > 140.0) && view.is_near(at) {
             let text = if way.is_default { format!("{} (default)", way.label) } else { way.label.clone() };
             let (rank, spots) = (Rank::Way.or_selected(selected), names::below(at, 6.0));
-            names.ask(painter, Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Halo });
+            sheet.ask(Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Halo });
         }
     }
 }
@@ -103,35 +88,30 @@ fn is_looked_at(scene: &Scene<'_>, leg: &Id) -> bool {
 }
 
 /// Emergency plans: grey and dotted; the one in force is named.
-pub fn draw_emergencies(
-    painter: &Painter,
-    view: &View,
-    sketch: &Sketch,
-    (scene, kin): (&Scene<'_>, &Kin),
-    names: &mut Names,
-    p: &Palette,
-) {
+pub fn draw_emergencies(sheet: &Sheet<'_>, kin: &Kin) {
+    let Sheet { sketch, scene, p, .. } = *sheet;
     let in_force = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency_in_force.as_ref());
     for (id, line) in &sketch.emergencies {
-        let points: Vec<Mercator> = line.iter().map(|at| (*at).into()).collect();
         let emphasised =
             in_force == Some(id) || matches!(&scene.view.selection, Some(Selection::Emergency(e)) if e == id);
-        let painter = if in_force == Some(id) { painter.clone() } else { kin.painter(painter, id) };
+        let painter = if in_force == Some(id) { sheet.painter.clone() } else { kin.painter(sheet, id) };
+        let sheet = sheet.with(&painter);
         let width = if emphasised { 3.0 } else { 2.0 };
-        let parts = polyline::visible_parts(&points, view);
-        polyline::draw(&painter, &parts, Stroke::new(width, p.contingency), Style::Dotted, p.halo);
+        sheet.line(line.iter().copied(), Stroke::new(width, p.contingency), Style::Dotted);
         if let (true, Some(first)) = (emphasised, line.first()) {
-            let (rank, spots) = (Rank::Selected, names::corners_above(view.place(*first), vec2(8.0, 8.0)));
+            let (rank, spots) = (Rank::Selected, names::corners_above(sheet.place(*first), vec2(8.0, 8.0)));
             let text = format!("⚑ {}", scene.document.plan().label(id));
             let colour = p.contingency;
-            names.ask(&painter, Name { rank, spots, text, size: 12.0, colour, ground: Ground::Halo });
+            sheet.ask(Name { rank, spots, text, size: 12.0, colour, ground: Ground::Halo });
         }
     }
 }
 
 /// Runways: their true length and direction, with the threshold and the name.
-pub fn draw_runways(painter: &Painter, view: &View, plan: &FlightPlan, names: &mut Names, p: &Palette) {
-    for runway in plan.runways.iter().filter(|r| r.threshold.is_valid() && r.heading_deg.is_finite()) {
+pub fn draw_runways(sheet: &Sheet<'_>) {
+    let Sheet { painter, view, scene, p, .. } = *sheet;
+    let runways = &scene.document.plan().runways;
+    for runway in runways.iter().filter(|r| r.threshold.is_valid() && r.heading_deg.is_finite()) {
         let (start, end) = (
             view.place(runway.threshold),
             view.place(
@@ -150,6 +130,6 @@ pub fn draw_runways(painter: &Painter, view: &View, plan: &FlightPlan, names: &m
         painter.line_segment([start - across, start + across], Stroke::new(2.0, p.text));
         let at = start - (end - start).normalized() * 8.0;
         let (rank, spots, text) = (Rank::Place, names::below(at, 0.0), runway.id.as_str().into());
-        names.ask(painter, Name { rank, spots, text, size: 12.0, colour: p.text, ground: Ground::Halo });
+        sheet.ask(Name { rank, spots, text, size: 12.0, colour: p.text, ground: Ground::Halo });
     }
 }

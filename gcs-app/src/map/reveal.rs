@@ -1,10 +1,11 @@
 //! Where things are, and bringing what is out of view into it.
 
+use super::sketch::Sketch;
 use super::view::View;
-use super::{MapState, marks, zones};
+use super::{MapState, zones};
 use crate::command::Selection;
 use crate::panels::Scene;
-use flight_plan::{FlightPlan, Leg, Place, Problem, transform};
+use flight_plan::{FlightPlan, Leg, Place, transform};
 use geometry::LatLon;
 use walkers::{MapMemory, lat_lon};
 
@@ -33,33 +34,9 @@ impl MapState {
         self.memory.detached().map(|at| LatLon::new(at.y(), at.x()))
     }
 
-    /// Where something is wrong: the place that is named, or else where that is whose problem it is.
-    pub(super) fn place_of_problem(&self, problem: &Problem, scene: &Scene<'_>) -> Option<LatLon> {
-        match &problem.place {
-            Some(spot) => Some(spot.position),
-            None => self.place_of(&marks::selection_of(problem, scene)?, scene.document.plan()),
-        }
-    }
-
     /// Where something selectable is, if it is anywhere.
     pub fn place_of(&self, selection: &Selection, plan: &FlightPlan) -> Option<LatLon> {
-        let of_leg = |leg| self.sketch.handles.iter().find(|h| h.what.leg() == Some(leg)).map(|h| h.at);
-        match selection {
-            Selection::Leg(id) => of_leg(id).or_else(|| plan.leg(id).and_then(|c| place_of_leg(plan, c.leg))),
-            Selection::Stage(id) => plan
-                .stage(id)?
-                .legs
-                .iter()
-                .find_map(|leg| place_of_leg(plan, leg).or_else(|| of_leg(&leg.id))),
-            Selection::Emergency(id) => {
-                self.sketch.emergencies.iter().find(|(e, _)| e == id)?.1.first().copied()
-            }
-            Selection::Fix(id) => plan.fix(id).map(|f| f.position),
-            Selection::Runway(id) => plan.runway(id).map(|r| r.threshold),
-            Selection::Zone(id) => plan.zone(id).and_then(zones::middle),
-            Selection::Variable(id) => self.sketch.variables.iter().find(|v| v.name == *id).map(|v| v.at),
-            Selection::Procedure(_) => None,
-        }
+        place_of(selection, plan, &self.sketch)
     }
 
     /// True: it was out of view. Of several places the map shows all.
@@ -88,6 +65,24 @@ impl MapState {
             None => memory.center_at(lat_lon(at.lat_deg, at.lon_deg)),
         }
         true
+    }
+}
+
+/// Where something selectable is, if it is anywhere.
+pub fn place_of(selection: &Selection, plan: &FlightPlan, sketch: &Sketch) -> Option<LatLon> {
+    let of_leg = |leg| sketch.handles.iter().find(|h| h.what.leg() == Some(leg)).map(|h| h.at);
+    match selection {
+        Selection::Leg(id) => of_leg(id).or_else(|| plan.leg(id).and_then(|c| place_of_leg(plan, c.leg))),
+        Selection::Stage(id) => {
+            let legs = &plan.stage(id)?.legs;
+            legs.iter().find_map(|leg| place_of_leg(plan, leg).or_else(|| of_leg(&leg.id)))
+        }
+        Selection::Emergency(id) => sketch.emergencies.iter().find(|(e, _)| e == id)?.1.first().copied(),
+        Selection::Fix(id) => plan.fix(id).map(|f| f.position),
+        Selection::Runway(id) => plan.runway(id).map(|r| r.threshold),
+        Selection::Zone(id) => plan.zone(id).and_then(zones::middle),
+        Selection::Variable(id) => sketch.variables.iter().find(|v| v.name == *id).map(|v| v.at),
+        Selection::Procedure(_) => None,
     }
 }
 

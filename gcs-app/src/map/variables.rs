@@ -1,15 +1,14 @@
 //! Variables of the plan that are a place: where they are now, with their radius where they have one.
 
-use super::names::{self, Ground, Name, Names, Rank};
-use super::sketch::{PlacedVariable, Sketch};
+use super::names::{self, Ground, Name, Rank};
+use super::sheet::Sheet;
+use super::sketch::PlacedVariable;
 use super::tools::Canvas;
 use super::tools::pick::things_near;
-use super::view::View;
 use crate::command::{Queue, Selection, ViewCommand};
-use crate::panels::Scene;
 use crate::panels::binding::DraggedVariable;
-use crate::theme::{self, Palette};
-use egui::{DragAndDrop, Painter, Pos2, Shape, Stroke, Ui, vec2};
+use crate::theme;
+use egui::{DragAndDrop, Pos2, Shape, Stroke, Ui, vec2};
 use flight_plan::Id;
 use flight_plan::create::place_binding;
 
@@ -22,27 +21,15 @@ const MARK: f32 = 6.0;
 const WIDEST: f32 = 20_000.0;
 
 /// Every variable that is a place.
-pub fn draw(
-    painter: &Painter,
-    view: &View,
-    sketch: &Sketch,
-    scene: &Scene<'_>,
-    names: &mut Names,
-    p: &Palette,
-) {
-    for variable in &sketch.variables {
-        let selected = scene.is_selected(&Selection::Variable(variable.name.clone()));
-        draw_one(painter, view, variable, (selected, &mut *names), p);
+pub fn draw(sheet: &Sheet<'_>) {
+    for variable in &sheet.sketch.variables {
+        let selected = sheet.scene.is_selected(&Selection::Variable(variable.name.clone()));
+        draw_one(sheet, variable, selected);
     }
 }
 
-fn draw_one(
-    painter: &Painter,
-    view: &View,
-    variable: &PlacedVariable,
-    (selected, names): (bool, &mut Names),
-    p: &Palette,
-) {
+fn draw_one(sheet: &Sheet<'_>, variable: &PlacedVariable, selected: bool) {
+    let Sheet { painter, view, p, .. } = *sheet;
     let at = view.place(variable.at);
     let width = if selected { 2.4 } else { 1.6 };
     let radius = variable.radius_m.map_or(0.0, |radius_m| (radius_m * view.points_per_metre()) as f32);
@@ -60,7 +47,7 @@ fn draw_one(
     let [right, left, above, below] = names::beside(at, radius.max(MARK) + 3.0);
     let (rank, spots, text) =
         (Rank::Place.or_selected(selected), [above, below, right, left], name(&variable.name));
-    names.ask(painter, Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Halo });
+    sheet.ask(Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Halo });
 }
 
 /// A variable whose row is dragged onto a leg's place gives that place.

@@ -1,38 +1,37 @@
 //! Zones: hatched in red where the flight must not be, a double line around where it must stay.
 
 use super::kin::Kin;
-use super::names::{Ground, Name, Names, Rank, Spot};
+use super::names::{Ground, Name, Rank, Spot};
 use super::polyline::{self, Style};
-use super::view::View;
+use super::sheet::Sheet;
 use crate::chart::Point;
 use crate::chart::zones::{self as chart, Surface, ZoneStyle};
 use crate::command::Selection;
-use crate::panels::Scene;
 use crate::theme::Palette;
 use crate::units::Units;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, vec2};
+use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Vec2, vec2};
 use flight_plan::{Altitude, Value, Zone, ZoneKind, ZoneShape};
 use geometry::LatLon;
 use std::convert::Infallible;
 
 /// Every zone of the plan.
-pub fn draw(
-    painter: &Painter,
-    view: &View,
-    (scene, kin): (&Scene<'_>, &Kin),
-    names: &mut Names,
-    p: &Palette,
-) {
+pub fn draw(sheet: &Sheet<'_>, kin: &Kin) {
+    let Sheet { scene, p, .. } = *sheet;
+    let zones = &scene.document.plan().zones;
+    if zones.is_empty() {
+        return;
+    }
     let faulty = scene.faulty();
-    for zone in &scene.document.plan().zones {
+    for zone in zones {
         let selected = scene.is_selected(&Selection::Zone(zone.id.clone()));
         let (painter, colour) = match (faulty.contains(&zone.id), zone.kind) {
-            (true, _) => (painter.clone(), p.warning),
-            (_, ZoneKind::KeepOut) => (kin.painter(painter, &zone.id), p.warning.gamma_multiply(FORBIDDEN)),
-            (_, ZoneKind::KeepIn) => (kin.painter(painter, &zone.id), p.contingency),
+            (true, _) => (sheet.painter.clone(), p.warning),
+            (_, ZoneKind::KeepOut) => (kin.painter(sheet, &zone.id), p.warning.gamma_multiply(FORBIDDEN)),
+            (_, ZoneKind::KeepIn) => (kin.painter(sheet, &zone.id), p.contingency),
         };
-        if let Some(seen) = draw_zone(&painter, view, zone, (selected, colour), p) {
-            ask_name(&painter, view, zone, (seen, selected, colour), label(zone, scene.units()), names);
+        let sheet = sheet.with(&painter);
+        if let Some(seen) = draw_zone(&sheet, zone, (selected, colour)) {
+            ask_name(&sheet, zone, (seen, selected, colour));
         }
     }
 }
@@ -41,38 +40,27 @@ pub fn draw(
 const FORBIDDEN: f32 = 0.75;
 
 /// `colour`: all of the red, where the path breaks it. Returns what is in view of it, if it is large enough for a name.
-fn draw_zone(
-    painter: &Painter,
-    view: &View,
-    zone: &Zone,
-    (selected, colour): (bool, Color32),
-    p: &Palette,
-) -> Option<Rect> {
+fn draw_zone(sheet: &Sheet<'_>, zone: &Zone, (selected, colour): (bool, Color32)) -> Option<Rect> {
+    let view = sheet.view;
     let ring: Vec<Point> = chart::outline(zone).iter().map(|at| view.place(*at).into()).collect();
     let bounds = Rect::from_points(&ring.iter().map(|at| Pos2::from(*at)).collect::<Vec<_>>());
     if ring.len() < 3 || !bounds.intersects(view.rect) {
         return None;
     }
     let seen = bounds.intersect(view.rect);
-    chart::paint(&mut Screen { painter, view }, &ring, &style(zone.kind, selected, colour, p), seen.into());
+    chart::paint(&mut Screen(sheet), &ring, &style(zone.kind, selected, colour, sheet.p), seen.into());
     (bounds.width() > 40.0).then_some(seen)
 }
 
-fn ask_name(
-    painter: &Painter,
-    view: &View,
-    zone: &Zone,
-    (seen, selected, colour): (Rect, bool, Color32),
-    text: String,
-    names: &mut Names,
-) {
+fn ask_name(sheet: &Sheet<'_>, zone: &Zone, (seen, selected, colour): (Rect, bool, Color32)) {
+    let text = label(zone, sheet.scene.units());
     let corners: Vec<Pos2> = match &zone.shape {
-        ZoneShape::Polygon(corners) => corners.iter().map(|at| view.place(*at)).collect(),
+        ZoneShape::Polygon(corners) => corners.iter().map(|at| sheet.place(*at)).collect(),
         ZoneShape::Circle { .. } => Vec::new(),
     };
-    let galley = painter.layout_no_wrap(text.clone(), FontId::proportional(LABEL), colour);
+    let galley = sheet.painter.layout_no_wrap(text.clone(), FontId::proportional(LABEL), colour);
     let (rank, spots) = (Rank::Zone.or_selected(selected), spots(seen, galley.size(), &corners));
-    names.ask(painter, Name { rank, spots, text, size: LABEL, colour, ground: Ground::Halo });
+    sheet.ask(Name { rank, spots, text, size: LABEL, colour, ground: Ground::Halo });
 }
 
 /// Size of a zone's name, points.
@@ -115,10 +103,7 @@ fn style(kind: ZoneKind, selected: bool, colour: Color32, p: &Palette) -> ZoneSt
 }
 
 /// The map as what zones are drawn on. Nothing is filled: the ground is to be seen.
-struct Screen<'a> {
-    painter: &'a Painter,
-    view: &'a View,
-}
+struct Screen<'a>(&'a Sheet<'a>);
 
 impl Surface for Screen<'_> {
     type Pen = Pen;
@@ -130,12 +115,12 @@ impl Surface for Screen<'_> {
 
     fn outline(&mut self, ring: &[Point], (stroke, halo): &Pen) {
         let closed: Vec<Pos2> = ring.iter().chain(ring.first()).map(|at| Pos2::from(*at)).collect();
-        let parts = polyline::visible(&closed, self.view.rect);
-        polyline::draw(self.painter, &parts, *stroke, Style::Solid, *halo);
+        let parts = polyline::visible(&closed, self.0.view.rect);
+        polyline::draw(self.0.painter, &parts, *stroke, Style::Solid, *halo);
     }
 
     fn line(&mut self, from: Point, to: Point, (stroke, _): &Pen) {
-        self.painter.line_segment([from.into(), to.into()], *stroke);
+        self.0.painter.line_segment([from.into(), to.into()], *stroke);
     }
 }
 
