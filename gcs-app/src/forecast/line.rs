@@ -27,8 +27,13 @@ pub struct Line {
 }
 
 impl Line {
+    /// For views of an octave ([`View::octave`](crate::map::view::View::octave)).
+    pub fn for_octave(line: &[Mercator], octave: i32) -> Self {
+        Self::of(line, 2f64.powi(octave.saturating_add(1)))
+    }
+
     /// For scales up to this, screen points per unit of the unit square.
-    pub(super) fn of(line: &[Mercator], scale: f64) -> Self {
+    fn of(line: &[Mercator], scale: f64) -> Self {
         let is_sparse = mean_step(line) > SPARSE * APART / scale;
         let straight = straightened(line, STRAIGHT / scale);
         let mut drawn = Grid::new(APART / 2.0 / scale);

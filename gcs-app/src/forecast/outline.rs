@@ -73,8 +73,7 @@ impl Outline {
     /// Works out the line for an octave.
     pub(super) fn work_out_line(&self, points: &[Point], octave: i32) {
         if let Some(kept) = self.kept(octave) {
-            // the largest scale of the octave
-            kept.get_or_init(|| Line::of(&self.places(points).at, 2f64.powi(octave.saturating_add(1))));
+            kept.get_or_init(|| Line::for_octave(&self.places(points).at, octave));
         }
     }
 

@@ -1,19 +1,26 @@
 //! The aircraft, where it was, and what it flies next.
 
+use super::kept::Kept;
 use super::names::{self, Ground, Name, Rank};
-use super::polyline::{self, Cached, Style};
+use super::polyline::{self, Style};
 use super::sheet::Sheet;
+use super::view::Mercator;
+use crate::forecast::Line;
 use crate::state::VehicleName;
 use crate::theme::Palette;
 use crate::units;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
+use geometry::LatLon;
 
-/// The layer; keeps the decimated trail until view or trail change.
+/// The layer; keeps what it drew of the trail until scale or trail change.
 #[derive(Debug, Default)]
 pub struct Layer {
     /// Whose trail it is.
     of: Option<VehicleName>,
-    trail: Cached,
+    /// With so many changes, and for views of this octave.
+    line: Option<((u64, i32), Line)>,
+    /// Of which line, in which colours.
+    drawn: Kept<(u64, i32, [Color32; 2])>,
 }
 
 impl Layer {
@@ -24,11 +31,27 @@ impl Layer {
         if self.of.as_ref() != shown {
             *self = Self { of: shown.cloned(), ..Self::default() };
         }
-        let trail = &scene.vehicle.trail;
-        let line = || trail.points().iter().map(|at| (*at).into()).collect();
-        let parts = self.trail.parts(line, trail.changes(), view);
-        polyline::draw(painter, parts, Stroke::new(2.6, p.flown), Style::Solid, p.halo);
+        let (changes, octave) = (scene.vehicle.trail.changes(), view.octave());
+        let of = (changes, octave, [p.flown, p.halo]);
+        let line = &mut self.line;
+        self.drawn.draw(
+            painter,
+            view,
+            |made| *made == of,
+            |wide| {
+                let line = line_of(line, scene.vehicle.trail.points(), (changes, octave));
+                let parts = polyline::parts_of(line, wide, Style::Solid);
+                (of, polyline::shapes(&parts, Stroke::new(2.6, p.flown), Style::Solid, p.halo))
+            },
+        );
     }
+}
+
+/// The line of a trail with so many changes for views of an octave; thinned out again only when it is another.
+fn line_of<'a>(known: &'a mut Option<((u64, i32), Line)>, trail: &[LatLon], of: (u64, i32)) -> &'a Line {
+    known.take_if(|(known, _)| *known != of);
+    let line = || Line::for_octave(&trail.iter().map(|at| (*at).into()).collect::<Vec<Mercator>>(), of.1);
+    &known.get_or_insert_with(|| (of, line())).1
 }
 
 /// Waypoints handed out and not flown: the active leg magenta and thick, what follows thin.
@@ -99,5 +122,27 @@ fn symbol(painter: &Painter, at: Pos2, heading_deg: f32, fill: Color32, p: &Pale
         for points in [&body[..], &wing[..], &fin[..]] {
             painter.add(Shape::convex_polygon(part(points), fill, Stroke::new(width, colour)));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trail_is_thinned_again_only_when_it_goes_on_or_for_another_scale() {
+        let trail: Vec<LatLon> = (0..500).map(|i| LatLon::new(46.0, 8.0 + f64::from(i) * 1e-5)).collect();
+        let mut known = None;
+        let mut line = |points: usize, of| line_of(&mut known, &trail[..points], of).clone();
+        let far = line(400, (1, 10));
+        assert_eq!(line(500, (1, 10)), far, "kept while it is told to be the same");
+        let on = line(500, (2, 10));
+        assert_ne!(on, far, "it went on");
+        assert_eq!(on, Line::for_octave(&trail.iter().map(|at| (*at).into()).collect::<Vec<_>>(), 10));
+        let turns: Vec<LatLon> =
+            (0..500).map(|i| LatLon::new(46.0, 8.0).destination(f64::from(i), 300.0)).collect();
+        let mut known = None;
+        let of_octave = |known: &mut _, octave| line_of(known, &turns, (3, octave)).clone();
+        assert_ne!(of_octave(&mut known, 12), of_octave(&mut known, 24), "nearer there is more to be seen");
     }
 }

@@ -98,13 +98,7 @@ impl Layer {
             |made| *made == of,
             |wide| {
                 let (colour, style, halo) = of.2;
-                let near = wide.area(wide.rect.expand(polyline::BESIDE));
-                let seen = |part: &[Mercator]| match style {
-                    Style::Solid => polyline::seen_parts(part, wide),
-                    _ => polyline::visible_parts(part, wide),
-                };
-                let parts: Vec<Vec<Pos2>> =
-                    line.into_iter().flat_map(|line| line.parts(near)).flat_map(seen).collect();
+                let parts = line.map_or(Vec::new(), |line| polyline::parts_of(line, wide, style));
                 (of, polyline::shapes(&parts, Stroke::new(2.0, colour), style, halo))
             },
         );

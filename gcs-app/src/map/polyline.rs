@@ -1,6 +1,7 @@
 //! Long lines, drawn with no more vertices than the screen can show.
 
 use super::view::{Mercator, View};
+use crate::forecast::Line;
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke};
 
 /// The parts of a line that are near the screen, with at most about one vertex per screen point.
@@ -13,13 +14,16 @@ pub fn visible(line: &[Pos2], screen: Rect) -> Vec<Vec<Pos2>> {
     parts(line.iter().copied(), far_around(screen))
 }
 
-/// As [`visible_parts`], but no more than is seen: dashes would begin elsewhere as the map is moved.
-pub fn seen_parts(line: &[Mercator], view: &View) -> Vec<Vec<Pos2>> {
-    parts(line.iter().map(|m| view.screen(*m)), view.rect.expand(BESIDE))
+/// The parts of a thinned line for a style: no more than is seen, but with dashes, which would begin elsewhere as the map is moved.
+pub fn parts_of(line: &Line, view: &View, style: Style) -> Vec<Vec<Pos2>> {
+    let seen = view.rect.expand(BESIDE);
+    let near = if style == Style::Solid { seen } else { far_around(view.rect) };
+    let on_screen = |part: &[Mercator]| parts(part.iter().map(|m| view.screen(*m)), near);
+    line.parts(view.area(seen)).flat_map(on_screen).collect()
 }
 
 /// A line so far out of view may still be seen, screen points.
-pub const BESIDE: f32 = 20.0;
+const BESIDE: f32 = 20.0;
 
 fn far_around(screen: Rect) -> Rect {
     screen.expand(screen.width().max(screen.height()))
@@ -103,54 +107,6 @@ pub fn shapes(parts: &[Vec<Pos2>], stroke: Stroke, style: Style, halo: Color32) 
     shapes
 }
 
-/// Between two points of a line that is kept for a zoom there is at least this way, screen points.
-const COARSE: f64 = 0.35;
-
-/// Line parts of the latest view, worked out again only when the view or the line changes. For each doubling of the zoom the line
-/// is thinned out once, so that a view costs no more than what can be told apart in it.
-#[derive(Debug, Default)]
-pub struct Cached {
-    version: Option<u64>,
-    line: Vec<Mercator>,
-    /// The line for views of this octave.
-    coarse: Option<(i32, Vec<Mercator>)>,
-    view: Option<View>,
-    parts: Vec<Vec<Pos2>>,
-}
-
-impl Cached {
-    /// The visible parts of a line whose `version` differs whenever the line does.
-    pub fn parts(&mut self, line: impl FnOnce() -> Vec<Mercator>, version: u64, view: &View) -> &[Vec<Pos2>] {
-        if self.version != Some(version) {
-            *self = Self { version: Some(version), line: line(), ..Self::default() };
-        }
-        let octave = view.octave();
-        if self.coarse.as_ref().is_none_or(|(of, _)| *of != octave) {
-            // the largest scale of the octave
-            let apart = COARSE / 2f64.powi(octave + 1);
-            self.coarse = Some((octave, thinned(&self.line, apart)));
-            self.view = None;
-        }
-        if let Some((_, coarse)) = self.coarse.as_ref().filter(|_| self.view != Some(*view)) {
-            self.parts = visible_parts(coarse, view);
-            self.view = Some(*view);
-        }
-        &self.parts
-    }
-}
-
-/// Without points nearer than so much to the one kept before, in the unit square; the last one stays.
-fn thinned(line: &[Mercator], apart: f64) -> Vec<Mercator> {
-    let mut kept: Vec<Mercator> = Vec::new();
-    for (i, m) in line.iter().enumerate() {
-        let far = |k: &Mercator| (k.x - m.x).hypot(k.y - m.y) >= apart;
-        if i + 1 == line.len() || kept.last().is_none_or(far) {
-            kept.push(*m);
-        }
-    }
-    kept
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,25 +127,6 @@ mod tests {
             (0..100_000).map(|i| LatLon::new(0.0, f64::from(i) * 1e-5 - 0.5).into()).collect();
         let vertices: usize = visible_parts(&line, &view(9.0)).iter().map(Vec::len).sum();
         assert!((300..1000).contains(&vertices), "{vertices}");
-    }
-
-    /// A million points cost what the screen shows of them, and it is the same line.
-    #[test]
-    fn a_line_is_thinned_out_for_its_zoom() {
-        let zigzag = |i: i32| LatLon::new(f64::from(i % 2) * 1e-6, f64::from(i) * 1e-6 - 0.5);
-        let line: Vec<Mercator> = (0..1_000_000).map(|i| zigzag(i).into()).collect();
-        let mut cached = Cached::default();
-        for (zoom, most) in [(9.0, 3000), (9.5, 3000), (12.0, 20_000)] {
-            let view = view(zoom);
-            let parts = cached.parts(|| line.clone(), 1, &view).to_vec();
-            assert!(cached.coarse.as_ref().unwrap().1.len() < most, "{zoom}");
-            let whole = visible_parts(&line, &view);
-            let ends = |parts: &[Vec<Pos2>]| (parts[0][0], *parts[0].last().unwrap());
-            let ((a, b), (c, d)) = (ends(&parts), ends(&whole));
-            assert!(a.distance(c) < 2.0 && b.distance(d) < 2.0, "{zoom}: {a} {c}, {b} {d}");
-        }
-        let other = cached.parts(Vec::new, 2, &view(9.0));
-        assert!(other.is_empty());
     }
 
     #[test]
