@@ -1,22 +1,19 @@
 //! The bundled world: land, coasts, borders and country names.
 
+use super::kept::Kept;
 use super::sheet::Sheet;
 use super::view::{Mercator, View};
 use super::{places, polyline};
 use crate::assets::{self, Basemap, Polyline, basemap::Bounds};
 use crate::chart::labels::Labels;
-use crate::theme::Palette;
 use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Shape, Stroke, epaint::Vertex};
 use geometry::LatLon;
-use std::sync::Arc;
 
-/// The layer; keeps what it drew until the view or the theme changes.
+/// The layer; keeps what it drew until the scale or the theme changes.
 #[derive(Debug, Default)]
 pub struct Layer {
-    key: Option<(View, Color32)>,
-    land: Arc<Mesh>,
-    lines: Vec<Vec<Pos2>>,
-    borders: Vec<Vec<Pos2>>,
+    /// In which colours: of land and of lines.
+    drawn: Kept<[Color32; 2]>,
 }
 
 impl Layer {
@@ -25,16 +22,8 @@ impl Layer {
         let Sheet { painter, view, p, .. } = *sheet;
         painter.rect_filled(view.rect, 0.0, p.water);
         let Ok(map) = assets::basemap() else { return };
-        if self.key != Some((*view, p.land)) {
-            self.build(map, view, p);
-        }
-        painter.add(Shape::mesh(self.land.clone()));
-        for part in &self.lines {
-            painter.add(Shape::line(part.clone(), Stroke::new(1.0, p.border)));
-        }
-        for part in &self.borders {
-            painter.extend(Shape::dashed_line(part, Stroke::new(1.0, p.border), 6.0, 3.0));
-        }
+        let of = [p.land, p.border];
+        self.drawn.draw(painter, view, |made| *made == of, |wide| (of, world(map, wide, of)));
     }
 
     /// Names of countries, cities and airports, where there is room beside what is written already.
@@ -44,20 +33,22 @@ impl Layer {
         places::add(sheet, placed, &mut shapes);
         shapes
     }
+}
 
-    fn build(&mut self, map: &Basemap, view: &View, p: &Palette) {
-        self.key = Some((*view, p.land));
-        let Some(level) = map.level_for(view.degrees_per_point() as f32) else { return };
-        let shown = shown(view);
-        let mut mesh = Mesh::default();
-        for land in level.lands.iter().filter(|l| l.bounds.overlaps(&shown)) {
-            let corners: Vec<Pos2> = land.vertices.iter().map(|v| view.place(geo(*v))).collect();
-            add_triangles(&mut mesh, &corners, &land.triangles, view.rect, p.land);
-        }
-        self.land = Arc::new(mesh);
-        self.lines = parts(&level.coasts, &shown, view);
-        self.borders = parts(&level.borders, &shown, view);
+/// Land, coasts and borders.
+fn world(map: &Basemap, view: &View, [land, line]: [Color32; 2]) -> Vec<Shape> {
+    let Some(level) = map.level_for(view.degrees_per_point() as f32) else { return Vec::new() };
+    let shown = shown(view);
+    let mut mesh = Mesh::default();
+    for area in level.lands.iter().filter(|area| area.bounds.overlaps(&shown)) {
+        let corners: Vec<Pos2> = area.vertices.iter().map(|v| view.place(geo(*v))).collect();
+        add_triangles(&mut mesh, &corners, &area.triangles, view.rect, land);
     }
+    let stroke = Stroke::new(1.0, line);
+    let coasts = parts(&level.coasts, &shown, view).into_iter().map(|part| Shape::line(part, stroke));
+    let borders = parts(&level.borders, &shown, view);
+    let borders = borders.iter().flat_map(|part| Shape::dashed_line(part, stroke, 6.0, 3.0));
+    std::iter::once(Shape::mesh(mesh)).chain(coasts).chain(borders).collect()
 }
 
 fn geo(v: [f32; 2]) -> LatLon {

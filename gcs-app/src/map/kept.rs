@@ -1,16 +1,13 @@
-//! What is drawn of a long path, kept from frame to frame. It moves with the map, and is made again only when something else is drawn
+//! What is drawn of long lines, kept from frame to frame. It moves with the map, and is made again only when something else is drawn
 //! or the scale is another: the triangles of thousands of lines take longer than a frame has.
 
 use super::view::View;
 use egui::emath::TSTransform;
-use egui::epaint::Tessellator;
-use egui::{Context, Mesh, Painter, Shape, Vec2};
+use egui::epaint::{ClippedShape, Primitive};
+use egui::{Context, Painter, Shape, Vec2};
 
 /// So much around the view is drawn, too, and is there while the map is panned, screen points.
 const AROUND: f32 = 400.0;
-
-/// Fewer points of lines are no work.
-const FEW: usize = 500;
 
 /// A drawing, and what it is of.
 #[derive(Debug)]
@@ -21,8 +18,22 @@ struct Made<K> {
     of: K,
     /// With what is around it.
     view: View,
-    pixels_per_point: f32,
+    pixels: Pixels,
     shape: Shape,
+}
+
+/// What else triangles depend on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pixels {
+    per_point: f32,
+    /// How large egui's picture of letters and discs is: where in it a disc is, is a share of that.
+    picture: [usize; 2],
+}
+
+impl Pixels {
+    fn of(ctx: &Context) -> Self {
+        Self { per_point: ctx.pixels_per_point(), picture: ctx.fonts(|fonts| fonts.font_image_size()) }
+    }
 }
 
 impl<K> Default for Kept<K> {
@@ -41,14 +52,14 @@ impl<K> Kept<K> {
         is_it: impl FnOnce(&K) -> bool,
         make: impl FnOnce(&View) -> (K, Vec<Shape>),
     ) {
-        let pixels_per_point = painter.pixels_per_point();
-        let known = self.0.take().filter(|made| made.pixels_per_point == pixels_per_point && is_it(&made.of));
+        let pixels = Pixels::of(painter.ctx());
+        let known = self.0.take().filter(|made| made.pixels == pixels && is_it(&made.of));
         let known = known.and_then(|made| Some((made.moved(view)?, made)));
         let (moved, made) = known.unwrap_or_else(|| {
             let wide = view.with_more(AROUND);
             let (of, shapes) = make(&wide);
             let shape = ready(painter.ctx(), &wide, shapes);
-            (Vec2::ZERO, Made { of, view: wide, pixels_per_point, shape })
+            (Vec2::ZERO, Made { of, view: wide, pixels, shape })
         });
         add(painter, made.shape.clone(), moved);
         self.0 = Some(made);
@@ -76,30 +87,19 @@ fn add(painter: &Painter, shape: Shape, moved: Vec2) {
     }
 }
 
-/// Many lines as triangles, and discs over them as they are: egui has pictures of those.
+/// Shapes as triangles.
 fn ready(ctx: &Context, view: &View, shapes: Vec<Shape>) -> Shape {
-    if shapes.iter().map(points).sum::<usize>() < FEW {
-        return Shape::Vec(shapes);
-    }
-    let options = ctx.options(|options| options.tessellation_options);
-    let mut tessellator = Tessellator::new(ctx.pixels_per_point(), options, [1, 1], Vec::new());
-    tessellator.set_clip_rect(view.rect);
-    let (mut mesh, mut discs) = (Mesh::default(), Vec::new());
-    for shape in shapes {
-        match shape {
-            Shape::Circle(_) => discs.push(shape),
-            line => tessellator.tessellate_shape(line, &mut mesh),
-        }
-    }
-    let lines = Shape::mesh(mesh);
-    if discs.is_empty() { lines } else { Shape::Vec(std::iter::once(lines).chain(discs).collect()) }
-}
-
-fn points(shape: &Shape) -> usize {
-    match shape {
-        Shape::Path(line) => line.points.len(),
-        _ => 1,
-    }
+    let clipped = shapes.into_iter().map(|shape| ClippedShape {
+        clip_rect: view.rect,
+        shape,
+        transform_after_tessellation: TSTransform::IDENTITY,
+    });
+    let triangles = ctx.tessellate(clipped.collect(), ctx.pixels_per_point());
+    let meshes = triangles.into_iter().filter_map(|drawn| match drawn.primitive {
+        Primitive::Mesh(mesh) => Some(Shape::mesh(mesh)),
+        Primitive::Callback(_) => None,
+    });
+    Shape::Vec(meshes.collect())
 }
 
 #[cfg(test)]
@@ -119,14 +119,7 @@ mod tests {
     /// Wherever the map is, a line is where its places are; it is made anew for another scale, or far from where it was.
     #[test]
     fn what_is_kept_moves_with_the_map() {
-        for points in [2, 2 * FEW] {
-            follows(points);
-        }
-    }
-
-    fn follows(points: usize) {
-        let share = |i: usize| i as f64 / (points - 1) as f64;
-        let line: Vec<LatLon> = (0..points).map(|i| LatLon::new(46.001, 8.0 + 0.02 * share(i))).collect();
+        let line = [8.0, 8.02].map(|lon| LatLon::new(46.001, lon));
         let (ctx, mut kept, mut made) = (Context::default(), Kept::default(), 0);
         for (what, zoom, lon, expected) in [
             (1, 12.0, 8.0, 1),
@@ -147,8 +140,9 @@ mod tests {
                     |of| *of == what,
                     |wide| {
                         made += 1;
-                        let line = line.iter().map(|at| wide.place(*at)).collect();
-                        (what, vec![Shape::line(line, Stroke::new(2.0, Color32::RED))])
+                        let line = line.map(|at| wide.place(at));
+                        let disc = Shape::circle_filled(line[0], 0.5, Color32::RED);
+                        (what, vec![Shape::line(line.to_vec(), Stroke::new(2.0, Color32::RED)), disc])
                     },
                 );
             });
@@ -161,7 +155,7 @@ mod tests {
                     drawn |= mesh.calc_bounds();
                 }
             }
-            let (from, to) = (view.place(line[0]), view.place(line[points - 1]));
+            let (from, to) = (view.place(line[0]), view.place(line[1]));
             if view.rect.contains(from) {
                 assert!((drawn.left() - from.x).abs() < 2.0 && (drawn.right() - to.x).abs() < 2.0, "{drawn}");
                 assert!((drawn.center().y - from.y).abs() < 0.1, "{drawn}");
