@@ -2,7 +2,7 @@
 
 use super::names::Names;
 use super::sheet::Sheet;
-use super::tools::Canvas;
+use super::tools::{self, Canvas};
 use super::view::View;
 use super::{
     MapState, aircraft, chips, clipboard, footprints, foreseen, furniture, graticule, kin, left_out, marks,
@@ -36,7 +36,8 @@ impl MapState {
         marks::draw_faults(&sheet);
         path::move_cursor(response, view, scene, queue);
         let snaps = !ui.input(|i| i.modifiers.alt);
-        let canvas = Canvas { view, sketch: &self.sketch, scene, pointer, snaps, names: &names };
+        let near = tools::near(view, &self.sketch, scene);
+        let canvas = Canvas { view, sketch: &self.sketch, scene, near: &near, pointer, snaps, names: &names };
         self.items.run(ui, &canvas, !self.tools.offers_handles(), queue);
         let asked = self.tools.run(ui, response, &canvas, queue, p);
         self.menu.run(ui, asked, &canvas, queue);

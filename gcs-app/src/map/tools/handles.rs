@@ -5,8 +5,10 @@ use super::pen::length;
 use super::pick::selection;
 use crate::command::Selection;
 use crate::map::names::{self, Ground, Name, Rank, Spot};
-use crate::map::sketch::{Handle, Handled, numbers};
+use crate::map::sketch::{Handle, Handled, Sketch, numbers};
 use crate::map::text;
+use crate::map::view::View;
+use crate::panels::Scene;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 
@@ -17,9 +19,11 @@ const GAP: f64 = 90.0;
 /// How much is left of a place that can't be grabbed.
 const FAINT: f32 = 0.6;
 
-/// Handles on the screen, with their numbers in the sketch; those of an outline only where it is selected.
-pub fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle, Pos2)> {
-    let Canvas { view, sketch, scene, .. } = *canvas;
+/// A handle on the screen, with its number in the sketch.
+pub type Near<'a> = (usize, &'a Handle, Pos2);
+
+/// Handles on the screen; those of an outline only where it is selected.
+pub fn near<'a>(view: &View, sketch: &'a Sketch, scene: &Scene<'_>) -> Vec<Near<'a>> {
     let plan = scene.document.plan();
     let is_shown = move |handle: &Handle| match &handle.what {
         Handled::Number { .. } | Handled::ArcCentre(_) | Handled::Entry { .. } | Handled::Side { .. } => {
@@ -39,6 +43,7 @@ pub fn near<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = (usize, &'a Handle,
         .filter(move |(_, _, at)| view.rect.contains(*at))
         .filter(move |(_, handle, _)| is_shown(handle))
         .take(MOST)
+        .collect()
 }
 
 /// The plan's places with their names, faint, where the tool in use offers none of them to be grabbed.
@@ -52,9 +57,9 @@ pub fn draw_faint(painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
         )
     };
     let mut labels = Vec::new();
-    for (_, handle, at) in near(canvas).filter(|(_, handle, _)| is_place(handle)) {
-        draw(&painter, at, handle, false, false, p);
-        labels.extend(label(handle, at, canvas, false));
+    for (_, handle, at) in canvas.near.iter().filter(|(_, handle, _)| is_place(handle)) {
+        draw(&painter, *at, handle, false, false, p);
+        labels.extend(label(handle, *at, canvas, false));
     }
     draw_labels(&painter, labels, canvas, p);
 }

@@ -27,6 +27,7 @@ mod typed;
 mod whole;
 
 pub(super) use bands::in_force;
+pub(super) use handles::{Near, near};
 pub use toolbox::Toolbox;
 
 use super::names::Names;
@@ -86,6 +87,8 @@ pub struct Canvas<'a> {
     pub sketch: &'a Sketch,
     /// Everything else there is to know.
     pub scene: &'a Scene<'a>,
+    /// What of the plan's places is on the screen and can be grabbed.
+    pub near: &'a [Near<'a>],
     /// Where the pointer is over the map or what can be grabbed there, or was pressed; not while Shift draws around something.
     pub pointer: Option<Pos2>,
     /// What is drawn near a fix means the fix; Alt holds that off.

@@ -4,7 +4,7 @@
 use super::bands;
 use super::corner::remove_corner;
 use super::group::{Group, within};
-use super::handles::{draw, draw_labels, label, near, value};
+use super::handles::{draw, draw_labels, label, value};
 use super::pen::{Mark, way};
 use super::pick::{line_under, lines_near, selection};
 use super::snap::{self, snap_but};
@@ -105,10 +105,11 @@ impl Tool for Select {
             Some((name, becomes)) if *becomes == handle.what => name.clone(),
             _ => handle.what.name(canvas.scene.document),
         };
-        let shown = near(canvas).filter(|(_, handle, _)| self.inserting.is_none() || !is_mark(handle));
+        let shown = canvas.near.iter().filter(|(_, handle, _)| self.inserting.is_none() || !is_mark(handle));
         let plan = canvas.scene.document.plan();
         let first = |handle: &Handle| canvas.scene.is_selected(&selection(plan, &handle.what));
-        let grips = shown.map(|(key, handle, at)| Grip { key, name: name(handle), at, first: first(handle) });
+        let grips =
+            shown.map(|&(key, handle, at)| Grip { key, name: name(handle), at, first: first(handle) });
         let grips: Vec<Grip> = grips.chain(self.group.grips(canvas)).collect();
         // below the others
         let line = self.line_grip(&grips, canvas);
@@ -228,7 +229,7 @@ impl Tool for Select {
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, touch: Touch, p: &Palette) {
         let plan = canvas.scene.document.plan();
         let mut labels = Vec::new();
-        for (key, handle, at) in near(canvas) {
+        for &(key, handle, at) in canvas.near {
             let selected = canvas.scene.is_selected(&selection(plan, &handle.what));
             let hot = touch.hovered == Some(key) || touch.dragged == Some(key);
             let chosen = self.corner.as_ref() == Some(&handle.what);
