@@ -4,7 +4,8 @@
 use super::text;
 use crate::chart::labels::Labels;
 use crate::theme::Palette;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Vec2, vec2};
+use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Vec2, vec2};
+use std::sync::Arc;
 
 /// So many are looked at in a frame; more could not be read.
 const MOST: usize = 400;
@@ -131,33 +132,39 @@ impl Names {
         self.asked.sort_by_key(|(name, _)| name.rank);
         self.asked.truncate(MOST);
         let wanted: Vec<Wanted> = self.asked.iter().map(|(name, _)| Wanted::from(name)).collect();
-        let measure =
-            |index: usize| self.asked.get(index).map_or(Vec2::ZERO, |(name, _)| measured(painter, name));
+        // few have room, and these need not be laid out again to be written
+        let mut letters: Vec<Option<Arc<Galley>>> = vec![None; wanted.len()];
+        let measure = |index: usize| {
+            let laid_out = self.asked.get(index).zip(letters.get_mut(index));
+            laid_out.map_or(Vec2::ZERO, |((name, _), letters)| {
+                size(letters.insert(laid_out_by(painter, name)), name.ground)
+            })
+        };
         let (places, labels) = placed(&wanted, &self.clear, painter.clip_rect(), measure);
-        for ((name, opacity), rect) in self.asked.iter().zip(places) {
-            let Some(rect) = rect else { continue };
+        for (((name, opacity), rect), letters) in self.asked.iter().zip(places).zip(letters) {
+            let (Some(rect), Some(letters)) = (rect, letters) else { continue };
             let mut painter = painter.clone();
             if *opacity < 1.0 {
                 painter.multiply_opacity(*opacity);
             }
             match name.ground {
-                Ground::Halo => {
-                    text::haloed(&painter, rect.min, Align2::LEFT_TOP, &name.text, name.size, name.colour, p);
-                }
-                Ground::Plate => text::on_plate(&painter, rect, PLATE, &name.text, name.size, p),
+                Ground::Halo => text::with_halo(&painter, rect.min, letters, name.colour, p),
+                Ground::Plate => text::on_plate(&painter, rect, PLATE, letters, p),
             }
         }
         labels
     }
 }
 
+fn laid_out_by(painter: &Painter, name: &Name) -> Arc<Galley> {
+    painter.layout_no_wrap(name.text.clone(), FontId::proportional(name.size), Color32::PLACEHOLDER)
+}
+
 /// How large it is with its plate, screen points.
-fn measured(painter: &Painter, name: &Name) -> Vec2 {
-    let font = FontId::proportional(name.size);
-    let size = painter.layout_no_wrap(name.text.clone(), font, Color32::PLACEHOLDER).size();
-    match name.ground {
-        Ground::Halo => size,
-        Ground::Plate => size + 2.0 * PLATE,
+fn size(letters: &Galley, ground: Ground) -> Vec2 {
+    match ground {
+        Ground::Halo => letters.size(),
+        Ground::Plate => letters.size() + 2.0 * PLATE,
     }
 }
 
@@ -183,7 +190,7 @@ fn placed(
     wanted: &[Wanted],
     clear: &[Rect],
     map: Rect,
-    measure: impl Fn(usize) -> Vec2,
+    mut measure: impl FnMut(usize) -> Vec2,
 ) -> (Vec<Option<Rect>>, Labels) {
     let mut furniture = Labels::new(map.into());
     clear.iter().for_each(|rect| furniture.take((*rect).into()));

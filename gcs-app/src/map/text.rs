@@ -2,7 +2,8 @@
 
 use crate::chart::Room;
 use crate::theme::Palette;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, vec2};
+use egui::{Align2, Color32, FontId, Galley, Painter, Pos2, Rect, Stroke, Vec2, vec2};
+use std::sync::Arc;
 
 /// Text with a halo, readable on any ground. Returns where it is.
 pub fn haloed(
@@ -16,12 +17,17 @@ pub fn haloed(
 ) -> Rect {
     let galley = painter.layout_no_wrap(text.into(), FontId::proportional(size), Color32::PLACEHOLDER);
     let rect = anchor.anchor_size(at, galley.size());
+    with_halo(painter, rect.min, galley, colour, p);
+    rect
+}
+
+/// Letters with a halo.
+pub fn with_halo(painter: &Painter, at: Pos2, letters: Arc<Galley>, colour: Color32, p: &Palette) {
     let halo = p.halo.gamma_multiply(0.8);
     for offset in [vec2(-1.0, -1.0), vec2(1.0, -1.0), vec2(-1.0, 1.0), vec2(1.0, 1.0)] {
-        painter.galley_with_override_text_color(rect.min + offset, galley.clone(), halo);
+        painter.galley_with_override_text_color(at + offset, letters.clone(), halo);
     }
-    painter.galley_with_override_text_color(rect.min, galley, colour);
-    rect
+    painter.galley_with_override_text_color(at, letters, colour);
 }
 
 /// A small disc with an edge. egui keeps pictures of discs: two of them are a tenth of the vertices of a circle with a stroke.
@@ -35,11 +41,10 @@ pub fn disc(painter: &Painter, at: Pos2, radius: f32, fill: Color32, edge: Strok
     painter.circle_filled(at, radius - edge.width / 2.0, fill);
 }
 
-/// Text on a plate, so far from the plate's edge, readable over other names too.
-pub fn on_plate(painter: &Painter, plate: Rect, edge: Vec2, text: &str, size: f32, p: &Palette) {
-    let galley = painter.layout_no_wrap(text.into(), FontId::proportional(size), p.text);
+/// Letters on a plate, so far from the plate's edge, readable over other names too.
+pub fn on_plate(painter: &Painter, plate: Rect, edge: Vec2, letters: Arc<Galley>, p: &Palette) {
     painter.rect_filled(plate, 3.0, p.panel.gamma_multiply(0.8));
-    painter.galley(plate.min + edge, galley, p.text);
+    painter.galley(plate.min + edge, letters, p.text);
 }
 
 /// Moved so far that nothing of it is outside.
