@@ -113,6 +113,7 @@ fn draw_preview(ui: &Ui, painter: &Painter, axes: &Axes, seen: &[Point], scene: 
     }
 }
 
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Axes {
     plot: Rect,
     /// What is before is not shown.

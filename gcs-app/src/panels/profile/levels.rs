@@ -22,6 +22,50 @@ const STEP: f64 = 5.0;
 #[derive(Debug, Default)]
 pub struct Levels {
     drag: Option<Drag>,
+    marks: Marks,
+}
+
+/// Where the marks are, by the numbers of their passages: looked for again when something else is shown or selected.
+#[derive(Debug, Default)]
+struct Marks {
+    of: Option<Shown>,
+    at: Vec<(usize, Pos2)>,
+}
+
+/// What marks are of.
+#[derive(Debug)]
+struct Shown {
+    axes: Axes,
+    /// Versions of the document and of the forecast.
+    versions: (u64, u64),
+    selection: Option<Selection>,
+    also: BTreeSet<Selection>,
+}
+
+impl Marks {
+    fn refresh(&mut self, axes: &Axes, scene: &Scene<'_>) -> &[(usize, Pos2)] {
+        if !self.of.as_ref().is_some_and(|of| of.is_still(axes, scene)) {
+            self.of = Some(Shown::of(axes, scene));
+            self.at = marks(axes, scene).into_iter().map(|(index, _, at)| (index, at)).collect();
+        }
+        &self.at
+    }
+}
+
+impl Shown {
+    fn of(axes: &Axes, scene: &Scene<'_>) -> Self {
+        let (selection, also) = (scene.view.selection.clone(), scene.view.also.clone());
+        Self { axes: *axes, versions: versions(scene), selection, also }
+    }
+
+    fn is_still(&self, axes: &Axes, scene: &Scene<'_>) -> bool {
+        (self.axes, self.versions) == (*axes, versions(scene))
+            && (&self.selection, &self.also) == (&scene.view.selection, &scene.view.also)
+    }
+}
+
+fn versions(scene: &Scene<'_>) -> (u64, u64) {
+    (scene.document.version(), scene.analysis.forecast_version)
 }
 
 /// A drag on its way. It is measured on the axes as they were when it began: they change with the path.
@@ -85,13 +129,16 @@ impl Levels {
         }
         let p = theme::of(ui);
         let is_near = ui.rect_contains_pointer(axes.plot.expand(REACH));
-        for (index, passage, at) in marks(axes, scene) {
+        let mut marks = std::mem::take(&mut self.marks);
+        for (index, at) in marks.refresh(axes, scene).iter().copied() {
+            let Some(passage) = scene.forecast().passages.get(index) else { continue };
             let response = mark(ui, scene, passage, index, at);
             self.react(&response, passage, axes, scene, queue);
             if is_near || response.has_focus() || response.dragged() {
                 draw(painter, at, response.hovered() || response.dragged(), p);
             }
         }
+        self.marks = marks;
         self.paint(painter, ui.ctx().pointer_interact_pos(), scene, p);
     }
 
