@@ -12,9 +12,14 @@ use flight_plan::Id;
 
 /// Areas to be scanned and orbits.
 pub fn draw_areas(sheet: &Sheet<'_>, kin: &Kin) {
+    let points_per_metre = sheet.view.points_per_metre();
     for circle in &sheet.sketch.circles {
+        let radius = (circle.radius_m * points_per_metre) as f32;
         let is_selected = is_selected(sheet.scene, &circle.leg);
-        draw_circle(&sheet.with(&kin.painter(sheet, &circle.leg)), circle, is_selected);
+        // the handle in its middle covers it
+        if radius >= LEAST || is_selected {
+            draw_circle(&sheet.with(&kin.painter(sheet, &circle.leg)), circle, (radius, is_selected));
+        }
     }
     for (leg, rings) in &sheet.sketch.polygons {
         let width = if is_selected(sheet.scene, leg) { 2.2 } else { 1.4 };
@@ -33,15 +38,10 @@ fn is_selected(scene: &Scene<'_>, leg: &Id) -> bool {
 /// Smaller circles are not drawn, screen points.
 const LEAST: f32 = 5.0;
 
-fn draw_circle(sheet: &Sheet<'_>, circle: &Circle, selected: bool) {
+fn draw_circle(sheet: &Sheet<'_>, circle: &Circle, (radius, selected): (f32, bool)) {
     let Sheet { painter, view, p, .. } = *sheet;
     let centre = view.place(circle.centre);
-    let radius = (circle.radius_m * view.points_per_metre()) as f32;
     if !view.rect.expand(radius).contains(centre) || radius > 20_000.0 {
-        return;
-    }
-    // the handle in its middle covers it
-    if radius < LEAST && !selected {
         return;
     }
     let stroke = Stroke::new(if selected { 2.2 } else { 1.4 }, p.text);

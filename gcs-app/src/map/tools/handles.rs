@@ -24,7 +24,7 @@ pub type Near<'a> = (usize, &'a Handle, Pos2);
 
 /// Handles on the screen; those of an outline only where it is selected.
 pub fn near<'a>(view: &View, sketch: &'a Sketch, scene: &Scene<'_>) -> Vec<Near<'a>> {
-    let plan = scene.document.plan();
+    let (plan, points_per_metre) = (scene.document.plan(), view.points_per_metre());
     let is_shown = move |handle: &Handle| match &handle.what {
         Handled::Number { .. } | Handled::ArcCentre(_) | Handled::Entry { .. } | Handled::Side { .. } => {
             scene.view.also.is_empty() && scene.is_selected(&selection(plan, &handle.what))
@@ -33,7 +33,7 @@ pub fn near<'a>(view: &View, sketch: &'a Sketch, scene: &Scene<'_>) -> Vec<Near<
             scene.is_selected(&selection(plan, &handle.what))
         }
         Handled::Centre(id) => plan.zone(id).is_none() || scene.is_selected(&Selection::Zone(id.clone())),
-        Handled::Between { gap_m, .. } => f64::from(*gap_m) * view.points_per_metre() > GAP,
+        Handled::Between { gap_m, .. } => f64::from(*gap_m) * points_per_metre > GAP,
         Handled::Fix(_) | Handled::Variable(_) | Handled::Waypoint(_) => true,
     };
     let placed = sketch.handles.iter().zip(&sketch.placed.handles);
