@@ -29,7 +29,8 @@ pub use rearrange::{
     StageSpot, into_branch, relocate, relocate_stage, relocate_thing, shift_legs, shift_thing,
 };
 pub use thing::{
-    add_stage, emergency_plan, fix, move_fix_into_legs, remove, runway, shift_stage, variable, zone,
+    add_stage, emergency_plan, fix, move_fix_into_legs, own_places, remove, runway, shift_stage, variable,
+    zone,
 };
 pub(crate) use thing::{every_leg, legs_in};
 pub use trial::{RUN_UP_M, is_tried, trial};

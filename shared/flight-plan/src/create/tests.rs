@@ -266,6 +266,32 @@ fn a_procedure_is_called_at_a_place_and_turned() {
 }
 
 #[test]
+fn the_fixes_of_a_procedure_move_with_it_once_they_are_its_own_places() {
+    let plan = made(Template::Patrol);
+    let (caller, edit) = procedure_of(&plan, &["patrol".into()]).unwrap();
+    let plan = edit.apply(&plan).unwrap();
+    let id = &plan.procedures[0].id.clone();
+    let anchored = call(&plan, id, at(HOME), None).unwrap();
+    let plan = insert(&plan, anchored.clone(), Spot::After(caller)).apply(&plan).unwrap();
+    let flown = |plan: &FlightPlan| {
+        let (flown, problems) = crate::procedure::instantiate(plan);
+        assert!(problems.is_empty(), "{problems:?}");
+        flown.leg(&Id::new(&format!("{}.p2", anchored.id))).unwrap().leg.place().cloned()
+    };
+    assert_eq!(flown(&plan), Some(Place::Fix("P2".into())), "a fix stays where it is");
+    let [of_leg, of_all] = [&"p2".into(), id].map(|of| own_places(&plan, of).unwrap().apply(&plan).unwrap());
+    let p2 = plan.fix(&"P2".into()).unwrap().position;
+    for own in [&of_leg, &of_all] {
+        assert_eq!(own.procedure_leg(&"p2".into()).unwrap().1.place(), Some(&at(p2)));
+        let Some(Place::Position(Value::Constant(moved))) = flown(own) else { panic!("no place") };
+        assert!(moved.distance_m(p2) > 100.0, "it came along");
+    }
+    assert!(matches!(of_leg.procedure_leg(&"p1".into()).unwrap().1.place(), Some(Place::Fix(_))));
+    assert!(own_places(&of_all, id).is_none() && own_places(&plan, &"scan".into()).is_none());
+    assert_eq!(of_all.fixes, plan.fixes, "others may go there");
+}
+
+#[test]
 fn a_trial_flies_what_can_be_flown_and_refuses_what_cannot() {
     let plan = made(Template::Survey);
     let from = HOME.destination(200.0, 5000.0);

@@ -172,21 +172,44 @@ pub fn move_fix_into_legs(plan: &FlightPlan, id: &Id) -> Edit {
 
 /// Every leg that goes to a fix goes elsewhere instead.
 pub(super) fn replace_fix(plan: &FlightPlan, id: &Id, with: &Place) -> Edit {
-    let loose = |leg: &Arc<Leg>| {
-        let mut leg = leg.as_ref().clone();
-        let mut hit = false;
-        leg.for_each_slot_mut(&mut |slot| {
-            if let SlotMut::Place(place) = slot
-                && *place == Place::Fix(id.clone())
-            {
-                place.clone_from(with);
-                hit = true;
-            }
-        });
-        hit.then(|| Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(leg) })
+    let with = |fix: &Id| (fix == id).then(|| with.clone());
+    Edit::All(every_leg(plan).into_iter().filter_map(|leg| replace_fixes(leg, &with)).collect())
+}
+
+/// A procedure or a leg of one has the positions of its fixes as its own: a call moves these, while a fix stays where it is.
+/// `None`: it is no such thing, or goes to no fix.
+pub fn own_places(plan: &FlightPlan, of: &Id) -> Option<Edit> {
+    let legs = match plan.procedure(of) {
+        Some(procedure) => legs_in(&procedure.legs),
+        None => {
+            let (procedure, _) = plan.procedure_leg(of)?;
+            let leg = legs_in(&procedure.legs).into_iter().find(|leg| leg.id == *of)?;
+            legs_in(std::slice::from_ref(leg))
+        }
     };
+    let position = |fix: &Id| Some(Place::Position(Value::Constant(plan.fix(fix)?.position)));
+    let edits: Vec<Edit> = legs.into_iter().filter_map(|leg| replace_fixes(leg, &position)).collect();
+    (!edits.is_empty()).then_some(Edit::All(edits))
+}
+
+/// The edit by which a leg goes elsewhere instead of to the fixes that `with` knows; `None`: it goes to none of them.
+fn replace_fixes(leg: &Arc<Leg>, with: &impl Fn(&Id) -> Option<Place>) -> Option<Edit> {
     // a loop goes nowhere itself; to replace it would put its old body back
-    Edit::All(every_leg(plan).into_iter().filter(|leg| leg.body().is_empty()).filter_map(loose).collect())
+    if !leg.body().is_empty() {
+        return None;
+    }
+    let mut leg = leg.as_ref().clone();
+    let mut hit = false;
+    leg.for_each_slot_mut(&mut |slot| {
+        if let SlotMut::Place(place) = slot
+            && let Place::Fix(fix) = &*place
+            && let Some(other) = with(fix)
+        {
+            *place = other;
+            hit = true;
+        }
+    });
+    hit.then(|| Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(leg) })
 }
 
 /// Every leg, in emergency plans and procedures too.
