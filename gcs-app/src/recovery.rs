@@ -36,14 +36,20 @@ pub struct LeftDocument {
     /// The plan's name.
     #[serde(default)]
     pub name: String,
-    /// When these changes were first kept, seconds since 1970-01-01T00:00:00Z; older copies do not say.
-    #[serde(default)]
-    kept_unix_s: Option<u64>,
+    /// When it was last changed, to the [`PERIOD_S`], seconds since 1970-01-01T00:00:00Z; a copy that does not say was written then.
+    #[serde(default, alias = "kept_unix_s")]
+    pub changed_unix_s: Option<u64>,
     /// How long ago that was when it was found.
     #[serde(skip)]
     pub age: Duration,
     /// The plan as it would be saved.
     pub text: String,
+}
+
+impl LeftDocument {
+    fn changed(&self) -> Option<SystemTime> {
+        UNIX_EPOCH.checked_add(Duration::from_secs(self.changed_unix_s?))
+    }
 }
 
 /// What a window left behind that ended without being closed.
@@ -58,16 +64,16 @@ struct Unsaved {
     path: Option<PathBuf>,
     stamp: Option<Stamp>,
     plan: Arc<FlightPlan>,
-    since: SystemTime,
+    changed: SystemTime,
 }
 
 impl Unsaved {
-    fn of(document: &Document, since: SystemTime) -> Self {
+    fn of(document: &Document, changed: SystemTime) -> Self {
         Self {
             path: document.path().map(Path::to_owned),
             stamp: document.stamp(),
             plan: document.plan().clone(),
-            since,
+            changed,
         }
     }
 
@@ -76,7 +82,7 @@ impl Unsaved {
             path: self.path.clone(),
             stamp: self.stamp,
             name: self.plan.name.clone(),
-            kept_unix_s: self.since.duration_since(UNIX_EPOCH).ok().map(|since| since.as_secs()),
+            changed_unix_s: unix_s(self.changed),
             age: Duration::ZERO,
             text: flight_plan::write(&self.plan),
         }
@@ -96,8 +102,10 @@ pub struct Keeper {
     jobs: Option<Sender<Job>>,
     failures: Receiver<String>,
     worker: Option<JoinHandle<()>>,
-    /// The versions of which there are copies, each since when; `None`: what is there is not of this window.
+    /// The versions of which there are copies, each with when it came to be; `None`: what is there is not of this window.
     kept: Option<Vec<(u64, SystemTime)>>,
+    /// The versions that were recovered, each with when it came to be in the window that crashed.
+    recovered: Vec<(u64, SystemTime)>,
     last_s: f64,
     left_behind: Option<LeftBehind>,
     /// Held while the window lives: the place is not free.
@@ -145,6 +153,7 @@ impl Keeper {
             failures,
             worker: Some(worker),
             kept: Some(Vec::new()),
+            recovered: Vec::new(),
             last_s: f64::NEG_INFINITY,
             left_behind,
             _place: place,
@@ -164,6 +173,11 @@ impl Keeper {
         self.left_behind.take()
     }
 
+    /// What was left behind has become this version of a document: it is as old as it was.
+    pub fn recovered_as(&mut self, version: u64, left: &LeftDocument) {
+        self.recovered.extend(left.changed().map(|changed| (version, changed)));
+    }
+
     /// Keeps a copy of these documents with unsaved changes if they have changed, or takes it away where there are none. Returns
     /// after how long to look again.
     pub fn tend<'d>(&mut self, unsaved: impl Iterator<Item = &'d Document>, now_s: f64) -> Option<Duration> {
@@ -180,11 +194,11 @@ impl Keeper {
         self.last_s = now_s;
         let before = self.kept.take().unwrap_or_default();
         let now = SystemTime::now();
-        let since =
-            |version| before.iter().find(|(known, _)| *known == version).map_or(now, |(_, since)| *since);
+        let known = || before.iter().chain(&self.recovered);
+        let since = |version| known().find(|(of, _)| *of == version).map_or(now, |(_, changed)| *changed);
         let kept: Vec<(u64, SystemTime)> = versions.map(|version| (version, since(version))).collect();
         let unsaved =
-            unsaved.into_iter().zip(&kept).map(|(document, (_, since))| Unsaved::of(document, *since));
+            unsaved.into_iter().zip(&kept).map(|(document, (_, changed))| Unsaved::of(document, *changed));
         self.order(unsaved.collect());
         self.kept = Some(kept);
         None
@@ -241,14 +255,19 @@ fn carry_out(job: Job, copy: &Path) -> std::io::Result<()> {
     }
 }
 
+fn unix_s(at: SystemTime) -> Option<u64> {
+    at.duration_since(UNIX_EPOCH).ok().map(|since| since.as_secs())
+}
+
 /// `None`: nothing was left there, or nothing that can be read.
 fn read(copy: &Path) -> Option<LeftBehind> {
     let written = copy.metadata().and_then(|meta| meta.modified()).ok()?;
     let mut kept: Kept = serde_json::from_slice(&std::fs::read(copy).ok()?).ok()?;
     for document in &mut kept.documents {
-        let since = document.kept_unix_s.map(Duration::from_secs);
-        let since = since.and_then(|since| UNIX_EPOCH.checked_add(since)).unwrap_or(written);
-        document.age = since.elapsed().unwrap_or_default();
+        // once it is written again, the file no longer says so
+        document.changed_unix_s = document.changed_unix_s.or_else(|| unix_s(written));
+        let age = document.changed().and_then(|changed| changed.elapsed().ok());
+        document.age = age.unwrap_or_default();
     }
     (!kept.documents.is_empty()).then_some(LeftBehind { documents: kept.documents })
 }
@@ -386,6 +405,36 @@ mod tests {
         let [ridge, old] = found.documents.as_slice() else { panic!("{found:?}") };
         assert_eq!((ridge.name.as_str(), old.name.as_str()), ("Ridge", ""));
         assert!(ridge.age.as_secs() > 1_000_000_000 && old.age.as_secs() < 60, "{ridge:?} {old:?}");
+    }
+
+    /// However often it is written again, or recovered and lost once more: when it was last changed stays what it was.
+    #[test]
+    fn a_plan_is_as_old_as_its_last_change_and_not_as_its_copy() {
+        let folder = tempfile::tempdir().unwrap();
+        let kept = r#"{"documents":[{"path":null,"kept_unix_s":1000,"text":""}]}"#;
+        std::fs::write(folder.path().join("0.json"), kept).unwrap();
+        let changed = |keeper: &Keeper| -> Vec<Option<u64>> {
+            keeper.left_behind().unwrap().documents.iter().map(|left| left.changed_unix_s).collect()
+        };
+        // beside another one, it is written again
+        let other = edited();
+        let mut window = Keeper::open(folder.path()).unwrap();
+        tend(&mut window, &other, 0.0);
+        drop(window);
+        let mut next = Keeper::open(folder.path()).unwrap();
+        assert!(matches!(changed(&next)[..], [Some(now), Some(1000)] if now > 1000), "{:?}", changed(&next));
+        let found = next.take_left_behind().unwrap();
+        let mut recovered = edited();
+        next.recovered_as(recovered.version(), &found.documents[1]);
+        tend(&mut next, &recovered, 0.0);
+        drop(next);
+        let mut again = Keeper::open(folder.path()).unwrap();
+        assert_eq!(changed(&again), [Some(1000)]);
+        again.take_left_behind();
+        recovered.edit(&Edit::MoveFix { fix: "A".into(), to: LatLon::new(2.0, 2.0) }).unwrap();
+        tend(&mut again, &recovered, 0.0);
+        drop(again);
+        assert!(changed(&Keeper::open(folder.path()).unwrap())[0].unwrap() > 1000, "it was edited");
     }
 
     #[test]

@@ -313,8 +313,9 @@ impl App {
         let several = found.documents.len() > 1;
         // the one that was shown is shown again
         for left in found.documents.into_iter().rev() {
-            let mut recovered = Document::recovered(left.text.as_bytes(), left.path);
+            let mut recovered = Document::recovered(left.text.as_bytes(), left.path.clone());
             recovered.set_stamp(left.stamp);
+            self.keeper.iter_mut().for_each(|keeper| keeper.recovered_as(recovered.version(), &left));
             self.shelf.open(&mut self.document, recovered);
         }
         self.show_another();

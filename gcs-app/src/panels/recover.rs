@@ -13,14 +13,15 @@ const LIST_HEIGHT: f32 = 120.0;
 /// `may_close`: Escape is for it. `is_calm`: no vehicle flies, and Return may be for it.
 pub fn show(ui: &mut Ui, found: &LeftBehind, (may_close, is_calm): (bool, bool), queue: &mut Queue) {
     ui.set_width(380.0);
+    let weak = theme::of(ui).weak;
     ui.strong("The last window ended without saving");
     ui.label("It had changes of");
     ScrollArea::vertical().id_salt("left behind").max_height(LIST_HEIGHT).show(ui, |ui| {
         for document in &found.documents {
-            ui.add(Label::new(format!("• {}", told(document))).truncate());
+            ui.add(Label::new(format!("• {}", which(document))).truncate());
+            ui.add(Label::new(RichText::new(format!("   {}", when(document))).color(weak)).truncate());
         }
     });
-    let weak = theme::of(ui).weak;
     ui.label(RichText::new("You may go on meanwhile: they are kept until you decide.").color(weak));
     ui.add_space(8.0);
     ui.horizontal(|ui| {
@@ -40,14 +41,21 @@ pub fn show(ui: &mut Ui, found: &LeftBehind, (may_close, is_calm): (bool, bool),
     });
 }
 
-/// By which a plan is known again: its file or else its name, and how old its changes are.
-fn told(left: &LeftDocument) -> String {
-    let age = units::duration(left.age.as_secs_f64());
+/// By which a plan is known again: its file or else its name.
+fn which(left: &LeftDocument) -> String {
     match (&left.path, left.name.as_str()) {
-        (Some(path), _) => format!("{}, {age} ago", path.display()),
-        (None, "") => format!("a plan without a file, {age} ago"),
-        (None, name) => format!("“{name}”, without a file, {age} ago"),
+        (Some(path), _) => path.display().to_string(),
+        (None, "") => "a plan without a file".into(),
+        (None, name) => format!("“{name}”, without a file"),
     }
+}
+
+/// When the last change was made, and how long ago that is.
+fn when(left: &LeftDocument) -> String {
+    let ago = units::duration(left.age.as_secs_f64());
+    let at = left.changed_unix_s.and_then(|s| jiff::Timestamp::from_second(s.try_into().ok()?).ok());
+    let at = at.map_or_else(String::new, |at| at.strftime(" %Y-%m-%d %H:%M UTC,").to_string());
+    format!("last changed{at} {ago} ago")
 }
 
 /// Return presses it, until something else is chosen. While something else has the keyboard, or in a flight, Return is not meant for it.

@@ -30,13 +30,30 @@ fn killed_window_loses_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let lost = edit_and_kill(folder.path());
     let mut window = window_in(folder.path(), "");
-    assert!(window.shows("ended without saving") && window.shows("• “Square circuit”, without a file, "));
+    assert!(window.shows("ended without saving") && window.shows("• “Square circuit”, without a file"));
+    assert!(window.shows("last changed 20"), "with the day and the time of it");
     window.press(egui::Key::Enter);
     assert_eq!(window.plan(), lost);
     assert!(window.app().document().is_dirty() && !window.shows("ended without saving"));
     drop(window);
     // killed again, before it was saved
     assert!(window_in(folder.path(), "").shows("ended without saving"));
+}
+
+#[test]
+fn the_question_says_when_the_last_change_was_made_however_often_it_was_copied() {
+    let folder = tempfile::tempdir().unwrap();
+    edit_and_kill(folder.path());
+    let copy = folder.path().join("0.json");
+    let mut kept: serde_json::Value = serde_json::from_slice(&std::fs::read(&copy).unwrap()).unwrap();
+    kept["documents"][0]["changed_unix_s"] = 1_790_000_000_u64.into();
+    std::fs::write(&copy, kept.to_string()).unwrap();
+    let said = "last changed 2026-09-21 14:13 UTC, ";
+    let mut window = window_in(folder.path(), "");
+    assert!(window.shows(said));
+    window.click("Recover the changes");
+    drop(window);
+    assert!(window_in(folder.path(), "").shows(said), "recovered and lost again");
 }
 
 #[test]
