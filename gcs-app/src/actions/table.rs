@@ -171,7 +171,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Flight, "push", "Push the plan to the vehicle", &[], |s| bar::may_push(s).map(|()| Command::Fly(FlyCommand::Propose))),
     entry(Group::Flight, "commit", "Commit what was pushed", &[], flight::commit),
     entry(Group::Flight, "keep-as-draft", "Keep what was pushed as a draft", &[], flight::keep_as_draft),
-    entry(Group::Flight, "hold", "Hold here", &[], |s| flight::flying(s, PlanCommand::Hold)),
+    entry(Group::Flight, "hold", "Hold now: the aircraft circles where it is", &[], |s| flight::flying(s, PlanCommand::Hold)),
     entry(Group::Flight, "resume", "Resume", &[], flight::resume),
     hold("start", "Start and take off", flight::start).with_caution(panel::another_aboard),
     hold("rewind", "Rewind to the start", flight::rewind),

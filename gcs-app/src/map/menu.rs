@@ -141,11 +141,11 @@ fn insert(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) 
         }
     };
     for at in before.iter().chain([&behind]) {
-        offer(format!("Waypoint here, {}", new_leg::words(at, plan)), LegChoice::Tf, at);
+        offer(format!("Add a waypoint here, {}", new_leg::words(at, plan)), LegChoice::Tf, at);
     }
-    offer("Scan here".into(), LegChoice::Scan, &behind);
-    offer("Orbit here".into(), LegChoice::Orbit, &behind);
-    offer("Hold here".into(), LegChoice::Hm, &behind);
+    offer("Add a scan here".into(), LegChoice::Scan, &behind);
+    offer("Add an orbit here".into(), LegChoice::Orbit, &behind);
+    offer("Add a holding here".into(), LegChoice::Hm, &behind);
 }
 
 /// On the path: an alarm at this point of it.

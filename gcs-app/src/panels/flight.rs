@@ -237,7 +237,8 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if can_launch(scene) && !is_down {
         launch(ui, scene, queue);
     }
-    if flying && field::is_pressed(&ui.button("⏸ Hold")) {
+    let circles = "The aircraft circles where it is now, until it resumes";
+    if flying && field::is_pressed(&ui.button("⏸ Hold").on_hover_text(circles)) {
         queue.plan(Command::Hold);
     }
     if can_resume(scene) && field::is_pressed(&ui.add(super::primary_button("▶ Resume", p))) {

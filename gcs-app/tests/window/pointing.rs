@@ -10,11 +10,11 @@ use flight_plan::{Cause, Id, Place, Value};
 #[test]
 fn a_right_click_puts_a_leg_where_the_pointer_is() {
     for (entry, choice, at) in [
-        ("Waypoint here, behind side2", LegChoice::Tf, 2),
-        ("Waypoint here, before side2", LegChoice::Tf, 1),
-        ("Scan here", LegChoice::Scan, 2),
-        ("Orbit here", LegChoice::Orbit, 2),
-        ("Hold here", LegChoice::Hm, 2),
+        ("Add a waypoint here, behind side2", LegChoice::Tf, 2),
+        ("Add a waypoint here, before side2", LegChoice::Tf, 1),
+        ("Add a scan here", LegChoice::Scan, 2),
+        ("Add an orbit here", LegChoice::Orbit, 2),
+        ("Add a holding here", LegChoice::Hm, 2),
     ] {
         let mut window = window();
         window.click("TF side2");

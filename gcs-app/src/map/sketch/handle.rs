@@ -124,7 +124,7 @@ impl Handled {
             Self::Number { leg, number, .. } => format!("{} of {}", numbers::name(number), of(leg)),
             Self::ArcCentre(leg) => format!("Centre of the arc {}", of(leg)),
             Self::Entry { leg, entry, .. } => format!("Begin {} at its {}", of(leg), corner(*entry)),
-            Self::Side { leg, is_holding: true } => format!("Hold {} on this side", of(leg)),
+            Self::Side { leg, is_holding: true } => format!("Put the holding {} on this side", of(leg)),
             Self::Side { leg, is_holding: false } => format!("Turn {} the other way", of(leg)),
         }
     }
