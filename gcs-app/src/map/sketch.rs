@@ -198,13 +198,18 @@ impl Sketch {
         }
     }
 
-    /// Its first point moves all of it, each other point itself.
+    /// Its first point moves all of it until it is selected; each other point itself. Where an expression leads is moved there.
     fn add_route(&mut self, leg: &Leg, route: &[Place], reader: &Reader<'_>) {
-        route.first().into_iter().for_each(|place| self.add_waypoint(leg, place, reader));
-        for (corner, place) in route.iter().enumerate().skip(1) {
-            let Place::Position(Value::Constant(at)) = place else { continue };
-            let what = Handled::Corner { leg: leg.id.clone(), hole: None, corner };
-            self.handles.extend(at.is_valid().then_some(Handle { what, at: *at }));
+        for (corner, place) in route.iter().enumerate() {
+            match place {
+                Place::Position(_) if corner == 0 => self.add_waypoint(leg, place, reader),
+                Place::Position(Value::Expression(_)) => {}
+                Place::Position(Value::Constant(_)) | Place::Fix(_) => {
+                    let at = reader.place(place).filter(|at| at.is_valid());
+                    let what = Handled::Corner { leg: leg.id.clone(), hole: None, corner };
+                    self.handles.extend(at.map(|at| Handle { what, at }));
+                }
+            }
         }
         let points: Vec<Option<LatLon>> = route.iter().map(|place| reader.place(place)).collect();
         for (index, ends) in points.windows(2).enumerate() {
@@ -359,6 +364,23 @@ mod tests {
         assert_eq!(placed(&variables), expected(350.0));
         variables.set(&plan, &"fire_radius".into(), VariableValue::Number(430.0)).unwrap();
         assert_eq!(placed(&variables), expected(430.0), "as it is in flight");
+    }
+
+    #[test]
+    fn points_of_a_line_are_corners_also_where_they_are_fixes() {
+        let plan = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><fixes><fix id="A" lat="46" lon="9"/></fixes>
+            <variables><variable name="fire" type="position" initial="46.2 9.1"/></variables><mainPlan><stage id="m" type="mission">
+            <corridor id="strip" width="300" spacing="100"><route><point fix="A"/><point lat="46.1" lon="9"/><point at="= fire"/>
+            <point fix="A"/></route></corridor></stage></mainPlan></flightPlan>"#;
+        let plan = flight_plan::read(plan).plan;
+        let sketch = Sketch::new(&plan, &Variables::initial(&plan), &Sketch::default());
+        let corner = |handle: &Handle| match handle.what {
+            Handled::Corner { corner, .. } => Some((corner, handle.at)),
+            _ => None,
+        };
+        let corners: Vec<_> = sketch.handles.iter().filter_map(corner).collect();
+        let (fix, own) = (LatLon::new(46.0, 9.0), LatLon::new(46.1, 9.0));
+        assert_eq!(corners, [(0, fix), (1, own), (3, fix)], "the variable's place is moved by itself");
     }
 
     #[test]

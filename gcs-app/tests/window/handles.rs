@@ -4,7 +4,9 @@ use super::drawing::choose;
 use super::{SQUARE, Window};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, vec2};
 use flight_plan::create::LegChoice;
-use flight_plan::{FlightPlan, Id, LegKind, ScanEntry, TurnDirection, Value, ZoneShape, transform};
+use flight_plan::{
+    FlightPlan, Id, LegKind, Pattern, Place, ScanEntry, TurnDirection, Value, ZoneShape, transform,
+};
 use gcs_app::command::Selection;
 use geometry::LatLon;
 
@@ -100,6 +102,57 @@ fn a_handle_is_where_its_number_says() {
     }
 }
 
+fn route(window: &Window, leg: &Id) -> Vec<Place> {
+    match window.plan().leg(leg).unwrap().leg.kind.clone() {
+        LegKind::Pattern(Pattern::Corridor { route, .. } | Pattern::TrackLine { route, .. }) => route,
+        other => panic!("{other:?} has no line"),
+    }
+}
+
+#[test]
+fn a_line_gets_and_loses_corners_after_it_was_drawn() {
+    for choice in [LegChoice::Corridor, LegChoice::TrackLine] {
+        let (mut window, leg) = with(Key::L, &LINE, choice);
+        let corner = |number: usize| format!("Corner {number} of {leg}");
+        let drawn = route(&window, &leg);
+        let mark = window.centre(&format!("New corner 2 of {leg}"));
+        let by = vec2(10.0, -40.0);
+        window.drag(mark, by);
+        let bent = route(&window, &leg);
+        assert_eq!((bent.len(), &bent[..1], &bent[2..]), (4, &drawn[..1], &drawn[1..]), "{choice:?}");
+        assert!(window.centre(&corner(2)).distance(mark + by) < 3.0, "it is where the pointer left it");
+        window.click("Undo");
+        assert_eq!(route(&window, &leg), drawn, "one step");
+        window.click("Redo");
+        window.click(&corner(2));
+        window.press(Key::Delete);
+        assert_eq!(route(&window, &leg), drawn, "and straight again");
+    }
+}
+
+/// Of a line that is not selected it moves all: that is how a line is put elsewhere.
+#[test]
+fn the_first_point_of_a_selected_line_is_a_corner_like_the_others() {
+    let (mut window, leg) = with(Key::L, &LINE, LegChoice::Corridor);
+    let first = format!("Waypoint {leg}");
+    let drawn = route(&window, &leg);
+    let at = window.centre(&first);
+    window.drag(at, vec2(-20.0, 30.0));
+    let bent = route(&window, &leg);
+    assert!(bent[0] != drawn[0] && bent[1..] == drawn[1..], "{bent:?}");
+    assert!(window.centre(&first).distance(at + vec2(-20.0, 30.0)) < 3.0);
+    window.click(&first);
+    window.press(Key::Delete);
+    assert_eq!(route(&window, &leg), drawn[1..]);
+    window.click(&first);
+    window.press(Key::Delete);
+    assert!(window.shows("A line has at least 2 points") && route(&window, &leg).len() == 2);
+    window.click("TF side4");
+    let at = window.centre(&first);
+    window.drag(at, vec2(30.0, 20.0));
+    assert!(route(&window, &leg).iter().zip(&drawn[1..]).all(|(now, was)| now != was), "all of it");
+}
+
 #[test]
 fn a_click_on_a_corner_begins_a_scan_there() {
     let (mut window, leg) = with(Key::A, &AREA, LegChoice::Scan);
@@ -119,7 +172,7 @@ fn a_click_on_a_corner_begins_a_scan_there() {
 #[test]
 fn a_holding_changes_its_side_and_an_arc_its_centre() {
     let (mut window, leg) = with(Key::T, &CIRCLE[..1], LegChoice::Hf);
-    let mark = format!("Hold {leg} on this side");
+    let mark = format!("Put the holding {leg} on this side");
     let right = window.centre(&mark);
     window.click(&mark);
     let LegKind::Hf(holding) = window.plan().leg(&leg).unwrap().leg.kind.clone() else { panic!("no hold") };

@@ -1,8 +1,25 @@
-//! Corners of outlines and routes, as they are removed.
+//! Corners of outlines and routes: what is one, and how it is removed.
 
 use crate::command::{Queue, ViewCommand};
 use crate::map::sketch::Handled;
 use flight_plan::{Area, Edit, FlightPlan, Id, LegKind, Pattern, Scan, ZoneShape};
+
+/// The corner that a handle is. Of a route the first point is one, too, though it is grabbed as the place of the leg.
+pub fn corner_of(plan: &FlightPlan, what: &Handled) -> Option<Handled> {
+    match what {
+        Handled::Corner { .. } => Some(what.clone()),
+        Handled::Waypoint(leg) => {
+            let leg = leg.clone();
+            let is_route = is_route(&plan.any_leg(&leg)?.kind);
+            is_route.then_some(Handled::Corner { leg, hole: None, corner: 0 })
+        }
+        _ => None,
+    }
+}
+
+fn is_route(kind: &LegKind) -> bool {
+    matches!(kind, LegKind::Pattern(Pattern::TrackLine { .. } | Pattern::Corridor { .. }))
+}
 
 /// Removes a corner, unless too few would be left.
 pub fn remove_corner(plan: &FlightPlan, corner: &Handled, queue: &mut Queue) {

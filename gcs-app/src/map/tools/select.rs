@@ -2,7 +2,7 @@
 //! between corners, and in the middle of legs, become new ones when they are dragged. A drag is one undo step.
 
 use super::bands;
-use super::corner::remove_corner;
+use super::corner::{corner_of, remove_corner};
 use super::group::{Group, within};
 use super::handles::{draw, draw_labels, label, value};
 use super::pen::{Mark, way};
@@ -43,6 +43,8 @@ pub struct Select {
     group: Group,
     /// The handle that is being dragged, and where it was.
     grabbed: Option<Handle>,
+    /// What is being dragged, where it is the first point of a selected route: that point alone.
+    bent: Option<Handled>,
     /// Where it was dragged to.
     dragged: Option<Mark>,
     /// What letting go does: the leg goes to what it was dragged onto.
@@ -147,6 +149,9 @@ impl Tool for Select {
             return;
         }
         self.grabbed = handle.filter(|_| !pointer.clicks).cloned();
+        let is_selected = |what: &Handled| canvas.scene.is_selected(&selection(plan, what));
+        let corner = handle.and_then(|handle| corner_of(plan, &handle.what)).filter(is_selected);
+        self.bent = corner.clone().filter(|_| !pointer.clicks);
         self.among = match pointer.grip {
             None => whole::or_zone(lines_near(pointer.at, canvas), pointer.at, canvas),
             Some(_) => Vec::new(),
@@ -161,9 +166,8 @@ impl Tool for Select {
             Some(handle) => Some(selection(plan, &handle.what)),
             None => self.among.first().cloned(),
         };
-        let corner = handle.map(|handle| &handle.what).filter(|what| matches!(what, Handled::Corner { .. }));
         // hover forgets it until its owner is the selected one
-        self.corner = corner.filter(|what| canvas.scene.is_selected(&selection(plan, what))).cloned();
+        self.corner = corner;
         queue.view(match picked {
             Some(what) if pointer.adds && what.is_in_sets() => ViewCommand::Toggle(what),
             _ if pointer.adds => return,
@@ -189,14 +193,16 @@ impl Tool for Select {
         let Some(handle) = canvas.sketch.handles.get(grip) else { return };
         let mark = self.snapped(handle, to, canvas);
         let to = mark.at;
-        self.landing = landing(plan, self.grabbed.as_ref(), &mark);
+        let alone = self.grabbed.as_ref().filter(|_| self.bent.is_none());
+        self.landing = landing(plan, alone, &mark);
         self.dragged = Some(mark);
         if is_mark(handle) {
             return if to.is_valid() {
                 self.insert(&handle.what, handle.what.name(canvas.scene.document), to, plan, queue)
             };
         }
-        if let Some(edit) = edit(plan, canvas.sketch, &handle.what, to) {
+        let what = self.bent.as_ref().unwrap_or(&handle.what);
+        if let Some(edit) = edit(plan, canvas.sketch, what, to) {
             queue.document(DocumentCommand::DragEdit(edit));
         }
     }
@@ -209,7 +215,7 @@ impl Tool for Select {
     fn release(&mut self, queue: &mut Queue) {
         (self.inserting, self.zone) = (None, None);
         self.group.release();
-        (self.grabbed, self.dragged) = (None, None);
+        (self.grabbed, self.dragged, self.bent) = (None, None, None);
         if let Some(edit) = self.landing.take() {
             queue.document(DocumentCommand::DragEdit(edit));
         }
@@ -232,7 +238,7 @@ impl Tool for Select {
         for &(key, handle, at) in canvas.near {
             let selected = canvas.scene.is_selected(&selection(plan, &handle.what));
             let hot = touch.hovered == Some(key) || touch.dragged == Some(key);
-            let chosen = self.corner.as_ref() == Some(&handle.what);
+            let chosen = self.corner.is_some() && self.corner == corner_of(plan, &handle.what);
             draw(painter, at, handle, selected, hot || chosen, p);
             labels.extend(label(handle, at, canvas, selected || touch.hovered == Some(key)));
             labels.extend(value(handle, at, canvas).filter(|_| hot));
