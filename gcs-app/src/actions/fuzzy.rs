@@ -1,34 +1,57 @@
 //! Search by a few letters: `svas` finds `Save as…`.
 
-/// How well a text answers a query, more is better; `None` if it doesn't. Its letters must be in the text in their
-/// order; those that begin a word or follow the letter before count more. Spaces of the query mean nothing.
-pub fn score(query: &str, text: &str) -> Option<i32> {
-    let text: Vec<char> = text.to_lowercase().chars().collect();
-    let letters: Vec<char> = query.to_lowercase().chars().filter(|c| !c.is_whitespace()).collect();
-    if let Some(exact) = words(&text, &letters) {
-        return Some(exact);
+/// How well a text answers a query; the better, the greater.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Score {
+    /// The letters are side by side: better than any text in which they are scattered.
+    pub is_whole: bool,
+    points: i32,
+}
+
+impl Score {
+    /// Of a word that is another one for what is meant.
+    pub fn of_another(self) -> Self {
+        Self { points: self.points - 500, ..self }
     }
-    let (mut score, mut at, mut last) = (0, 0, None);
+}
+
+/// How well a text answers a query; `None` if it doesn't. Its letters must be in the text in their order; those that begin a word
+/// or follow the letter before count more. Spaces of the query mean nothing.
+pub fn score(query: &str, text: &str) -> Option<Score> {
+    if let Some(whole) = words(query, text) {
+        return Some(whole);
+    }
+    let (text, letters) = (lower(text), letters(query));
+    let (mut points, mut at, mut last) = (0, 0, None);
     for letter in letters {
         let found = at + text.get(at..)?.iter().position(|c| *c == letter)?;
         let begins = starts_word(&text, found);
         let follows = last.is_some_and(|last| last + 1 == found);
-        score += 1 + i32::from(follows) * 4 + i32::from(begins) * 3;
+        points += 1 + i32::from(follows) * 4 + i32::from(begins) * 3;
         (at, last) = (found + 1, Some(found));
     }
-    Some(score)
+    Some(Score { is_whole: false, points })
 }
 
-/// The score of a text in which the letters are side by side: better than any in which they are scattered.
-fn words(text: &[char], letters: &[char]) -> Option<i32> {
+/// As [`score`], where the letters are side by side.
+pub fn words(query: &str, text: &str) -> Option<Score> {
+    let (text, letters) = (lower(text), letters(query));
     if letters.is_empty() {
-        return Some(0);
+        return Some(Score { is_whole: true, points: 0 });
     }
     let joined: Vec<(usize, char)> =
         text.iter().copied().enumerate().filter(|(_, c)| !c.is_whitespace()).collect();
-    let matches = joined.windows(letters.len()).filter(|window| window.iter().map(|(_, c)| c).eq(letters));
-    let best = matches.map(|window| window.first().is_some_and(|(at, _)| starts_word(text, *at))).max()?;
-    Some(1000 + i32::from(best) * 1000 - text.len() as i32)
+    let matches = joined.windows(letters.len()).filter(|window| window.iter().map(|(_, c)| c).eq(&letters));
+    let best = matches.map(|window| window.first().is_some_and(|(at, _)| starts_word(&text, *at))).max()?;
+    Some(Score { is_whole: true, points: i32::from(best) * 1000 - text.len() as i32 })
+}
+
+fn lower(text: &str) -> Vec<char> {
+    text.to_lowercase().chars().collect()
+}
+
+fn letters(query: &str) -> Vec<char> {
+    lower(query).into_iter().filter(|c| !c.is_whitespace()).collect()
 }
 
 fn starts_word(text: &[char], at: usize) -> bool {
@@ -39,6 +62,7 @@ fn starts_word(text: &[char], at: usize) -> bool {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use std::cmp::Reverse;
 
     #[test]
     fn whole_words_are_better_than_parts_and_parts_better_than_letters() {
@@ -50,8 +74,8 @@ mod tests {
             ("whole pl", vec!["View Show the whole plan"]),
             ("xyz", vec![]),
         ] {
-            let mut found: Vec<(i32, &str)> =
-                texts.iter().filter_map(|text| Some((-score(query, text)?, *text))).collect();
+            let mut found: Vec<(Reverse<Score>, &str)> =
+                texts.iter().filter_map(|text| Some((Reverse(score(query, text)?), *text))).collect();
             found.sort_by_key(|(score, _)| *score);
             assert_eq!(found.into_iter().map(|(_, text)| text).collect::<Vec<_>>(), expected, "{query}");
         }

@@ -3,6 +3,7 @@
 //!
 //! To add an action: a line in [`table`]. Tools and panels come from their own registries.
 
+pub mod aliases;
 pub mod alternates;
 pub mod bindings;
 pub mod flight;

@@ -1,12 +1,16 @@
 //! The command palette: everything that can be done, found by a few letters.
 
 use super::{Scene, field};
-use crate::actions::{Action, Fittings, Kind, all, alternates, bindings, flight, fuzzy, offers, places};
+use crate::actions::fuzzy::Score;
+use crate::actions::{
+    Action, Fittings, Kind, aliases, all, alternates, bindings, flight, fuzzy, offers, places,
+};
 use crate::command::{Queue, ViewCommand};
 use crate::theme;
 use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
 use egui::{Align2, Area, Id, Key, Modifiers, Order, RichText, ScrollArea, Ui, vec2};
+use std::cmp::Reverse;
 
 const WIDTH: f32 = 460.0;
 const ROW_HEIGHT: f32 = 26.0;
@@ -170,12 +174,17 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     actions.extend(offers::of(scene));
     actions.extend(flight::of(scene));
     actions.extend(places::of(scene.document));
-    let score = |action: &Action| fuzzy::score(query, &format!("{} {}", action.group.name(), action.name));
-    let mut scored: Vec<(i32, Action)> =
-        actions.into_iter().filter_map(|action| Some((score(&action)?, action))).collect();
-    // what is possible before what is not
-    scored.sort_by_key(|(score, action)| (action.command.is_err(), -score));
+    let mut scored: Vec<(Score, Action)> =
+        actions.into_iter().filter_map(|action| Some((score(query, &action)?, action))).collect();
+    // what was meant before what happens to have the letters; then what is possible before what is not
+    scored.sort_by_key(|(score, action)| (!score.is_whole, action.command.is_err(), Reverse(*score)));
     scored.into_iter().take(MOST).map(|(_, action)| action).collect()
+}
+
+/// By its name here, or another word for it.
+fn score(query: &str, action: &Action) -> Option<Score> {
+    let own = fuzzy::score(query, &format!("{} {}", action.group.name(), action.name));
+    own.max(aliases::score(query, &action.id))
 }
 
 fn row(ui: &mut Ui, action: &Action, current: bool) -> egui::Response {

@@ -52,6 +52,56 @@ fn arrows_choose_among_what_was_found_and_places_of_the_plan_are_there() {
 }
 
 #[test]
+fn words_of_other_programs_find_what_it_is_called_here() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    for (word, name) in [
+        ("RTL", "Flight Emergency: fly the alternate in force"),
+        ("return to launch", "Tool Draw an emergency plan"),
+        ("rally point", "Tool Draw an emergency plan"),
+        ("geofence", "Tool Draw a zone"),
+        ("go around", "Flight Skip the leg…"),
+        ("upload", "Flight Push the plan to the vehicle"),
+        ("write mission", "Flight Push the plan to the vehicle"),
+        ("loiter", "Tool Draw legs"),
+        ("waypoint", "Tool Draw legs"),
+        ("survey grid", "Tool Draw an area to scan"),
+        ("polygon", "Tool Draw an area to scan"),
+        ("orbit", "Tool Draw a circle or search"),
+        ("home", "Tool Draw a runway"),
+        ("takeoff", "Flight Start and take off"),
+        ("KML", "Export Export as KML…"),
+        ("kml", "File Import…"),
+        ("revert", "Edit Undo"),
+    ] {
+        window.ask_for(word);
+        let is_found = window.harness.query_all_by_label(name).next().is_some();
+        assert!(is_found, "{word}: no {name:?}");
+        assert!(!window.shows("Nothing has these letters"));
+        window.press(Key::Escape);
+    }
+    // Enter does what was meant, and nothing that happens to have the letters
+    window.ask_for("geofence");
+    window.press(Key::Enter);
+    assert!(window.shows("Keep-out zone"));
+    window.ask_for("upload");
+    window.press(Key::Enter);
+    assert!(window.app().view().palette.is_some(), "there is no vehicle to push it to");
+}
+
+#[test]
+fn a_command_to_the_aircraft_and_a_leg_of_the_plan_are_not_called_the_same() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.ask_for("hold now");
+    assert!(window.shows("Flight Hold now: the aircraft circles where it is"));
+    window.press(Key::Escape);
+    let at = window.centre("Map") + egui::vec2(90.0, 60.0);
+    window.right_click_at(at);
+    assert!(window.shows("Add a holding here") && !window.shows("Hold here"));
+}
+
+#[test]
 fn what_is_not_possible_says_why_and_does_nothing() {
     let mut window = Window::open(SQUARE);
     window.until_analysed();

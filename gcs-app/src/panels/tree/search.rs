@@ -1,6 +1,8 @@
-//! Searching the plan: names, identifiers, kinds, what stands beside them, and every expression and condition.
+//! Searching the plan: names, identifiers, kinds (also by the words of other programs), what stands beside them, and every
+//! expression and condition.
 
 use super::rows::Row;
+use crate::actions::aliases;
 use crate::command::{Queue, ViewCommand};
 use crate::theme;
 use egui::{Context, Id, Key, TextEdit, Ui};
@@ -73,8 +75,27 @@ pub(super) fn matching(rows: Vec<Row>, sought: &str) -> Vec<Row> {
 /// Headings are not searched for.
 fn is_match(row: &Row, sought: &str) -> bool {
     let Some(selection) = &row.selection else { return false };
-    [row.text.as_str(), selection.id().as_str(), row.tag, row.detail.as_str()]
+    let is_said = [row.text.as_str(), selection.id().as_str(), row.tag, row.detail.as_str()]
         .into_iter()
         .chain(row.expressions.iter().map(|source| &**source))
-        .any(|text| text.to_lowercase().contains(sought))
+        .any(|text| text.to_lowercase().contains(sought));
+    is_said || aliases::means(sought, row.tag)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rows::rows;
+    use crate::actions::aliases;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn words_of_other_programs_mean_rows_that_there_are() {
+        let everything = include_bytes!("../../../../shared/flight-plan/tests/data/everything.xml");
+        let plan = flight_plan::read(everything).plan;
+        let rows = rows(&plan, &BTreeSet::new());
+        let there: BTreeSet<&str> = rows.iter().map(|row| row.tag).collect();
+        for tag in aliases::tags() {
+            assert!(there.contains(tag), "{tag} is not among {there:?}");
+        }
+    }
 }
