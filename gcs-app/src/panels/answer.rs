@@ -5,7 +5,8 @@ use super::{Scene, field};
 use crate::command::{FlyCommand, Queue};
 use crate::state::{Outcome, Request};
 use crate::{theme, units};
-use egui::{Align, Label, Layout, Rect, RichText, Sense, Ui, UiBuilder, vec2};
+use egui::{Align, Label, Layout, Rect, Response, RichText, Sense, Ui, UiBuilder, vec2};
+use flight_plan::in_words;
 
 /// Least width of the line, screen points: where the buttons leave less, it has a row of its own.
 const LEAST: f32 = 120.0;
@@ -28,7 +29,10 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             (format!("{}: refused, {}", request.label, why_not(scene, request, why)), p.caution)
         }
     };
-    line.add(Label::new(RichText::new(text).color(colour)).truncate());
+    let response = line.add(Label::new(RichText::new(text).color(colour)).truncate());
+    if let Outcome::Refused(why) = &request.outcome {
+        with_codes(response, why);
+    }
 }
 
 /// It is taken, whatever is said there: nothing moves under the pointer when something is.
@@ -48,46 +52,21 @@ fn last<'a>(scene: &Scene<'a>) -> Option<&'a Request> {
     (!is_of_another || !matches!(last.outcome, Outcome::Refused(_))).then_some(last)
 }
 
-/// In the names of the plan that it is about.
+/// Why something was refused, in words and in the names of the plan that it is about.
 pub fn why_not(scene: &Scene<'_>, request: &Request, why: &str) -> String {
-    let quoted = quoted(why);
+    told(scene, request.label == PUSH, why)
+}
+
+/// What an agent says, with words in the place of what is for programs; of the plan that is pushed, or of the one aboard.
+pub fn told(scene: &Scene<'_>, is_of_push: bool, said: &str) -> String {
+    let words = in_words(said);
     match &scene.vehicle.aboard {
-        Some(aboard) if request.label != PUSH => aboard.plan.in_names(&quoted),
-        _ => scene.document.in_names(&quoted),
+        Some(aboard) if !is_of_push => aboard.plan.in_names(&words),
+        _ => scene.document.in_names(&words),
     }
 }
 
-/// Problems as an agent lists them (`35:7: error [too-steep] o2: climb earlier; …`) without what is for programs: `` `o2`: climb earlier ``.
-fn quoted(why: &str) -> String {
-    let problems = why.split("; ").map(|part| problem(part).unwrap_or_else(|| part.to_owned()));
-    problems.collect::<Vec<_>>().join("; ")
-}
-
-fn problem(listed: &str) -> Option<String> {
-    let (place, rest) = listed.split_once(" [").filter(|(place, _)| place.ends_with("error"))?;
-    let is_place = place.chars().all(|c| c.is_ascii_digit() || ": error".contains(c));
-    let (_code, said) = rest.split_once("] ").filter(|_| is_place)?;
-    Some(match said.split_once(": ") {
-        Some((subject, said)) if !subject.contains([' ', '`']) => format!("`{subject}`: {said}"),
-        _ => said.to_owned(),
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quoted;
-
-    #[test]
-    fn what_is_for_programs_is_left_out_of_a_refusal() {
-        for (why, told) in [
-            (
-                "35:7: error [too-steep] o2: climb earlier: it is 20 % too steep; error [energy] land it; and 3 more",
-                "`o2`: climb earlier: it is 20 % too steep; land it; and 3 more",
-            ),
-            ("the flight is over; propose it again", "the flight is over; propose it again"),
-            ("no [brackets] here: none", "no [brackets] here: none"),
-        ] {
-            assert_eq!(quoted(why), told);
-        }
-    }
+/// Shows what is for programs to whoever points at the words, where there is any.
+pub fn with_codes(response: Response, said: &str) -> Response {
+    if in_words(said) == said { response } else { response.on_hover_text(said) }
 }

@@ -1,11 +1,11 @@
 //! A command that leads elsewhere is looked at before it is given: what would follow, on the map and in words, then the
 //! command, named by its effect.
 
-use super::{Scene, field};
+use super::{Scene, answer, field};
 use crate::command::{FlyCommand, Queue};
 use crate::state::{Considered, Vehicle};
 use crate::theme;
-use crate::units::{self, Units};
+use crate::units;
 use egui::{Panel, RichText, ScrollArea, Ui};
 use flight_exec::{Command, Foresight};
 use flight_plan::Id;
@@ -70,9 +70,8 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
 fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Queue) {
     let p = theme::of(ui);
     let text = effect(considered, scene.vehicle);
-    let units = scene.units();
     let is_as_told = since(considered, scene).is_empty();
-    let is_clean = matches!(&considered.foresight, Some(Ok(foresight)) if is_as_told && cautions(considered, foresight, units).is_empty());
+    let is_clean = matches!(&considered.foresight, Some(Ok(foresight)) if is_as_told && cautions(considered, foresight, scene).is_empty());
     let given = if is_clean {
         field::is_pressed(&ui.add(super::primary_button(&text, p)))
     } else {
@@ -124,8 +123,7 @@ fn follows(ui: &mut Ui, considered: &Considered, foresight: &Foresight, scene: &
     let p = theme::of(ui);
     ui.label(RichText::new("╌╌ on the map: the path that would be flown").color(p.text));
     ScrollArea::vertical().id_salt("consider").auto_shrink(false).show(ui, |ui| {
-        for line in since(considered, scene).into_iter().chain(cautions(considered, foresight, scene.units()))
-        {
+        for line in since(considered, scene).into_iter().chain(cautions(considered, foresight, scene)) {
             ui.label(RichText::new(format!("⚠ {line}")).color(p.caution));
         }
         for line in facts(considered, foresight, scene) {
@@ -134,7 +132,8 @@ fn follows(ui: &mut Ui, considered: &Considered, foresight: &Foresight, scene: &
     });
 }
 
-fn cautions(considered: &Considered, foresight: &Foresight, units: Units) -> Vec<String> {
+fn cautions(considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) -> Vec<String> {
+    let units = scene.units();
     let climb = foresight.short_of_altitude_m.map(|short_m| {
         format!("Climb not done: it arrives {} below the leg's altitude", units.altitude().show(short_m))
     });
@@ -149,7 +148,7 @@ fn cautions(considered: &Considered, foresight: &Foresight, units: Units) -> Vec
         .into_iter()
         .chain(unknown_ground(height).map(str::to_owned))
         .chain(low)
-        .chain(foresight.problems.iter().cloned())
+        .chain(foresight.problems.iter().map(|problem| answer::told(scene, false, problem)))
         .chain(end)
         .chain(unfinished)
         .collect()

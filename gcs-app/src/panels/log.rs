@@ -1,5 +1,6 @@
 //! Commands with what became of them, and what happened.
 
+use super::bar::PUSH;
 use super::{Panel, PanelId, Place, Scene, answer};
 use crate::command::Queue;
 use crate::state::log::merged;
@@ -58,7 +59,10 @@ fn command(ui: &mut Ui, request: &Request, scene: &Scene<'_>) {
                 (format!("✖ refused: {}", answer::why_not(scene, request, why)), p.caution)
             }
         };
-        ui.add(egui::Label::new(RichText::new(text).color(colour)).truncate());
+        let response = ui.add(egui::Label::new(RichText::new(text).color(colour)).truncate());
+        if let Outcome::Refused(why) = &request.outcome {
+            answer::with_codes(response, why);
+        }
     });
 }
 
@@ -72,13 +76,13 @@ fn events(ui: &mut Ui, scene: &Scene<'_>) {
         lines.len(),
         |ui, rows| {
             for line in lines.get(rows).unwrap_or_default() {
-                event(ui, line, scene.now_s);
+                event(ui, line, scene);
             }
         },
     );
 }
 
-fn event(ui: &mut Ui, line: &Line, now_s: f64) {
+fn event(ui: &mut Ui, line: &Line, scene: &Scene<'_>) {
     let p = theme::of(ui);
     let (symbol, colour) = match line.level {
         Level::Info => ("·", p.text),
@@ -86,11 +90,12 @@ fn event(ui: &mut Ui, line: &Line, now_s: f64) {
         Level::Warning => ("⛔", p.warning),
     };
     ui.horizontal(|ui| {
-        let ago = format!("{:>7} ago", units::duration(now_s - line.time_s));
+        let ago = format!("{:>7} ago", units::duration(scene.now_s - line.time_s));
         ui.label(RichText::new(ago).monospace().size(11.0).color(p.weak));
         ui.label(RichText::new(symbol).color(colour));
         let times = if line.times > 1 { format!(" (×{})", line.times) } else { String::new() };
-        let text = format!("{}{times}", line.text);
-        ui.add(egui::Label::new(RichText::new(text).color(colour)).truncate());
+        let text = format!("{}{times}", answer::told(scene, line.text.starts_with(PUSH), &line.text));
+        let response = ui.add(egui::Label::new(RichText::new(text).color(colour)).truncate());
+        answer::with_codes(response, &line.text);
     });
 }

@@ -154,8 +154,9 @@ pub fn plan_event(event: &Event, names: Names<'_>) -> (Level, String) {
             (Level::Warning, format!("Waypoints{leg} were refused: {reason}"))
         }
         Event::ProblemAhead { leg, code, reason } => {
-            let leg = leg.as_ref().map(|l| format!(" on {}", name(l))).unwrap_or_default();
-            (Level::Warning, format!("The way ahead has a problem{leg}: {reason} [{code}]"))
+            let leg = leg.as_ref().map(|leg| format!("{leg}: ")).unwrap_or_default();
+            // as problems are displayed: whoever shows it puts words and names in the place of that
+            (Level::Warning, format!("The way ahead has a problem: warning [{code}] {leg}{reason}"))
         }
         Event::NotGranted { request, reason } => {
             (Level::Caution, format!("The gateway does not grant `{request}`: {reason}"))
