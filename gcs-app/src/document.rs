@@ -180,7 +180,7 @@ impl Document {
 
     /// A sentence about the plan, with names in the place of the identifiers that stand in it as `` `id` ``.
     pub fn in_names(&self, sentence: &str) -> String {
-        in_names(sentence, |id| self.names.name(id))
+        in_names(sentence, |id| self.names.name(id).or_else(|| self.names.name(&self.written(id))))
     }
 
     /// The leg of the document that a flown one stands for: that of the procedure, where it was made by a call.
@@ -189,6 +189,16 @@ impl Document {
         let inner = text.match_indices('.').filter_map(|(dot, _)| text.get(dot + 1..)).map(Id::new);
         let mut made = inner.filter(|_| self.names.kind(flown).is_none());
         made.find(|id| self.plan().procedure_leg(id).is_some()).unwrap_or_else(|| flown.clone())
+    }
+
+    /// The call in the stages that has made a flown leg; `None`: it is a leg of the document itself.
+    pub fn call_of(&self, flown: &Id) -> Option<Id> {
+        if self.names.kind(flown).is_some() {
+            return None;
+        }
+        let text = flown.as_str();
+        let mut outer = text.match_indices('.').filter_map(|(dot, _)| text.get(..dot)).map(Id::new);
+        outer.find(|id| self.names.kind(id) == Some("call"))
     }
 
     /// What a flown leg is in the document: a leg, also of a procedure, or a stage that is flown without legs.

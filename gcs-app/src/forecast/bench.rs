@@ -170,6 +170,7 @@ impl Bench {
             version: question.version,
             problems,
             reviewed: self.program.is_none(),
+            is_complete: self.program.is_none(),
             forecast: flown.forecast,
             forecast_version: flown.forecast_version,
             no_forecast: flown.no_forecast,

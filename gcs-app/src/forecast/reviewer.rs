@@ -76,7 +76,7 @@ impl Reviewer {
     fn trials(&mut self, path: &Path, paths: &Receiver<Path>, outbox: &Outbox) -> Option<Option<Path>> {
         let mut next = None;
         if self.tried == Some(path.version) {
-            return Some(next);
+            return outbox.send(Found::Everything(path.version)).then_some(None);
         }
         let profile = profile_of(&path.program.plan);
         let conditions = Conditions::default();
@@ -108,6 +108,6 @@ impl Reviewer {
         self.tried = Some(path.version);
         known.extend_from_slice(&more);
         let told = more.is_empty() || outbox.send(Found::Problems(path.version, more));
-        told.then_some(None)
+        (told && outbox.send(Found::Everything(path.version))).then_some(None)
     }
 }

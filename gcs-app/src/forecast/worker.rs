@@ -55,6 +55,8 @@ pub struct Analysis {
     pub problems: Vec<Problem>,
     /// The path was reviewed, or there is none.
     pub reviewed: bool,
+    /// Nothing more will be found of this version: the extremes of its variables were reviewed, too.
+    pub is_complete: bool,
     /// What will be flown; that of the document's last version that could be flown, if this one can't.
     pub forecast: Shared,
     /// Differs whenever the forecast does.
@@ -126,6 +128,7 @@ impl Analysis {
                 self.problems.extend(problems);
                 self.reviewed = true;
             }
+            Found::Everything(version) if version == self.version => self.is_complete = true,
             Found::Remedies(version, remedied) if version == self.version => {
                 put_remedies(&mut self.problems, remedied);
             }
@@ -135,7 +138,11 @@ impl Analysis {
             }
             Found::Coverage(forecast, coverage) => self.coverage = Some((forecast, Arc::new(coverage))),
             // of a version that is history
-            Found::Forecast(..) | Found::Hash(..) | Found::Problems(..) | Found::Remedies(..) => {}
+            Found::Forecast(..)
+            | Found::Hash(..)
+            | Found::Problems(..)
+            | Found::Remedies(..)
+            | Found::Everything(_) => {}
         }
     }
 }
@@ -149,6 +156,8 @@ pub(super) enum Found {
     Hash(u64, String),
     /// Of the path of this version.
     Problems(u64, Vec<Problem>),
+    /// Of this version: the review is at its end.
+    Everything(u64),
     /// For errors of the path of this version that have none yet.
     Remedies(u64, Vec<Problem>),
     /// Of this forecast.

@@ -1,6 +1,6 @@
 //! The bar: menus, vehicle and link, mode and state, plan badge, clock, push.
 
-use super::{Scene, tour};
+use super::{Scene, problems, tour};
 use crate::actions::{Action, Fittings, Group, Kind, all, written};
 use crate::command::{DocumentCommand, FlyCommand, Queue, Replacement};
 use crate::link::LinkState;
@@ -9,7 +9,7 @@ use crate::theme::{self, Palette};
 use crate::units;
 use egui::{Align, Color32, Layout, RichText, Ui, UiBuilder};
 use flight_exec::Phase;
-use flight_plan::Verdict;
+use flight_plan::Problem;
 
 /// Draws the bar.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
@@ -283,8 +283,9 @@ fn push(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 
 /// Why the vehicle may refuse it, by what is known here.
 fn objection(scene: &Scene<'_>) -> Option<String> {
-    let found = Verdict::of(scene.problems());
-    (found.errors > 0).then(|| format!("⚠ This plan {found}: see Problems. The vehicle may refuse it"))
+    let is_faulty = scene.problems().any(Problem::is_error);
+    let said = || format!("⚠ This plan {}: see Problems. The vehicle may refuse it", problems::found(scene));
+    is_faulty.then(said)
 }
 
 /// What the log calls a proposal.

@@ -320,6 +320,10 @@ impl<'a> Scene<'a> {
     pub fn is_behind(&self) -> bool {
         self.analysis.version != self.document.version() || self.analysis.what_if != self.view.what_if
     }
+    /// All that can be found out of this revision of the plan is known.
+    pub fn is_checked(&self) -> bool {
+        self.analysis.version == self.document.version() && self.analysis.is_complete
+    }
     /// Why the path that is drawn is not that of the present plan.
     pub fn out_of_date(&self) -> Option<&'static str> {
         let since_s = self.view.behind_since_s.map_or(0.0, |since_s| self.now_s - since_s);

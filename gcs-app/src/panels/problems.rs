@@ -1,5 +1,7 @@
 //! What is wrong with the plan, with a jump to its place and, often, a remedy.
 
+mod gathered;
+
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::document::Document;
@@ -7,6 +9,7 @@ use crate::theme;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{FontId, Rect, Response, RichText, ScrollArea, Sense, Shape, TextFormat, Ui, UiBuilder, vec2};
 use flight_plan::{Edit, FlightPlan, Id, Problem, Verdict, diff};
+use gathered::Gathered;
 
 /// The panel.
 #[derive(Debug, Default)]
@@ -23,24 +26,27 @@ pub struct Problems {
 struct Listed {
     /// The document's version, and what was found out of it.
     of: (u64, u64),
-    /// The gravest first: numbers among the scene's problems.
-    order: Vec<usize>,
+    /// The gravest first.
+    order: Vec<Gathered>,
     verdict: Verdict,
     /// Of the rows as they were last drawn, screen points.
     heights: Vec<f32>,
 }
 
 impl Listed {
+    fn is_of(&self, scene: &Scene<'_>) -> bool {
+        self.of == (scene.document.version(), scene.analysis.found)
+    }
+
     fn refresh(&mut self, scene: &Scene<'_>, problems: &[&Problem]) {
-        let of = (scene.document.version(), scene.analysis.found);
-        if self.of == of {
+        if self.is_of(scene) {
             return;
         }
-        let mut order: Vec<usize> = (0..problems.len()).collect();
-        order.sort_by_key(|index| problems.get(*index).map(|problem| problem.rank()));
-        self.of = of;
+        let mut order = gathered::gather(scene.document, problems);
+        order.sort_by_key(|one| problems.get(one.number).map(|problem| problem.rank()));
+        self.of = (scene.document.version(), scene.analysis.found);
+        self.verdict = gathered::verdict(&order, problems);
         self.order = order;
-        self.verdict = Verdict::of(problems.iter().copied());
         self.heights.resize(self.order.len().min(MOST), USUAL);
     }
 }
@@ -56,11 +62,13 @@ impl Panel for Problems {
         Place::Left { height: 188.0 }
     }
     fn title(&self, scene: &Scene<'_>) -> String {
-        format!("Problems ({})", scene.problems().count())
+        let problems: Vec<&Problem> = scene.problems().collect();
+        let known = self.listed.is_of(scene).then_some(self.listed.order.len());
+        format!("Problems ({})", known.unwrap_or_else(|| gathered::gather(scene.document, &problems).len()))
     }
     fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
-        if !is_reviewed(scene) {
-            ui.add(egui::Spinner::new().size(14.0)).on_hover_text("The path is being reviewed");
+        if !scene.is_checked() {
+            ui.add(egui::Spinner::new().size(14.0)).on_hover_text("The plan is being checked");
         }
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -90,11 +98,15 @@ impl Problems {
     ) -> Option<Id> {
         let mut pointed = None;
         let near = ui.clip_rect().expand(BEYOND);
-        let listed = self.listed.order.iter().filter_map(|index| problems.get(*index));
-        for ((number, problem), height) in listed.enumerate().zip(&mut self.listed.heights) {
+        let listed = self
+            .listed
+            .order
+            .iter()
+            .filter_map(|one| Some((*problems.get(one.number)?, one.calls.as_slice())));
+        for ((number, (problem, calls)), height) in listed.enumerate().zip(&mut self.listed.heights) {
             let rect = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), *height));
             let rect = if near.intersects(rect) {
-                let response = row(ui, scene, (number, problem), &mut self.open, queue);
+                let response = row(ui, scene, (number, problem, calls), &mut self.open, queue);
                 if response.hovered() {
                     pointed.clone_from(&problem.subject);
                 }
@@ -109,7 +121,7 @@ impl Problems {
                 is_news = false;
             }
         }
-        if let Some(more) = problems.len().checked_sub(MOST).filter(|more| *more > 0) {
+        if let Some(more) = self.listed.order.len().checked_sub(MOST).filter(|more| *more > 0) {
             ui.label(RichText::new(format!("and {more} more")).color(theme::of(ui).weak));
         }
         pointed
@@ -146,13 +158,12 @@ fn subject(scene: &Scene<'_>, problem: &Problem) -> Option<Selection> {
     find(scene.document, problem.subject.as_ref()?)
 }
 
-/// Whether the plan can be flown: green only if nothing at all is to be considered first.
+/// Whether the plan can be flown, once all of it was checked: green only if nothing at all is to be considered first. An error is one
+/// whatever else will be found.
 fn verdict(ui: &mut Ui, scene: &Scene<'_>, found: Verdict) {
     let p = theme::of(ui);
     let (text, colour) = match found {
-        Verdict { errors: 0, warnings: 0 } if !is_reviewed(scene) => {
-            ("Is being reviewed…".to_owned(), p.weak)
-        }
+        Verdict { errors: 0, warnings } if !scene.is_checked() => (being_checked(warnings), p.weak),
         Verdict { errors: 0, warnings: 0 } => ("✔ This plan can be flown".to_owned(), p.good),
         Verdict { errors: 0, .. } => (format!("⚠ This plan {found}"), p.caution),
         _ => (format!("✖ This plan {found}"), p.warning),
@@ -160,26 +171,37 @@ fn verdict(ui: &mut Ui, scene: &Scene<'_>, found: Verdict) {
     ui.label(RichText::new(text).color(colour));
 }
 
-fn is_reviewed(scene: &Scene<'_>) -> bool {
-    scene.analysis.version == scene.document.version() && scene.analysis.reviewed
+fn being_checked(warnings: usize) -> String {
+    match warnings {
+        0 => "Being checked…".into(),
+        1 => "Being checked… 1 warning so far".into(),
+        _ => format!("Being checked… {warnings} warnings so far"),
+    }
+}
+
+/// What the listed problems come to.
+pub fn found(scene: &Scene<'_>) -> Verdict {
+    let problems: Vec<&Problem> = scene.problems().collect();
+    gathered::verdict(&gathered::gather(scene.document, &problems), &problems)
 }
 
 /// The whole of it.
 fn row(
     ui: &mut Ui,
     scene: &Scene<'_>,
-    (number, problem): (usize, &Problem),
+    (number, problem, calls): (usize, &Problem, &[Id]),
     open: &mut Option<String>,
     queue: &mut Queue,
 ) -> Response {
     let p = theme::of(ui);
-    let message = told(scene.document, problem);
+    let message = said(scene.document, problem, calls, &problem.message);
+    let headline = said(scene.document, problem, calls, problem.headline());
     let selection = subject(scene, problem);
     let is_selected = selection.as_ref().is_some_and(|selection| scene.is_selected(selection));
     let whole = UiBuilder::new().id_salt(("problem", number)).sense(Sense::click());
     let shown = ui.scope_builder(whole, |ui| {
         let background = ui.painter().add(Shape::Noop);
-        let asked = inside(ui, scene.document, problem, &message, open);
+        let asked = inside(ui, scene.document, problem, (&headline, &message), open);
         if let Some(fix) = problem.fix.as_ref().filter(|_| asked) {
             queue.edit((**fix).clone());
         }
@@ -208,13 +230,13 @@ fn inside(
     ui: &mut Ui,
     document: &Document,
     problem: &Problem,
-    message: &str,
+    (headline, message): (&str, &str),
     open: &mut Option<String>,
 ) -> bool {
     let p = theme::of(ui);
     let (symbol, colour) = if problem.is_error() { ("✖", p.warning) } else { ("⚠", p.caution) };
     let is_open = open.as_deref() == Some(message);
-    let text = if is_open { at_its_place(problem, message) } else { headline(document, problem) };
+    let text = if is_open { at_its_place(problem, message) } else { headline.to_owned() };
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.add_space(2.0);
@@ -278,21 +300,18 @@ fn at_its_place(problem: &Problem, message: &str) -> String {
     format!("{message}{place}")
 }
 
-/// Whose problem it is, and the first sentence about it.
-fn headline(document: &Document, problem: &Problem) -> String {
-    whose(document, problem, problem.headline())
-}
-
 /// Whose problem it is, and what; by names, where the plan has names.
 pub fn told(document: &Document, problem: &Problem) -> String {
-    whose(document, problem, &problem.message)
+    let call = problem.subject.as_ref().and_then(|flown| document.call_of(flown));
+    said(document, problem, call.as_slice(), &problem.message)
 }
 
-fn whose(document: &Document, problem: &Problem, said: &str) -> String {
-    let said = document.in_names(said);
+/// Whose problem it is, in which calls, and this much of it.
+fn said(document: &Document, problem: &Problem, calls: &[Id], text: &str) -> String {
+    let text = document.in_names(text);
     match &problem.subject {
-        Some(subject) => format!("{}: {said}", document.label(subject)),
-        None => said,
+        Some(subject) => format!("{}: {text}", gathered::whose(document, subject, calls)),
+        None => text,
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a proposed plan would do, before it is committed. It stands beside map and panels: the commands of the flight
 //! stay in reach while the operator reads.
 
-use super::Scene;
+use super::{Scene, answer, problems};
 use crate::command::{FlyCommand, Queue};
 use crate::state::{Proposal, log::short_hash};
 use crate::theme::{self, Palette};
@@ -55,7 +55,8 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
     ScrollArea::vertical().id_salt("push").auto_shrink(false).show(ui, |ui| {
         let plan = scene.document.plan();
         for problem in &report.problems {
-            ui.label(RichText::new(format!("⚠ {}", plan.in_names(problem))).color(p.caution));
+            let said = format!("⚠ {}", answer::told(scene, true, problem));
+            answer::with_codes(ui.label(RichText::new(said).color(p.caution)), problem);
         }
         difference(ui, "+", "added", plan, &report.added, p.good);
         difference(ui, "~", "changed", plan, &report.changed, p.accent);
@@ -109,8 +110,9 @@ fn verdict(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, p: &Palette) {
 fn found_here(scene: &Scene<'_>, proposal: &Proposal) -> Option<Verdict> {
     let report = &proposal.report;
     let is_shown = scene.analysis.hash_of(scene.document.version()).is_some_and(|hash| *hash == *report.hash);
-    let found = Verdict::of(scene.problems());
-    (is_shown && (found.errors > 0 || found.warnings > report.problems.len())).then_some(found)
+    let found = problems::found(scene);
+    let is_more = found.errors > 0 || scene.problems().count() > report.problems.len();
+    (is_shown && is_more && (scene.is_checked() || found.errors > 0)).then_some(found)
 }
 
 /// `1 stage and 2 legs`: a take-off or a landing is a stage without legs.

@@ -66,7 +66,7 @@ struct Cursor {
 struct Problems {
     worst: BTreeMap<String, bool>,
     /// Of which plan, and found in which state of the analysis.
-    of: (u64, u64, bool, u64),
+    of: (u64, u64),
 }
 
 /// Of the panel.
@@ -364,8 +364,7 @@ impl Tree {
 
 impl Problems {
     fn refresh(&mut self, scene: &Scene<'_>) {
-        let analysis = scene.analysis;
-        let of = (scene.document.version(), analysis.version, analysis.reviewed, analysis.forecast_version);
+        let of = (scene.document.version(), scene.analysis.found);
         if self.of == of {
             return;
         }
@@ -373,7 +372,8 @@ impl Problems {
         self.worst.clear();
         for problem in scene.problems() {
             if let Some(id) = &problem.subject {
-                *self.worst.entry(id.to_string()).or_insert(false) |= Problem::is_error(problem);
+                let written = scene.document.written(id);
+                *self.worst.entry(written.to_string()).or_insert(false) |= Problem::is_error(problem);
             }
         }
     }

@@ -184,10 +184,10 @@ impl Window {
         self.harness.input_mut().time = None;
     }
 
-    /// The present version was checked, hashed and previewed.
+    /// The present version was checked whole, hashed and previewed.
     fn until_analysed(&mut self) {
         self.until("analysis", |app| {
-            app.analysis().version == app.document().version() && app.analysis().reviewed
+            app.analysis().version == app.document().version() && app.analysis().is_complete
         });
     }
 

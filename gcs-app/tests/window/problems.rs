@@ -75,6 +75,33 @@ fn the_headlines_of_a_plan_are_in_view_and_all_of_a_text_is_behind_its_mark() {
     assert!(window.shows("Less of: "));
 }
 
+/// Each call of a procedure has its problems; they are mended once, and listed so.
+#[test]
+fn a_problem_inside_a_procedure_is_listed_once_with_the_calls_that_have_it() {
+    let procedure = r#"<procedures><procedure id="look" reference="36.3209 -84.1537">
+        <TF id="up" name="Up" lat="36.3209" lon="-84.1537" altitude="-900" altitudeReference="amsl"/></procedure></procedures><mainPlan"#;
+    let calls = r#"<TF id="side2" fix="B"/><call id="west" name="West" procedure="look"/>
+        <call id="east" name="East" procedure="look" lat="36.3150" lon="-84.1600"/>"#;
+    let mut window =
+        opened(&SQUARE.replacen("<mainPlan", procedure, 1).replacen(r#"<TF id="side2" fix="B"/>"#, calls, 1));
+    let of_both =
+        window.app().analysis().problems.iter().filter(|problem| problem.code == "bad-value").count();
+    assert_eq!(of_both, 2, "{:?}", window.app().analysis().problems);
+    let rows = |window: &Window| -> Vec<String> {
+        let rows = window.harness.query_all_by_label_contains("Problem: ");
+        rows.filter_map(|row| row.accesskit_node().label()).collect()
+    };
+    let said: Vec<String> = rows(&window).into_iter().filter(|row| row.contains("below any land")).collect();
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].starts_with("Problem: Up (in West and East): "), "{said:?}");
+    let by_calls = |row: &String| row.starts_with("Problem: west.up") || row.starts_with("Problem: east.up");
+    assert!(!rows(&window).iter().any(by_calls), "{:?}", rows(&window));
+    assert!(window.shows(&format!("Problems ({})", rows(&window).len())));
+    let first = window.harness.query_all_by_label_contains("Problem: Up (in").next().unwrap().rect().center();
+    window.click_at(first);
+    assert_eq!(window.selected(), "up", "it is mended in the procedure");
+}
+
 /// What is mended, and by how much, is told before the button is pressed.
 #[test]
 fn a_remedy_says_what_it_does_before_it_is_made() {
@@ -234,7 +261,8 @@ fn a_click_on_a_problem_of_a_call_goes_to_the_leg_of_the_procedure() {
         fix="B"/></orbit></procedure></procedures><mainPlan"#;
     let plan = SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, called).replacen("<mainPlan", procedure, 1);
     let mut window = opened(&plan);
-    let row = window.harness.query_all_by_label_contains("Problem: call1.round: ").next().unwrap().rect();
+    let row =
+        window.harness.query_all_by_label_contains("Problem: round (in call1): ").next().unwrap().rect();
     window.click_at(row.center());
     assert_eq!(window.selected(), "round");
     window.press(egui::Key::Escape);

@@ -31,6 +31,38 @@ fn many_legs_are_told_by_the_first_and_the_last_until_all_are_asked_for() {
     assert_eq!(names(&window), before + 1);
 }
 
+/// What is for programs is for who points at it.
+#[test]
+fn what_the_vehicle_finds_is_told_in_words_and_names() {
+    let named =
+        SQUARE.replacen(r#"<TF id="side2" fix="B"/>"#, r#"<TF id="side2" name="To the quarry" fix="B"/>"#, 1);
+    let mut window = Window::open(&named);
+    window.until_analysed();
+    window.connect();
+    let hash = window.app().analysis().hash.clone();
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    let said = "17:7: warning [low-clearance] side2: fly higher on `side2`";
+    let problems = vec![said.to_owned(), "warning [no-landing] land it".to_owned()];
+    let report = ProposalReport { problems, ..report(&hash, true) };
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report))));
+    assert!(window.shows("⚠ “To the quarry”: fly higher on “To the quarry”") && window.shows("⚠ land it"));
+    assert!(!window.shows("low-clearance"));
+    let at = window.harness.get_by_label_contains("fly higher on").rect().center();
+    window.harness.hover_at(at);
+    window.steps(60);
+    assert!(window.shows(said), "the code and the place in the document are in the tooltip");
+    // refused outright: so in the log
+    window.click("Keep as draft");
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    window.answer(ticket, Err("35:7: error [too-steep] side2: climb earlier; and 3 more".into()));
+    super::fleet::tab(&mut window, "Log");
+    window.steps(3);
+    assert!(window.shows("Propose plan: refused, “To the quarry”: climb earlier; and 3 more"));
+    assert!(!window.shows("too-steep"));
+}
+
 /// The button stays under the pointer whatever is said beside it.
 #[test]
 fn the_push_button_has_one_place() {

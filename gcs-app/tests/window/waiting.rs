@@ -58,6 +58,28 @@ fn frames_and_edits_go_on_while_the_preview_waits_for_the_ground() {
     window.until_analysed();
 }
 
+/// Nothing is said of a plan before all of it was looked at, as it is now.
+#[test]
+fn a_plan_is_being_checked_until_the_check_of_this_revision_is_there() {
+    let (mut window, gate) = over_held_ground();
+    window.steps(10);
+    assert!(window.shows("Being checked…") && !window.shows("can be flown"));
+    let set = |is_open: bool| {
+        *gate.0.lock().unwrap() = is_open;
+        gate.1.notify_all();
+    };
+    set(true);
+    window.until_analysed();
+    assert!(window.shows("This plan can be flown") && !window.shows("Being checked…"));
+    set(false);
+    let from = window.centre("Fix A");
+    window.drag(from, vec2(30.0, 10.0));
+    assert!(window.shows("Being checked…") && !window.shows("can be flown"), "another revision");
+    set(true);
+    window.until_analysed();
+    assert!(window.shows("This plan can be flown"));
+}
+
 /// Legs without a forecast are not legs in error.
 #[test]
 fn the_table_says_that_a_sound_plan_is_still_being_looked_at() {
