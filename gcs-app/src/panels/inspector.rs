@@ -4,6 +4,7 @@
 mod aboard;
 mod bind;
 mod datum;
+mod fixes;
 mod form;
 mod formula;
 pub mod inherited;
@@ -92,6 +93,9 @@ fn part(ui: &mut Ui, scene: &Scene<'_>, draft: Draft, queue: &mut Queue) {
         _ => {}
     }
     form(ui, scene, std::slice::from_ref(&draft), queue);
+    if let Subject::Leg(id) | Subject::Procedure(id) = draft.subject() {
+        fixes::of_procedure(ui, scene, id, queue);
+    }
     match draft.subject() {
         Subject::Plan => hint(ui),
         Subject::Variable(name) => aboard::variable(ui, scene, name, queue),

@@ -68,6 +68,32 @@ fn a_runway_gets_an_emergency_plan_and_a_fix_is_deleted_without_breaking_its_leg
     assert!(worst < Some(flight_plan::Severity::Error), "{:?}", window.app().analysis().problems);
 }
 
+/// A fix stays where it is wherever its procedure is called; the place of it that became the leg's own moves along.
+#[test]
+fn the_fixes_of_a_procedure_are_moved_along_with_it() {
+    for from_menu in [true, false] {
+        let mut window = Window::open_with(SQUARE, egui::vec2(1280.0, 1000.0), None);
+        window.until_analysed();
+        choose(&mut window, "TF side2", "Make a procedure of it");
+        let at = window.plan().fix(&"B".into()).unwrap().position;
+        let move_along = "Move its fixes along with the procedure";
+        match from_menu {
+            true => choose(&mut window, "PROC procedure1", move_along),
+            false => {
+                window.click("TF side2");
+                assert!(window.shows("stays where it is wherever the procedure is called"));
+                window.click(move_along);
+            }
+        }
+        let plan = window.plan();
+        let (_, leg) = plan.procedure_leg(&"side2".into()).unwrap();
+        assert_eq!(leg.place(), Some(&flight_plan::Place::Position(flight_plan::Value::Constant(at))));
+        assert!(plan.fix(&"B".into()).is_some() && !window.shows("stays where it is wherever"));
+        window.click("Undo");
+        assert_eq!(window.plan().procedures[0].legs[0].place(), Some(&flight_plan::Place::Fix("B".into())));
+    }
+}
+
 /// The `+` of a heading, and an entry of its menu.
 fn add(window: &mut Window, to: &str, entry: &str) {
     window.click(&format!("Add to {to}"));

@@ -27,6 +27,9 @@ const GONE: &str = "It is no longer in the plan";
 const NOT_ONE_LIST: &str = "They are in several stages or loops: select legs of one";
 const NOT_IN_A_ROW: &str = "They do not follow each other in one list: select legs that do";
 
+/// What lets the fixes of a procedure move with it.
+pub const MOVE_FIXES: &str = "Move its fixes along with the procedure";
+
 impl Entry {
     fn new(name: &'static str, keys: &'static str, edit: Edit) -> Self {
         Self { name, keys, edit: Ok(edit), selects: None }
@@ -180,7 +183,10 @@ pub fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
     let together = scene.selected_legs();
     match of {
         Selection::Leg(_) if together.len() > 1 && scene.is_selected(of) => of_legs(plan, &together),
-        Selection::Leg(leg) => of_leg(plan, leg).into_iter().chain(pictures(scene, leg)).collect(),
+        Selection::Leg(leg) => {
+            let more = pictures(scene, leg).into_iter().chain(own_places(plan, leg));
+            of_leg(plan, leg).into_iter().chain(more).collect()
+        }
         Selection::Stage(stage) => vec![
             Entry::shifting("Move up", "Ctrl+Up", create::shift_stage(plan, stage, -1)),
             Entry::shifting("Move down", "Ctrl+Down", create::shift_stage(plan, stage, 1)),
@@ -191,8 +197,16 @@ pub fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
             let bind = Entry::making("Make its place a variable", made, Selection::Variable, GONE);
             std::iter::once(bind).chain(of_thing(plan, fix)).collect()
         }
+        Selection::Procedure(procedure) => {
+            of_thing(plan, procedure).into_iter().chain(own_places(plan, procedure)).collect()
+        }
         other => of_thing(plan, other.id()).into(),
     }
+}
+
+/// Of a procedure, or a leg of one, that goes to fixes.
+fn own_places(plan: &FlightPlan, of: &Id) -> Option<Entry> {
+    create::own_places(plan, of).map(|edit| Entry::new(MOVE_FIXES, "", edit))
 }
 
 /// Of what is in a list of the plan and is not flown itself.
