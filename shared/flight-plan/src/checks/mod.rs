@@ -6,6 +6,7 @@
 mod actions;
 mod aircraft;
 mod altitudes;
+mod called;
 mod conditions;
 mod courses;
 mod emergency_coverage;
@@ -59,12 +60,11 @@ pub use scans::untied;
 pub use terrain_clearance::MARGIN_M as CLEARANCE_M;
 
 use crate::ids::Ids;
-use crate::{FlightPlan, Id, Problem};
+use crate::{FlightPlan, Problem};
 use ::aircraft::Profile;
 use incremental_cache::{Last, Recall};
 use inspection::Inspection;
 use std::borrow::Cow;
-use std::collections::HashSet;
 use std::sync::Arc;
 use step::Step;
 use terrain::Terrain;
@@ -182,7 +182,7 @@ fn run_checks(
     values::near_pole_alone(&mut problems);
     outliers::alone(&inspection, &mut problems);
     if matches!(flown, Cow::Owned(_)) {
-        written_only(&inspection, &mut problems);
+        called::written_only(&inspection, &mut problems);
     }
     let (expressions, ids) = (inspection.expressions().clone(), inspection.ids.clone());
     let last = again.then(|| Last::of(inspection, recall));
@@ -225,21 +225,4 @@ fn rules_about(view: &Inspection, step: &Step) -> Vec<(usize, Problem)> {
         }
     }
     found
-}
-
-/// Removes the edits for legs that come from calls: the plan as written has no such legs.
-fn written_only(inspection: &Inspection, problems: &mut [Problem]) {
-    let made = |step: &&Step| {
-        let leg = step.leg.id.as_str();
-        step.around
-            .loops
-            .iter()
-            .any(|l| leg.strip_prefix(l.id.as_str()).is_some_and(|rest| rest.starts_with('.')))
-    };
-    let made: HashSet<&Id> = inspection.steps().iter().filter(made).map(|s| &s.leg.id).collect();
-    for problem in problems.iter_mut().filter(|p| p.fix.is_some()) {
-        if problem.subject.as_ref().is_some_and(|id| made.contains(id)) {
-            problem.fix = None;
-        }
-    }
 }
