@@ -181,6 +181,16 @@ impl Forecast {
         let passage = self.passages.iter().rfind(|passage| passage.leg == *leg)?;
         self.towards(passage.end)
     }
+    /// Where the path is at a time, and which way it goes there.
+    pub fn approach_at(&self, time_s: f64) -> Option<Approach> {
+        self.towards(self.points.partition_point(|point| point.time_s < time_s))
+    }
+    /// Half the time of the first passage of a leg or stage, seconds from the start; `None`: it is not flown.
+    pub fn middle_of_s(&self, what: &Id) -> Option<f64> {
+        let is_its = |passage: &&Passage| passage.leg == *what || passage.stage == *what;
+        let part = self.part(self.passages.iter().find(is_its)?)?;
+        Some((part.first()?.time_s + part.last()?.time_s) / 2.0)
+    }
     /// At a point, coming from the point before it.
     fn towards(&self, index: usize) -> Option<Approach> {
         let at = |i: usize| self.points.get(i).map(|point| point.position);
@@ -272,6 +282,17 @@ mod tests {
         assert_eq!(at("c", 1), None);
         assert_eq!(f.passages_of(&"a".into()).map(<[Point]>::len).collect::<Vec<_>>(), [3, 2]);
         assert_eq!(Forecast::default().at(1.0), None);
+    }
+
+    #[test]
+    fn a_leg_and_a_stage_have_their_middle_in_time_and_the_path_its_course_there() {
+        let f = forecast();
+        assert_eq!(f.middle_of_s(&"b".into()), Some(5.0), "to where the next one begins");
+        assert_eq!(f.middle_of_s(&"s".into()), Some(2.0), "a stage begins with its first leg");
+        assert_eq!(f.middle_of_s(&"z".into()), None);
+        let there = f.approach_at(4.0).unwrap();
+        assert_eq!(there.from, LatLon::new(0.0, 2e-3));
+        assert!((there.course_deg.unwrap() - 90.0).abs() < 0.1, "{there:?}");
     }
 
     #[test]

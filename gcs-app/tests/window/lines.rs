@@ -59,20 +59,33 @@ fn every_tool_that_draws_legs_shows_what_they_lead_to() {
     }
 }
 
+/// From where an alarm would be raised, not from wherever the path comes near: in the middle of the selected leg, or at the cursor.
 #[test]
-fn an_emergency_plan_shows_from_where_it_would_be_flown_while_it_is_drawn() {
+fn an_emergency_plan_shows_the_way_into_it_from_the_selected_leg_while_it_is_drawn() {
     let band = gcs_app::theme::palette(true).contingency;
     let mut window = window();
+    let middle = |window: &Window, from: &str, to: &str| window.centre(from).lerp(window.centre(to), 0.5);
+    let sides = [middle(&window, "Fix A", "Fix B"), middle(&window, "Fix C", "Fix D")];
     window.press(Key::E);
     let runway = window.centre("Runway R05");
     window.click_at(runway);
-    let away = window.centre("Undo");
-    window.harness.hover_at(away);
+    let there = window.centre("Map") + vec2(60.0, 40.0);
+    window.harness.hover_at(there);
     window.steps(2);
-    let before = window.lines_within("Map", band);
-    window.harness.hover_at(window.centre("Map") + vec2(60.0, 40.0));
-    window.steps(2);
-    assert!(window.lines_within("Map", band) > before, "a band from the path");
+    assert!(window.shows("Select a leg, or move the cursor of the preview"));
+    let ends = |window: &Window| sides.map(|side| window.line_ends_near(side, band));
+    let before = ends(&window);
+    for (leg, number) in [("side2", 0), ("side4", 1)] {
+        window.click(&format!("TF {leg}"));
+        window.harness.hover_at(there);
+        window.steps(2);
+        assert!(window.shows(&format!("From {leg} to its beginning: ")), "how far and how long it is");
+        let (now, other) = (ends(&window), 1 - number);
+        assert!(now[number] > before[number] && now[other] == before[other], "{leg}: {before:?} {now:?}");
+    }
+    window.press(Key::Escape);
+    window.press(Key::Escape);
+    assert_eq!(ends(&window), before);
 }
 
 #[test]

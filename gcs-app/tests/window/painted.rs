@@ -2,7 +2,7 @@
 
 use super::Window;
 use egui::epaint::{ColorMode, TextShape};
-use egui::{Color32, Order, Rect, Shape};
+use egui::{Color32, Order, Pos2, Rect, Shape};
 use egui_kittest::kittest::Queryable;
 
 /// The texts of a shape.
@@ -24,6 +24,16 @@ fn strokes(shape: &Shape) -> Vec<Color32> {
             ColorMode::Solid(colour) => vec![colour],
             ColorMode::UV(_) => Vec::new(),
         },
+        _ => Vec::new(),
+    }
+}
+
+/// Where the lines of this colour in a shape begin, bend and end.
+fn ends(shape: &Shape, colour: Color32) -> Vec<Pos2> {
+    match shape {
+        Shape::Vec(several) => several.iter().flat_map(|shape| ends(shape, colour)).collect(),
+        Shape::LineSegment { points, stroke } if stroke.color == colour => points.to_vec(),
+        Shape::Path(path) if path.stroke.color == ColorMode::Solid(colour) => path.points.clone(),
         _ => Vec::new(),
     }
 }
@@ -130,6 +140,13 @@ impl Window {
     pub fn lines_within(&self, name: &str, colour: Color32) -> usize {
         let rect = self.harness.query_all_by_label_contains(name).next().unwrap().rect();
         self.lines_in(rect, colour)
+    }
+
+    /// Lines of this colour begin, bend or end within a few points of a place of the screen so often.
+    pub fn line_ends_near(&self, at: Pos2, colour: Color32) -> usize {
+        let shapes = self.harness.output().shapes.iter();
+        let found = shapes.flat_map(|clipped| ends(&clipped.shape, colour));
+        found.filter(|end| end.distance(at) < 14.0).count()
     }
 
     fn lines_in(&self, rect: Rect, colour: Color32) -> usize {

@@ -2,7 +2,6 @@
 
 use super::Canvas;
 use super::new_leg::{self, Aim};
-use crate::forecast::Point;
 use crate::map::polyline::{self, Style};
 use crate::map::sketch::Handled;
 use crate::map::view::Mercator;
@@ -68,23 +67,6 @@ pub fn around(canvas: &Canvas<'_>, legs: &[Id]) -> Vec<Band> {
     contexts.iter().for_each(|context| alternates(canvas, context, &mut bands));
     bands.truncate(MOST);
     bands
-}
-
-/// From what is drawn from a runway outwards: to the selected legs, from which it would be flown; if none is, to where the path
-/// comes nearest.
-pub fn entries(canvas: &Canvas<'_>, from: LatLon) -> Vec<Band> {
-    let plan = canvas.scene.document.plan();
-    let legs = canvas.scene.selected_legs();
-    let legs = legs.iter().filter_map(|leg| plan.leg(leg));
-    let places = legs.filter_map(|context| new_leg::place_of(canvas, context.leg.first_flown()));
-    let mut places: Vec<LatLon> = places.take(MOST).collect();
-    if places.is_empty() {
-        let (at, forecast) = (canvas.view.place(from), canvas.scene.forecast());
-        let far = |point: &Point| canvas.view.place(point.position).distance(at);
-        let nearest = forecast.nearest_index(far, f32::INFINITY).and_then(|index| forecast.points.get(index));
-        places.extend(nearest.map(|point| point.position));
-    }
-    places.into_iter().map(|to| Band { to, is_alternate: true }).collect()
 }
 
 /// Where a leg comes from.

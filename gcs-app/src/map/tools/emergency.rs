@@ -1,15 +1,19 @@
-//! An emergency plan, drawn from the runway outwards; it is flown the other way.
+//! An emergency plan, drawn from the runway outwards; it is flown the other way. Where an alarm would be raised is known from the
+//! cursor or the selected leg: the way from there into the plan is flown ahead while it is drawn.
 
 use super::bands::{self, Band};
+use super::new_leg::{self, Aim};
 use super::pen::{Figure, Mark, Pen};
 use super::pick::runway_near;
 use super::snap::snap;
+use super::trial::Trials;
 use super::{Canvas, Card, Pointer, Tool, Touch};
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::panels::Scene;
 use crate::theme::Palette;
 use egui::{CursorIcon, Key, Painter, Pos2};
-use flight_plan::{Id, Place};
+use flight_plan::create::{Approach, Drawn, LegChoice};
+use flight_plan::{Id, Place, Spot};
 use geometry::LatLon;
 
 /// The tool.
@@ -17,13 +21,41 @@ use geometry::LatLon;
 pub struct DrawEmergency {
     pen: Pen,
     runway: Option<Id>,
-    /// From where the flight may come into it.
-    bands: Vec<Band>,
+    /// From where it would be flown.
+    raised: Option<Raised>,
+    /// The way from there to where it begins.
+    trials: Trials,
+}
+
+/// Where an alarm would be raised.
+#[derive(Debug, Clone, PartialEq)]
+struct Raised {
+    /// On which leg.
+    leg: Id,
+    /// Where the aircraft is then, and which way it flies.
+    at: Approach,
+}
+
+/// At the cursor, unless something else is selected that is flown: then in the middle of that. `None`: there is neither.
+fn raised(scene: &Scene<'_>) -> Option<Raised> {
+    let forecast = scene.forecast();
+    let passage_at = |time_s: f64| forecast.passages.get(forecast.at(time_s)?.passage);
+    let selected = scene.view.selection.as_ref().map(|what| match scene.document.plan().leg(what.id()) {
+        Some(context) => &context.leg.first_flown().id,
+        None => what.id(),
+    });
+    let middle = selected.and_then(|what| Some((what, forecast.middle_of_s(what)?)));
+    let is_meant = |time_s: &f64| {
+        let passage = passage_at(*time_s);
+        middle.is_none_or(|(what, _)| passage.is_some_and(|p| p.leg == *what || p.stage == *what))
+    };
+    let time_s = scene.view.cursor_s.filter(is_meant).or(middle.map(|(_, time_s)| time_s))?;
+    Some(Raised { leg: passage_at(time_s)?.leg.clone(), at: forecast.approach_at(time_s)? })
 }
 
 impl Default for DrawEmergency {
     fn default() -> Self {
-        Self { pen: Pen::new(Figure::Line), runway: None, bands: Vec::new() }
+        Self { pen: Pen::new(Figure::Line), runway: None, raised: None, trials: Trials::default() }
     }
 }
 
@@ -36,6 +68,39 @@ impl DrawEmergency {
             queue.document(DocumentCommand::BringHome { runway, outwards });
         }
         self.pen.clear();
+    }
+
+    /// Where it begins, as it is drawn so far.
+    fn begins(&self) -> Option<LatLon> {
+        self.runway.as_ref()?;
+        self.pen.pointer().map(|mark| mark.at).or(self.pen.last())
+    }
+
+    /// Flies from where the alarm would be raised to where it begins, as the aircraft would: directly, from its course.
+    fn fly(&mut self, canvas: &Canvas<'_>) {
+        self.raised = raised(canvas.scene);
+        let Some((raised, to)) = self.raised.clone().zip(self.begins()) else { return self.trials.clear() };
+        let aim = Aim::Spot(Spot::After(raised.leg));
+        let drawn = Drawn::Place(Mark::at(to).place);
+        let direct = new_leg::leg(LegChoice::Df, &drawn, &aim, Some(raised.at), canvas.scene.document.plan());
+        self.trials.divert(direct, &aim, raised.at, canvas);
+    }
+
+    /// From where it would be flown, and how far and how long it is from there.
+    fn way_in(&self, scene: &Scene<'_>) -> String {
+        let Some(raised) = &self.raised else {
+            return " Select a leg, or move the cursor of the preview, to see the way into it from there."
+                .into();
+        };
+        let Some((trial, to)) = self.trials.get().zip(self.begins()) else { return String::new() };
+        let leg = scene.document.label(&raised.leg);
+        match &trial.fault {
+            Some(fault) => format!(" From {leg} it can't be flown so: {fault}."),
+            None => {
+                let way = trial.words(raised.at.from, to, scene.units());
+                format!(" From {leg} to its beginning: {way}.")
+            }
+        }
     }
 }
 
@@ -51,7 +116,8 @@ impl Tool for DrawEmergency {
             }
             None => "Emergency plan: click the runway it leads to. Esc ends it.".into(),
             Some(runway) => format!(
-                "Emergency plan to {runway}: click its places from there outwards, it is flown inwards. Enter or a double click ends it; without places it comes straight home."
+                "Emergency plan to {runway}: click its places from there outwards, it is flown inwards. Enter or a double click ends it; without places it comes straight home.{}",
+                self.way_in(scene)
             ),
         })
     }
@@ -62,8 +128,7 @@ impl Tool for DrawEmergency {
         if self.pen.len() == 0 || self.runway.as_ref().is_some_and(gone) {
             self.leave();
         }
-        let from = self.pen.pointer().filter(|_| self.runway.is_some());
-        self.bands = from.map_or(Vec::new(), |from| bands::entries(canvas, from.at));
+        self.fly(canvas);
     }
 
     fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
@@ -105,7 +170,12 @@ impl Tool for DrawEmergency {
 
     fn leave(&mut self) {
         self.pen.clear();
-        self.runway = None;
+        self.trials.clear();
+        (self.runway, self.raised) = (None, None);
+    }
+
+    fn is_busy(&self) -> bool {
+        self.trials.is_flying()
     }
 
     fn cursor(&self) -> CursorIcon {
@@ -113,8 +183,11 @@ impl Tool for DrawEmergency {
     }
 
     fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
-        if let Some(from) = self.pen.pointer() {
-            bands::paint(painter, canvas, from.at, &self.bands, p);
+        if let (Some(raised), Some(to)) = (&self.raised, self.begins()) {
+            match self.trials.get().filter(|trial| trial.cost.is_some()) {
+                Some(trial) => trial.paint_in(p.contingency, painter, canvas, p),
+                None => bands::paint(painter, canvas, raised.at.from, &[Band { to, is_alternate: true }], p),
+            }
         }
         self.pen.paint(painter, canvas, false, p);
     }

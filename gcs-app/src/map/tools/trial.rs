@@ -8,7 +8,7 @@ use crate::map::view::Mercator;
 use crate::theme::Palette;
 use crate::units::{self, Units};
 use aircraft::Profile;
-use egui::{Painter, Stroke};
+use egui::{Color32, Painter, Stroke};
 use flight_exec::rehearse::{Options, Preview, Rehearsal, Start, WhatIf};
 use flight_plan::create::{self, Approach, is_tried};
 use flight_plan::{Altitude, AltitudeReference, FlightPlan, Leg, Program, Spot, Value, compile};
@@ -66,9 +66,14 @@ impl Trial {
 
     /// Draws the path.
     pub fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
+        self.paint_in(p.accent, painter, canvas, p);
+    }
+
+    /// Draws the path in this colour.
+    pub fn paint_in(&self, colour: Color32, painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
         let line: Vec<Mercator> = self.line.iter().map(|at| (*at).into()).collect();
         let parts = polyline::visible_parts(&line, canvas.view);
-        polyline::draw(painter, &parts, Stroke::new(2.0, p.accent), Style::Dashed, p.halo);
+        polyline::draw(painter, &parts, Stroke::new(2.0, colour), Style::Dashed, p.halo);
     }
 }
 
@@ -79,6 +84,8 @@ struct Wanted {
     what_if: WhatIf,
     leg: Leg,
     approach: Approach,
+    /// It is begun there and then, from wherever the aircraft is; else the path leads there before.
+    is_diversion: bool,
 }
 
 impl Wanted {
@@ -100,13 +107,23 @@ pub struct Trials {
 impl Trials {
     /// A leg that would be put there; flown anew only when it is another.
     pub fn fly(&mut self, leg: Option<Leg>, aim: &Aim, approach: Option<Approach>, canvas: &Canvas<'_>) {
+        self.try_out(leg.zip(approach), false, aim, canvas);
+    }
+
+    /// A leg that the aircraft turns to there and then, on the way along the leg that it is aimed behind.
+    pub fn divert(&mut self, leg: Option<Leg>, aim: &Aim, from: Approach, canvas: &Canvas<'_>) {
+        self.try_out(leg.zip(Some(from)), true, aim, canvas);
+    }
+
+    fn try_out(&mut self, leg: Option<(Leg, Approach)>, is_diversion: bool, aim: &Aim, canvas: &Canvas<'_>) {
         self.take();
         let scene = canvas.scene;
-        self.wanted = leg.zip(approach).map(|(leg, approach)| Wanted {
+        self.wanted = leg.map(|(leg, approach)| Wanted {
             version: scene.document.version(),
             what_if: scene.view.what_if.clone(),
             leg,
             approach,
+            is_diversion,
         });
         let Some(wanted) = self.wanted.clone().filter(|_| self.flying.is_none()) else { return };
         if self.tried.as_ref().is_some_and(|(tried, _)| *tried == wanted) {
@@ -150,7 +167,10 @@ fn fly(wanted: &Wanted, aim: &Aim, plan: &FlightPlan, ground: &Arc<dyn Terrain>)
     let ground_amsl_m = ground.elevation_m(approach.from);
     let home_amsl_m = home_amsl_m(plan, aim);
     let level_amsl_m = level_amsl_m(new_leg::level(plan, aim), home_amsl_m, ground_amsl_m.unwrap_or(0.0));
-    let tried = create::trial(plan, *approach, (level_amsl_m, home_amsl_m), leg);
+    let mut tried = create::trial(plan, *approach, (level_amsl_m, home_amsl_m), leg);
+    if wanted.is_diversion {
+        tried.stages.iter_mut().for_each(|stage| stage.legs.retain(|other| other.id == leg.id));
+    }
     let program = match compile(tried, &profile, ground.as_ref()) {
         Ok(program) => Arc::new(program),
         Err(problems) => {
@@ -162,7 +182,7 @@ fn fly(wanted: &Wanted, aim: &Aim, plan: &FlightPlan, ground: &Arc<dyn Terrain>)
     let pace_mps = profile.cruise_airspeed_mps;
     // as the preview of the whole plan
     let rehearsal = Rehearsal::new(profile, ground.clone(), what_if.winds(plan), options());
-    Trial { pace_mps, ..flown(leg, *approach, level_amsl_m, &program, rehearsal) }
+    Trial { pace_mps, ..flown(wanted, level_amsl_m, &program, rehearsal) }
 }
 
 fn options() -> Options {
@@ -170,15 +190,11 @@ fn options() -> Options {
     Options { most_s, most_waypoints: MOST_WAYPOINTS, step_s: 0.2, ..Options::default() }
 }
 
-fn flown(
-    leg: &Leg,
-    approach: Approach,
-    altitude_amsl_m: f64,
-    program: &Arc<Program>,
-    mut rehearsal: Rehearsal,
-) -> Trial {
+fn flown(wanted: &Wanted, altitude_amsl_m: f64, program: &Arc<Program>, mut rehearsal: Rehearsal) -> Trial {
+    let Wanted { leg, approach, is_diversion, .. } = wanted;
     let heading_deg = approach.course_deg.unwrap_or(0.0);
-    let position = approach.from.destination(heading_deg + 180.0, create::RUN_UP_M);
+    let run_up_m = if *is_diversion { 0.0 } else { create::RUN_UP_M };
+    let position = approach.from.destination(heading_deg + 180.0, run_up_m);
     let start = Start::InFlight { position, altitude_amsl_m, heading_deg };
     // it ends in the air; a path that is cut short is drawn as far as it goes
     let outcome = rehearsal.fly(program, start, &mut |_| true);
