@@ -1,10 +1,12 @@
-//! Copy, cut, paste and duplicate: legs, fixes, zones and runways as text, coordinates as a waypoint, and drawings of other programs.
+//! Copy, cut, paste and duplicate: legs, fixes, zones and runways as text, coordinates as a waypoint or where a new mission is, and
+//! drawings of other programs.
 
 use super::drawings;
 use super::menu::Menu;
 use super::tools::{Canvas, new_leg};
 use crate::command::{Clip, Queue, Selection, ViewCommand};
 use crate::coordinates::{self, Known};
+use crate::guide::Answer;
 use crate::jobs::{Taken, Task};
 use crate::panels::start;
 use egui::{Context, Event, Ui, ViewportCommand};
@@ -167,17 +169,21 @@ fn aim(canvas: &Canvas<'_>) -> Result<Aim, String> {
     aim.ok_or_else(|| "Make a new mission first (Ctrl+N): it has a stage to paste into.".into())
 }
 
-/// Coordinates become a waypoint where they say; legs come to where the pointer is.
+/// Coordinates become a waypoint where they say, or answer the guide; legs come to where the pointer is.
 fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Queue) {
     let scene = canvas.scene;
     let plan = scene.document.plan();
+    let aircraft = scene.vehicle.position.as_ref().map(|position| position.value.position);
+    let known = Known { plan: Some(plan), aircraft, near: under, world: None };
+    let place = coordinates::read(text, &known);
+    if let (Ok(at), true) = (&place, start::is_wanted(scene)) {
+        return queue.view(ViewCommand::Guide(Answer::Place(*at)));
+    }
     let aim = match aim(canvas) {
         Ok(aim) => aim,
         Err(why) => return queue.view(ViewCommand::Notice(why)),
     };
-    let aircraft = scene.vehicle.position.as_ref().map(|position| position.value.position);
-    let known = Known { plan: Some(plan), aircraft, near: under, world: None };
-    match coordinates::read(text, &known) {
+    match place {
         Ok(place) => {
             let drawn = Drawn::Place(Place::Position(Value::Constant(place)));
             let approach = new_leg::approach(canvas, &aim);

@@ -113,6 +113,43 @@ fn place_is_typed_and_what_is_none_is_refused() {
     }
 }
 
+#[test]
+fn coordinates_that_are_pasted_are_where_the_mission_is() {
+    let mut window = Window::open(EMPTY);
+    window.steps(3);
+    window.paste("47°06'00\"N 8°12'00\"E");
+    let off_m = |window: &Window, lat, lon| {
+        guide(window).threshold.unwrap().distance_m(geometry::LatLon::new(lat, lon))
+    };
+    assert!(off_m(&window, 47.1, 8.2) < 1.0 && window.app().view().notice.is_none());
+    assert!(window.is_enabled("Create"));
+    window.paste("36.3, -84.2");
+    assert!(off_m(&window, 36.3, -84.2) < 1.0, "another place in the second step");
+    window.paste("nowhere at all");
+    assert!(off_m(&window, 36.3, -84.2) < 1.0 && window.app().view().notice.is_some());
+}
+
+#[test]
+fn heading_and_aircraft_are_those_of_the_card() {
+    let mut window = begun(SIZE);
+    let place = guide(&window).threshold;
+    window.fill_in(Role::SpinButton, "Heading", "127");
+    let list = window.harness.get_by_role_and_label(Role::ComboBox, "Aircraft: trainer");
+    list.scroll_to_me();
+    window.steps(3);
+    window.click("Aircraft: trainer");
+    window.click("fast-wing");
+    window.steps(2);
+    assert!(window.harness.query_by_role_and_label(Role::ComboBox, "Aircraft: fast-wing").is_some());
+    window.click("Create");
+    window.until_analysed();
+    let plan = window.plan();
+    assert_eq!((plan.aircraft.as_str(), plan.runways[0].id.as_str()), ("fast-wing", "R13"));
+    assert_eq!((plan.runways[0].heading_deg, Some(plan.runways[0].threshold)), (127.0, place));
+    assert_eq!(window.errors(), Vec::<String>::new());
+    assert!(window.app().analysis().forecast.length_m() > 5000.0);
+}
+
 /// Types something into a field of the card, and presses Enter.
 fn type_into(window: &mut Window, field: &str, text: &str) {
     window.harness.get_by_role_and_label(Role::TextInput, field).focus();
