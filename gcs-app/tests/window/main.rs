@@ -58,6 +58,7 @@ mod together;
 mod tools;
 mod tree;
 mod typing;
+mod unsteady;
 mod vehicle;
 mod waiting;
 mod watching;

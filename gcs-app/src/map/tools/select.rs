@@ -13,7 +13,7 @@ use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::guard;
 use crate::map::sketch::{Handle, Handled, Sketch, numbers, radius_edit};
 use crate::map::text;
-use crate::panels::Scene;
+use crate::panels::{Scene, inspector};
 use crate::theme::Palette;
 use aircraft::Profile;
 use egui::{Align2, Key, Painter, Pos2, Rect, Stroke, vec2};
@@ -204,6 +204,14 @@ impl Tool for Select {
         let what = self.bent.as_ref().unwrap_or(&handle.what);
         if let Some(edit) = edit(plan, canvas.sketch, what, to) {
             queue.document(DocumentCommand::DragEdit(edit));
+        }
+    }
+
+    /// What was clicked twice is to be seen with all it has: in the inspector, if that is hidden or behind another panel. One click
+    /// only selects: who has closed the inspector wants the room.
+    fn finish(&mut self, canvas: &Canvas<'_>, queue: &mut Queue) {
+        if canvas.scene.view.selection.is_some() {
+            queue.view(ViewCommand::ShowPanel(inspector::ID, true));
         }
     }
 

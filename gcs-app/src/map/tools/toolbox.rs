@@ -16,13 +16,24 @@ const REACH: f32 = 18.0;
 /// So many grips are offered wherever the pointer is.
 const OFFERED: usize = 150;
 
+/// A hand that is not quite still moves nothing, however long it presses, screen points.
+pub const JITTER: f32 = 4.0;
+
+/// A drag on its way.
+#[derive(Debug, Default)]
+struct Drag {
+    /// From the pointer to the grip when it began, so that nothing jumps.
+    offset: Vec2,
+    /// The pointer has left where it was pressed.
+    has_left: bool,
+}
+
 /// The tools, and the one in use.
 #[derive(Debug)]
 pub struct Toolbox {
     tools: Vec<Box<dyn Tool>>,
     current: usize,
-    /// From the pointer to the grip when the drag began, so that nothing jumps.
-    offset: Vec2,
+    drag: Drag,
     /// Keys that the tool in use has not seen yet.
     pressed: Vec<Key>,
     sweep: Sweep,
@@ -40,7 +51,7 @@ impl Default for Toolbox {
         Self {
             tools: all(),
             current: 0,
-            offset: Vec2::ZERO,
+            drag: Drag::default(),
             sweep: Sweep::default(),
             typed: Typed::default(),
             pressed: Vec::new(),
@@ -180,7 +191,7 @@ impl Toolbox {
                 touch.dragged = Some(grip.key);
             }
             asks |= response.secondary_clicked();
-            react(tool, &mut self.offset, &response, &grip, canvas, queue);
+            react(tool, &mut self.drag, &response, &grip, canvas, queue);
         }
         if map.double_clicked() || map.triple_clicked() {
             tool.finish(canvas, queue);
@@ -243,7 +254,7 @@ fn widget(ui: &Ui, grip: &Grip, id: Id) -> Response {
 /// Turns what happened to a grip's widget into what the tool understands.
 fn react(
     tool: &mut dyn Tool,
-    offset: &mut Vec2,
+    drag: &mut Drag,
     response: &Response,
     grip: &Grip,
     canvas: &Canvas<'_>,
@@ -259,16 +270,20 @@ fn react(
         };
         tool.press(pointer, canvas, queue);
     }
+    if response.double_clicked() {
+        tool.finish(canvas, queue);
+    }
     let Some(pointer) = pointer else { return };
     if response.drag_started() {
         let pressed = response.ctx.input(|i| i.pointer.press_origin()).unwrap_or(pointer);
-        *offset = grip.at - pressed;
+        *drag = Drag { offset: grip.at - pressed, has_left: false };
     }
-    if response.dragged() && response.drag_delta() != Vec2::ZERO {
-        tool.drag(grip.key, pointer + *offset, canvas, queue);
+    drag.has_left |= response.total_drag_delta().is_some_and(|by| by.length() > JITTER);
+    if response.dragged() && drag.has_left && response.drag_delta() != Vec2::ZERO {
+        tool.drag(grip.key, pointer + drag.offset, canvas, queue);
     }
     if response.drag_stopped() {
-        *offset = Vec2::ZERO;
+        *drag = Drag::default();
         tool.release(queue);
     }
 }
