@@ -64,7 +64,7 @@ fn with_a_fork_selected_legs_are_drawn_into_the_branch_that_is_chosen() {
 }
 
 /// The square with a second way from side2, over two legs that were drawn, in a window of this height.
-fn with_drawn_way(height: f32) -> Window {
+pub fn with_drawn_way(height: f32) -> Window {
     let mut window = Window::open_with(SQUARE, vec2(1280.0, height), None);
     window.until_analysed();
     window.row_menu(("TF side2", 0), "Draw a new way from it");

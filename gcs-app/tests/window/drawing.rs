@@ -119,9 +119,14 @@ fn an_area_that_crosses_itself_is_said_to() {
     for offset in [vec2(0.0, 0.0), vec2(90.0, 90.0), vec2(90.0, 0.0)] {
         window.click_at(at + offset);
     }
-    window.harness.hover_at(at + vec2(0.0, 90.0));
-    window.steps(2);
-    assert!(window.shows("crosses itself"));
+    let red = gcs_app::theme::palette(true).warning;
+    let drawn_to = |window: &mut Window, corner: Vec2| {
+        window.harness.hover_at(at + corner);
+        window.steps(2);
+        (window.lines_within("Map", red) > 0, window.shows("crosses itself"))
+    };
+    assert_eq!(drawn_to(&mut window, vec2(130.0, -30.0)), (false, false));
+    assert_eq!(drawn_to(&mut window, vec2(0.0, 90.0)), (true, true), "it is red, too");
     window.press(Key::Escape);
     assert!(!window.shows("crosses itself") && !window.is_enabled("Undo"));
 }

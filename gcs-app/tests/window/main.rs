@@ -5,6 +5,7 @@
 mod alone;
 mod announcing;
 mod arranging;
+mod bands;
 mod binding;
 mod branching;
 mod bringing;
