@@ -227,6 +227,19 @@ fn what_is_selected_elsewhere_is_unfolded_and_brought_into_view() {
 }
 
 #[test]
+fn an_emergency_plan_is_dropped_on_a_stage() {
+    let mut window = opened(SQUARE);
+    let before = window.plan();
+    window.drop_row("ALT return", "ENR circuit", 0.5);
+    assert!(window.shows("for which cause?"));
+    window.click("Engine failure");
+    let stage = window.plan().stage(&"circuit".into()).unwrap().clone();
+    assert_eq!(stage.emergency.by_cause, [(Some(Cause::Engine), Id::new("return"))]);
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+}
+
+#[test]
 fn an_emergency_plan_is_dropped_on_a_leg_and_asks_for_the_cause() {
     let mut window = opened(FIRE_WATCH);
     let before = window.plan();

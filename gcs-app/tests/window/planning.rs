@@ -52,6 +52,19 @@ fn dragging_a_waypoint_is_one_step_and_undo_puts_it_back_exactly() {
 }
 
 #[test]
+fn dragging_a_waypoint_changes_neither_its_altitude_nor_what_that_counts_from() {
+    let placed = r#"<TF id="side2" lat="36.3209" lon="-84.1537" altitude="120" altitudeReference="agl"/>"#;
+    let mut window = Window::open(&SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, placed));
+    window.until_analysed();
+    let leg = |window: &Window| window.plan().leg(&"side2".into()).unwrap().leg.clone();
+    let (before, at) = (leg(&window), window.centre("Waypoint side2"));
+    window.drag(at, vec2(60.0, 30.0));
+    let after = leg(&window);
+    assert!(after.altitude.is_some() && after.altitude == before.altitude);
+    assert!(after.place() != before.place());
+}
+
+#[test]
 fn dragging_the_map_moves_the_map_and_not_the_plan() {
     let mut window = Window::open(SQUARE);
     window.until_analysed();
@@ -302,10 +315,15 @@ fn figures_of_a_path_that_is_out_of_date_say_so() {
     let mut window = Window::open(SQUARE);
     window.until_analysed();
     assert!(!window.shows("Out of date"));
+    let weak = gcs_app::theme::palette(true).weak;
+    let grey = |window: &Window, of: &str| window.lines_within(of, weak);
+    let (map, profile) = (grey(&window, "Map"), grey(&window, "Vertical profile"));
+    assert_eq!(profile, 0);
     window.click("TF side3");
     window.fill_in(egui::accesskit::Role::SpinButton, "Airspeed", "90");
     window.until_analysed();
     window.press(Key::Escape);
     // the map, the row above the profile, and the plan's figures
     assert!(window.harness.query_all_by_label_contains("Out of date").count() >= 3);
+    assert!(grey(&window, "Map") > map && grey(&window, "Vertical profile") > 0, "the path is grey");
 }

@@ -47,6 +47,20 @@ fn a_right_click_makes_a_fix_and_says_what_is_here() {
 }
 
 #[test]
+fn a_right_click_says_how_far_it_is_from_the_aircraft() {
+    let mut window = window();
+    let here = window.centre("Map") + vec2(90.0, 60.0);
+    window.right_click_at(here);
+    assert!(!window.shows("From the aircraft "), "there is none");
+    window.press(Key::Escape);
+    window.connect();
+    window.receive_position(false);
+    window.steps(3);
+    window.right_click_at(here);
+    assert!(window.shows("From the aircraft "));
+}
+
+#[test]
 fn the_coordinates_under_the_pointer_are_copied() {
     let mut window = window();
     window.right_click_at(window.centre("Map") + vec2(90.0, 60.0));

@@ -35,6 +35,23 @@ fn things_on_the_map_have_names_and_are_selected_by_them() {
 }
 
 #[test]
+fn a_zone_has_its_name() {
+    let zone = r#"<zones><keepOut id="quarry" lat="36.3141" lon="-84.1567" radius="150"/></zones><mainPlan"#;
+    let mut window = Window::open(&SQUARE.replacen("<mainPlan", zone, 1));
+    window.until_analysed();
+    let is_it = |label: String| label.starts_with("Keep out: quarry");
+    let zone = window
+        .harness
+        .query_all_by_role(Role::Button)
+        .find(|node| node.accesskit_node().label().is_some_and(is_it))
+        .unwrap();
+    assert!(window.harness.get_by_label("Map").rect().contains_rect(zone.rect()));
+    zone.click_accesskit();
+    window.steps(3);
+    assert_eq!(window.selected(), "quarry");
+}
+
+#[test]
 fn what_has_the_focus_on_the_map_is_selected_by_enter() {
     let mut window = window();
     window.harness.get_by_label("Path of side3").focus();

@@ -185,6 +185,19 @@ fn search_shows_what_matches_and_where_it_is_and_enter_goes_there() {
 }
 
 #[test]
+fn search_finds_what_is_called_so() {
+    let named = r#"<TF id="side2" name="Along the river" fix="B"/>"#;
+    let mut window = Window::open(&SQUARE.replace(r#"<TF id="side2" fix="B"/>"#, named));
+    window.until_analysed();
+    window.press_ctrl(egui::Key::F);
+    window.harness.event(egui::Event::Text("RIVER".into()));
+    window.steps(3);
+    assert!(window.shows("TF Along the river") && !window.shows("TF side3"));
+    window.press(egui::Key::Enter);
+    assert_eq!(window.selected(), "side2");
+}
+
+#[test]
 fn conditions_are_found_by_what_is_in_them() {
     let mut window = Window::open(include_str!("../../../assets/plans/fire-watch.xml"));
     window.until_analysed();

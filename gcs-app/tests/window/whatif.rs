@@ -123,11 +123,20 @@ fn less_energy_at_the_start_is_less_at_the_end() {
     slide(&mut window, "Energy at start", 50.0);
     let half = window.app().analysis().forecast.battery_left.unwrap();
     assert!((full - half - 0.5).abs() < 0.01, "{full} {half}");
+}
+
+#[test]
+fn a_flight_for_which_the_energy_is_too_little_ends_early_and_says_why() {
+    let mut window = opened(FIRE_WATCH);
+    let whole_m = window.app().analysis().forecast.length_m();
+    assert_eq!(window.app().analysis().forecast.cut_short, None);
     slide(&mut window, "Energy at start", 10.0);
     let forecast = &window.app().analysis().forecast;
-    if forecast.cut_short.is_some() {
-        assert!(window.shows("energy"), "it says why it ends");
-    }
+    assert!(forecast.length_m() < whole_m - 500.0, "{} of {whole_m}", forecast.length_m());
+    let why = forecast.cut_short.clone().unwrap();
+    // at the end of the path there is room for its beginning
+    let begins: String = why.chars().take(12).collect();
+    assert!(why.contains("energy") && window.paints(&begins), "{why}");
 }
 
 /// Puts the cursor at a share of the flight, by the timeline.

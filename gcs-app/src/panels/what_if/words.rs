@@ -178,6 +178,18 @@ mod tests {
         );
         found.cause = Cause::Link;
         assert!(words(&found)[1].starts_with("Not flown"), "an engine that runs is used");
+        let flown =
+            Powered { track: Vec::new(), time_s: 200.0, battery_left: 0.62, landed: true, cut_short: None };
+        found.powered = Ok(flown.clone());
+        assert_eq!(
+            words(&found)[..2],
+            [
+                "Link lost: return, runway R05: reached",
+                "With the engine: on the runway after 3:20, 62 % energy left."
+            ]
+        );
+        found.powered = Ok(Powered { landed: false, ..flown });
+        assert_eq!(words(&found)[1], "With the engine: it ends in the air after 3:20, 62 % energy left.");
         found.plan = None;
         assert!(words(&found)[0].contains("Safe mode"));
     }
