@@ -1,6 +1,7 @@
 //! The inspector shows and changes everything that the language has.
 
 mod fields;
+mod writing;
 
 use super::table::Unknown;
 use egui::accesskit::Role;

@@ -1,7 +1,7 @@
 //! Each of the example plans is made once more in an empty window, by gestures alone, and comes out as the same program.
 
 mod author;
-mod reading;
+pub mod reading;
 mod rows;
 
 use author::Author;

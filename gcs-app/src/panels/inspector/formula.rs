@@ -39,8 +39,17 @@ pub fn begin(ui: &Ui, id: Id, text: &str) {
     ui.memory_mut(|m| m.request_focus(id));
 }
 
-/// Draws the field itself; [`Typing::finish`] draws what belongs below it.
-pub fn field(ui: &mut Ui, page: &Page<'_, '_>, name: &str, source: &str, used: Use) -> Typing {
+/// Width of a small button with its gap, screen points.
+const BUTTON: f32 = 30.0;
+
+/// Draws the field itself, with room for so many small buttons beside it; [`Typing::finish`] draws what belongs below it.
+pub fn field(
+    ui: &mut Ui,
+    page: &Page<'_, '_>,
+    (name, source): (&str, &str),
+    used: Use,
+    buttons: usize,
+) -> Typing {
     let id = id(ui, name);
     let mut text = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| source.to_owned());
     if ui.memory(|m| m.has_focus(id)) {
@@ -51,7 +60,7 @@ pub fn field(ui: &mut Ui, page: &Page<'_, '_>, name: &str, source: &str, used: U
         let job = marked(ui, text.as_str(), column.filter(|_| !text.as_str().is_empty()));
         ui.fonts_mut(|fonts| fonts.layout_job(job))
     };
-    let width = ui.available_width() - 30.0;
+    let width = ui.available_width() - buttons as f32 * BUTTON;
     let edit = TextEdit::singleline(&mut text).id(id).desired_width(width).layouter(&mut layouter);
     let output = edit.show(ui);
     let (response, cursor) = (output.response.response.clone(), output.cursor_range);

@@ -114,10 +114,10 @@ fn present(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &st
         Kind::Value(range) => return number_or_formula(ui, page, property, range, value),
         Kind::LatLon(_) | Kind::Position => position(ui, page, property, value),
         Kind::Ahead => ahead(ui, page, property, value),
-        Kind::Condition => return Some(formula::field(ui, page, &name, value, Use::Condition)),
+        Kind::Condition => return Some(formula::field(ui, page, (&name, value), Use::Condition, 1)),
         Kind::Formula(used) => {
             let source = value.trim_start_matches('=').trim();
-            return Some(formula::field(ui, page, &name, source, used));
+            return Some(formula::field(ui, page, (&name, source), used, 1));
         }
         Kind::Positions => {
             if let Some(new) = field::text(ui, &name, &short(value)) {
@@ -228,7 +228,11 @@ fn number_or_formula(
     // the same here for a number, so that the field that it becomes has the keyboard at once
     let formula = formula::id(ui, &name);
     let below = match source {
-        Some(source) => Some(formula::field(ui, page, &name, source, Use::Number)),
+        Some(source) => {
+            // the one that makes it a number, and the one that leaves it out
+            let buttons = if property.without.is_some() { 2 } else { 1 };
+            Some(formula::field(ui, page, (&name, source), Use::Number, buttons))
+        }
         None => {
             number(ui, page, property, range, value);
             None

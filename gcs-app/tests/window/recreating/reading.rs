@@ -1,4 +1,4 @@
-//! What is to be done next in the inspector, so that a part of the plan becomes like the one of the example.
+//! What is to be done next in the inspector, so that a part of the plan becomes like another.
 
 use flight_plan::describe::{Children, Draft, Kind, OneOf, Property, Quantity, Row, Sort, choices};
 use flight_plan::{Element, FlightPlan};
