@@ -3,9 +3,11 @@
 use super::table::Asked;
 use super::{Action, Group, Kind};
 use crate::command::{Command, FlyCommand, LinkCommand};
+use crate::connections::{self, Connection};
 use crate::panels::{Scene, decision, emergency as banner, flight as panel, leading, link, push};
 use flight_exec::{Command as PlanCommand, Phase};
 use flight_plan::Cause;
+use std::borrow::Cow;
 use usal::contract::{GatewayRequest, GatewayState};
 
 /// What depends on the plan aboard and on what is asked: branches, emergency plans, legs to go to.
@@ -47,6 +49,28 @@ pub fn of(scene: &Scene<'_>) -> Vec<Action> {
         add(Kind::Choice(is_shown), format!("Show vehicle {}", name.as_str()), command);
     }
     actions
+}
+
+/// The action that opens the palette for an address.
+pub const CONNECT_TO: &str = "connect-to";
+/// What is typed there then, before the address.
+pub const QUERY: &str = "connect to ";
+
+/// What is typed may be an address, and behind it the name of a vehicle; else it is the one that is shown.
+pub fn connect_to(query: &str, scene: &Scene<'_>) -> Option<Action> {
+    let (begin, typed) = query.split_at_checked(QUERY.len())?;
+    let typed = begin.eq_ignore_ascii_case(QUERY).then(|| typed.trim())?;
+    let (address, named) = typed.split_once(char::is_whitespace).unwrap_or((typed, ""));
+    let made = connections::endpoint(address).and_then(|endpoint| {
+        let vehicle =
+            if named.is_empty() { link::default_connection(scene).vehicle } else { named.trim().into() };
+        connections::name_problem(&vehicle).map_or(Ok(Connection { endpoint, vehicle }), Err)
+    });
+    let name = made
+        .as_ref()
+        .map_or_else(|_| typed.to_owned(), |made| format!("{}, vehicle {}", made.endpoint, made.vehicle));
+    let command = made.map(|made| Command::Link(link::connecting(&made))).map_err(Cow::Owned);
+    Some(Action { command, ..Action::now(Group::Flight, format!("Connect to {name}"), Err("")) })
 }
 
 /// As the form would.

@@ -5,6 +5,7 @@
 
 pub mod aliases;
 pub mod alternates;
+pub mod answers;
 pub mod bindings;
 pub mod flight;
 pub mod fuzzy;
@@ -221,6 +222,100 @@ fn panel(entry: &PanelEntry) -> Action {
 mod tests {
     use super::*;
     use std::collections::BTreeSet;
+
+    /// All that the palette is made of.
+    const PALETTE: [&str; 12] = [
+        include_str!("mod.rs"),
+        include_str!("alternates.rs"),
+        include_str!("answers.rs"),
+        include_str!("bindings.rs"),
+        include_str!("flight.rs"),
+        include_str!("offers.rs"),
+        include_str!("places.rs"),
+        include_str!("table.rs"),
+        include_str!("../panels/leading.rs"),
+        include_str!("../panels/link.rs"),
+        include_str!("../panels/start.rs"),
+        include_str!("../panels/tree/make.rs"),
+    ];
+
+    /// What is no command of its own: why, and which ones.
+    const ELSEWHERE: [(&str, &[&str]); 5] = [
+        (
+            "the keyboard is in a dialog that asks for it",
+            &[
+                "Document::Discard",
+                "Document::SaveThen",
+                "Document::Open",
+                "Document::Browse",
+                "Document::SaveTo",
+                "Document::TakeImport",
+                "Document::AddImport",
+                "Document::ImportAs",
+                "Document::AskExport",
+                "Document::ExportTo",
+                "Document::LoadTheirs",
+                "Document::KeepMine",
+                "Document::Recover",
+                "Document::ForgetLeftBehind",
+                "View::NameFile",
+                "View::StopBrowsing",
+                "View::KeepUnsaved",
+                "View::PutImportAside",
+                "View::PutExportAside",
+            ],
+        ),
+        (
+            "a tool of the map draws it",
+            &["Document::AddRunway", "Document::DragEdit", "Document::EndGesture"],
+        ),
+        (
+            "it selects or points where something is shown",
+            &[
+                "View::PointOut",
+                "View::Toggle",
+                "View::SelectTogether",
+                "View::SelectBranch",
+                "View::JumpToPlace",
+                "View::KeepToast",
+            ],
+        ),
+        ("a field or slider has the keyboard", &["Preview::Scrub", "Preview::WhatIf"]),
+        ("nobody asks for it", &["Document::Dropped", "View::Notice"]),
+    ];
+
+    /// `View::Fit` of all commands.
+    fn commands() -> Vec<String> {
+        let source = include_str!("../command.rs");
+        let of = |name: &str| {
+            let begin = source.find(&format!("pub enum {name}Command {{")).unwrap();
+            let body = &source[begin..begin + source[begin..].find("\n}").unwrap()];
+            let variants = body.lines().filter_map(|line| line.strip_prefix("    "));
+            let variants = variants.filter(|line| line.starts_with(|c: char| c.is_ascii_uppercase()));
+            let is_name = |c: char| !c.is_ascii_alphanumeric();
+            variants
+                .map(|line| format!("{name}::{}", line.split(is_name).next().unwrap()))
+                .collect::<Vec<_>>()
+        };
+        ["Document", "View", "Preview", "Link", "Fly"].into_iter().flat_map(of).collect()
+    }
+
+    #[test]
+    fn every_command_is_in_the_palette_or_it_is_said_where_it_is() {
+        let all = commands();
+        assert!(all.len() > 90, "{all:?}");
+        let elsewhere: Vec<&str> = ELSEWHERE.iter().flat_map(|(_, commands)| *commands).copied().collect();
+        for command in &all {
+            let written = command.replace("::", "Command::");
+            let is_whole = |rest: &str| !rest.starts_with(|c: char| c.is_ascii_alphanumeric());
+            let is_offered = PALETTE.iter().any(|source| source.split(&written).skip(1).any(is_whole));
+            let is_elsewhere = elsewhere.contains(&command.as_str());
+            assert!(is_offered != is_elsewhere, "{command}: offered {is_offered}, elsewhere {is_elsewhere}");
+        }
+        let gone: Vec<_> =
+            elsewhere.iter().filter(|command| !all.iter().any(|c| c.as_str() == **command)).collect();
+        assert!(gone.is_empty(), "{gone:?}");
+    }
 
     #[test]
     fn no_two_actions_share_an_identifier_or_a_key() {

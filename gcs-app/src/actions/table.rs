@@ -167,6 +167,7 @@ pub const ENTRIES: &[Entry] = &[
     choice(Group::Size, "size-300", "Size 300 %", |s| is_scale(s, 3.0), |s| scale_to(s, 3.0)),
 
     entry(Group::Flight, "connect", "Connect as before", &[], flight::connect),
+    entry(Group::Flight, flight::CONNECT_TO, "Connect to another address…", &[], |_| view(ViewCommand::Palette(Some(flight::QUERY)))),
     entry(Group::Flight, "disconnect", "Disconnect", &[], flight::disconnect),
     entry(Group::Flight, "push", "Push the plan to the vehicle", &[], |s| bar::may_push(s).map(|()| Command::Fly(FlyCommand::Propose))),
     entry(Group::Flight, "commit", "Commit what was pushed", &[], flight::commit),

@@ -45,6 +45,11 @@ fn place(ui: &mut Ui) -> Rect {
     ui.allocate_exact_size(vec2(width - 1.0, ui.spacing().interact_size.y), Sense::hover()).0
 }
 
+/// It says why the last command was refused, until that is put aside.
+pub fn is_refused(scene: &Scene<'_>) -> bool {
+    last(scene).is_some_and(|request| matches!(request.outcome, Outcome::Refused(_)))
+}
+
 /// The last command, while it is pending, or was answered a short while ago. What is refused of a plan is not said of another one.
 fn last<'a>(scene: &Scene<'a>) -> Option<&'a Request> {
     let last = scene.vehicle.requests.last().filter(|request| request.is_news(scene.now_s))?;

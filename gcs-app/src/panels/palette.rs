@@ -3,7 +3,7 @@
 use super::{Scene, field};
 use crate::actions::fuzzy::Score;
 use crate::actions::{
-    Action, Fittings, Kind, aliases, all, alternates, bindings, flight, fuzzy, offers, places,
+    Action, Fittings, Kind, aliases, all, alternates, answers, bindings, flight, fuzzy, offers, places,
 };
 use crate::command::{Queue, ViewCommand};
 use crate::theme;
@@ -136,6 +136,8 @@ impl CommandPalette {
         // first, for what was chosen may open it again
         queue.view(ViewCommand::Palette(None));
         queue.push(command.clone());
+        // with another text then
+        *self = Self::default();
     }
 }
 
@@ -163,7 +165,9 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     let mut actions = all(scene, fittings);
     // what led here is here already
     let led_here = |action: &Action| {
-        action.id == "palette" || (action.id == bindings::ID && query.starts_with(bindings::QUERY))
+        action.id == "palette"
+            || (action.id == bindings::ID && query.starts_with(bindings::QUERY))
+            || (action.id == flight::CONNECT_TO && query.starts_with(flight::QUERY))
     };
     actions.retain(|action| !led_here(action));
     if query.trim().is_empty() {
@@ -173,6 +177,8 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     actions.extend(bindings::of(scene));
     actions.extend(offers::of(scene));
     actions.extend(flight::of(scene));
+    actions.extend(flight::connect_to(query, scene));
+    actions.extend(answers::of(scene));
     actions.extend(places::of(scene.document));
     let mut scored: Vec<(Score, Action)> =
         actions.into_iter().filter_map(|action| Some((score(query, &action)?, action))).collect();

@@ -90,18 +90,30 @@ fn ask(ui: &mut Ui, scene: &Scene<'_>, guide: &mut Guide, queue: &mut Queue) {
     }
 }
 
+/// As long as no place is known.
+pub const SAY_WHERE: &str = "Say first where you fly: click the map, or type it into the card.";
+
+/// What makes the plan; or why there can't be one yet.
+///
+/// # Errors
+/// What has to be answered first.
+pub fn creating(guide: &Guide) -> Result<DocumentCommand, &'static str> {
+    if guide.is_too_far() {
+        return Err(
+            "The mission is too far from the runway: draw it again, or give the runway another place.",
+        );
+    }
+    guide.outline().map(|outline| DocumentCommand::Create(Box::new(outline))).ok_or(SAY_WHERE)
+}
+
 fn buttons(ui: &mut Ui, guide: &Guide, queue: &mut Queue) {
     ui.horizontal(|ui| {
-        let why_not = if guide.is_too_far() {
-            "The mission is too far from the runway: draw it again, or give the runway another place."
-        } else {
-            "Say first where you fly: click the map, or type it above."
-        };
-        let may = guide.threshold.is_some() && !guide.is_too_far();
-        let create = ui.add_enabled(may, primary_button("Create", theme::of(ui)));
-        let create = create.on_disabled_hover_text(why_not);
-        if let Some(outline) = guide.outline().filter(|_| create.clicked()) {
-            queue.document(DocumentCommand::Create(Box::new(outline)));
+        let creating = creating(guide);
+        let create = ui.add_enabled(creating.is_ok(), primary_button("Create", theme::of(ui)));
+        match creating {
+            Ok(command) if create.clicked() => queue.document(command),
+            Ok(_) => {}
+            Err(why_not) => drop(create.on_disabled_hover_text(why_not)),
         }
         if ui.button("Open a plan…").clicked() {
             queue.document(DocumentCommand::Replace(Replacement::AskOpen));

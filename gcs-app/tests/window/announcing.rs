@@ -8,16 +8,16 @@ use flight_exec::{DecisionRequest, Event, Phase};
 use gcs_app::link::{LinkEvent, LinkId, LinkState, Numbered, Telemetry};
 use usal::contract::Stamped;
 
-fn event(sequence: u32, value: Event) -> LinkEvent {
+pub fn event(sequence: u32, value: Event) -> LinkEvent {
     let event = Stamped { time_s: f64::from(sequence), validity_s: f64::MAX, value };
     LinkEvent::Telemetry(Telemetry::PlanEvent(Numbered { sequence, event }))
 }
 
-fn taken(leg: &str, by: &str) -> Event {
+pub fn taken(leg: &str, by: &str) -> Event {
     Event::DecisionTaken { leg: leg.into(), branch: "again".into(), by: by.into() }
 }
 
-fn is_announced(window: &Window, text: &str) -> bool {
+pub fn is_announced(window: &Window, text: &str) -> bool {
     // the log says it, too
     window.harness.query_all_by_label_contains(&format!("uav1: {text}")).next().is_some()
 }

@@ -2,13 +2,16 @@
 
 use super::flying::{connected, flying, flying_its_plan, report};
 use super::vehicle::{decision, status};
-use super::{SQUARE, Window};
+use super::{SQUARE, Window, announcing};
 use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::{Command, Phase};
 use flight_plan::create::LegChoice;
+use flight_plan::template::Template;
 use flight_plan::{Cause, Id, LegKind};
+use gcs_app::guide::Drawing;
 use gcs_app::link::{Call, Order, Reply};
+use gcs_app::story::{End, Story};
 use usal::contract::GatewayState;
 
 /// Opens the palette, and does the first that these words find: it must be called so.
@@ -123,6 +126,91 @@ fn connecting() {
         panic!("nothing was asked")
     };
     assert_eq!(endpoint, "tcp/127.0.0.1:7447");
+}
+
+#[test]
+fn another_address_is_typed_into_the_palette() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    choose(&mut window, "Flight Connect to another address…");
+    window.harness.get_by_label("Search commands").type_text("10.0.0.2");
+    window.steps(3);
+    assert!(window.harness.get_by_label("Flight Connect to 10.0.0.2").accesskit_node().is_disabled());
+    assert!(window.paints("add :7447"));
+    window.harness.get_by_label("Search commands").type_text(":7447 falcon");
+    window.steps(3);
+    window.click("Flight Connect to tcp/10.0.0.2:7447, vehicle falcon");
+    let Ok(Order::Connect { endpoint, vehicle, .. }) = window.far.orders.try_recv() else {
+        panic!("nothing was asked")
+    };
+    assert_eq!((endpoint.as_str(), vehicle.as_str()), ("tcp/10.0.0.2:7447", "falcon"));
+}
+
+#[test]
+fn the_card_of_a_new_mission() {
+    let mut window = Window::open(super::creating::EMPTY);
+    window.steps(3);
+    window.ask_for("new mission create");
+    assert!(window.harness.get_by_label("File New mission: create it").accesskit_node().is_disabled());
+    window.press(Key::Escape);
+    window.click("Among the example's hills");
+    choose(&mut window, "File New mission: Search");
+    assert_eq!(window.app().view().guide.template, Template::Search);
+    choose(&mut window, "File New mission: draw the circle");
+    assert_eq!(window.app().view().guide.drawing, Some(Drawing::Mission));
+    choose(&mut window, "File New mission: draw the runway");
+    assert_eq!(window.app().view().guide.drawing, Some(Drawing::Runway));
+    choose(&mut window, "File New mission: create it");
+    assert!(!window.plan().stages.is_empty());
+    window.ask_for("new mission");
+    assert!(window.harness.query_by_label("File New mission: create it").is_none(), "there is no card");
+}
+
+#[test]
+fn messages_and_work() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.paste("nowhere at all");
+    assert!(window.app().view().notice.is_some());
+    choose(&mut window, "View Close the message");
+    assert_eq!(window.app().view().notice, None);
+    let story = Story::default();
+    window.harness.state_mut().listen_to(story.clone());
+    let work = story.work("Making the report");
+    window.steps(30);
+    choose(&mut window, "File Cancel: Making the report");
+    assert!(work.progress().is_cancelled());
+}
+
+#[test]
+fn what_the_vehicle_answered_is_put_aside() {
+    let mut window = flying_its_plan();
+    choose(&mut window, "Flight Hold here");
+    let is_hold = |(_, call): &(_, Call)| *call == Call::Plan(Command::Hold);
+    let (ticket, _) = std::iter::from_fn(|| window.asked()).find(is_hold).unwrap();
+    window.answer(ticket, Err("not now".into()));
+    assert!(window.shows("refused, not now"));
+    choose(&mut window, "Flight Put the answer of the vehicle aside");
+    assert!(!window.shows("refused, not now"));
+    window.send(announcing::event(9, announcing::taken("ask", "default")));
+    assert!(announcing::is_announced(&window, "Nobody decided"));
+    choose(&mut window, "Flight Put aside what uav1 announced");
+    assert!(!announcing::is_announced(&window, ""));
+    let (mut window, _) = super::considering::considered();
+    choose(&mut window, "Flight Give the considered command up");
+    assert!(window.app().vehicle().outlook.considered().is_none());
+}
+
+#[test]
+fn the_end_of_a_demo() {
+    let mut window = Window::open(SQUARE);
+    let story = Story::default();
+    window.harness.state_mut().listen_to(story.clone());
+    story.end("It went wrong", End { good: false, report: None });
+    window.steps(3);
+    offers(&mut window, "Help Fly the demo again");
+    choose(&mut window, "Help Close the demo's strip");
+    assert!(!window.shows("It went wrong"));
 }
 
 #[test]

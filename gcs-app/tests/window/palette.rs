@@ -3,7 +3,7 @@
 use super::vehicle::{place, status};
 use super::{SQUARE, Window};
 use egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::{Command, Phase};
 use gcs_app::link::Call;
 use gcs_app::units::Units;
@@ -167,6 +167,42 @@ fn keys_change_the_size_and_a_key_of_the_palette_is_shown() {
     window.harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::P);
     window.steps(3);
     assert!(window.app().view().palette.is_some());
+    window.harness.get_by_label("Search commands").type_text("duplicate");
+    window.steps(3);
+    assert!(!window.paints("Ctrl+D"), "why it is not possible stands there");
+    window.press(Key::Escape);
+    window.click("TF side2");
+    window.ask_for("duplicate");
+    assert!(window.paints("Ctrl+D"));
+}
+
+/// Of every action that has a key, possible now or not.
+#[test]
+fn every_key_stands_beside_its_action() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.click("TF side2");
+    let mut shown = 0;
+    for (name, keys) in gcs_app::actions::keys() {
+        let key = keys.split(" or ").next().unwrap();
+        window.ask_for(name);
+        let is_row = |row: &egui_kittest::Node<'_>| {
+            let label = row.accesskit_node().label().unwrap_or_default();
+            label.ends_with(&format!(" {name}"))
+        };
+        let rows = window.harness.query_all_by_role(egui::accesskit::Role::Button);
+        // what led here is here already
+        let Some(row) = rows.filter(is_row).last() else {
+            assert_eq!(name, "All commands…");
+            window.press(Key::Escape);
+            continue;
+        };
+        let is_possible = !row.accesskit_node().is_disabled();
+        shown += usize::from(is_possible);
+        assert!(!is_possible || !window.places_of(|text| text == key).is_empty(), "{name}: no {key}");
+        window.press(Key::Escape);
+    }
+    assert!(shown > 20, "{shown}");
 }
 
 #[test]
