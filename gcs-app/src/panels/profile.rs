@@ -6,7 +6,7 @@ mod levels;
 pub use flown::is_elsewhere;
 
 use super::{Panel, PanelId, Place, Scene, timeline};
-use crate::command::{PreviewCommand, Queue};
+use crate::command::{PreviewCommand, Queue, ViewCommand};
 use crate::forecast::{Forecast, Heights, Passage, Point};
 use crate::map::coverage;
 use crate::theme::{self, Palette};
@@ -48,7 +48,7 @@ impl Panel for Profile {
     }
 }
 
-/// The profile; dragging on it moves the cursor, dragging a leg's mark its altitude.
+/// The profile; dragging on it moves the cursor, a click on the path selects its leg, dragging a leg's mark its altitude.
 fn plot(ui: &mut Ui, scene: &Scene<'_>, profile: &mut Profile, queue: &mut Queue) {
     let Profile { whole, levels, columns } = profile;
     let whole = *whole;
@@ -88,7 +88,28 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, profile: &mut Profile, queue: &mut Queue
         response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())
     {
         queue.preview(PreviewCommand::Scrub(Some(axes.time_at(pointer))));
+        if response.clicked()
+            && scene.out_of_date().is_none()
+            && let Some(passage) = passage_at(&axes, forecast, pointer)
+        {
+            queue.view(ViewCommand::Select(Some(scene.document.part_of(&passage.leg))));
+        }
     }
+}
+
+/// A click means the path so near to it, screen points.
+const NEAR: f32 = 8.0;
+
+/// What is flown where the path is under the pointer.
+fn passage_at<'a>(axes: &Axes, forecast: &'a Forecast, pointer: Pos2) -> Option<&'a Passage> {
+    let time_s = axes.time_at(pointer);
+    let after = forecast.points.partition_point(|point| point.time_s < time_s);
+    let before = forecast.points.get(after.saturating_sub(1))?;
+    let after = forecast.points.get(after).unwrap_or(before);
+    let [from, to] = [before, after].map(|point| axes.place(point));
+    let share = if to.x > from.x { (pointer.x - from.x) / (to.x - from.x) } else { 1.0 };
+    let is_near = (from.lerp(to, share.clamp(0.0, 1.0)).y - pointer.y).abs() < NEAR;
+    forecast.passages.get(after.passage).filter(|_| is_near)
 }
 
 /// `Vertical profile from now: 12.4 km in 8:10`.

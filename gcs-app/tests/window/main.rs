@@ -42,6 +42,7 @@ mod placing;
 mod planning;
 mod pointing;
 mod problems;
+mod profile;
 mod pushing;
 mod reach;
 mod reading;

@@ -4,6 +4,7 @@ use super::Axes;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::forecast::Passage;
 use crate::map::guard;
+use crate::map::tools::JITTER;
 use crate::panels::Scene;
 use crate::panels::inspector::inherited;
 use crate::theme::{self, Palette};
@@ -80,6 +81,8 @@ struct Drag {
     metres_per_point: f64,
     low_m: f64,
     high_m: f64,
+    /// The pointer has left where it was pressed.
+    has_left: bool,
 }
 
 impl Drag {
@@ -99,12 +102,19 @@ impl Drag {
                 metres_per_point: (axes.high_m - axes.low_m) / f64::from(axes.plot.height().max(1.0)),
                 low_m: axes.low_m,
                 high_m: axes.high_m,
+                has_left: false,
             }),
             _ => {
                 let name = scene.document.plan().label(leg);
                 Err(format!("The altitude of {name} is a formula: change it in the inspector."))
             }
         }
+    }
+
+    /// The pointer was moved now, and not only by a hand that is not quite still.
+    fn follows(&mut self, response: &Response) -> bool {
+        self.has_left |= response.total_drag_delta().is_some_and(|by| by.length() > JITTER);
+        self.has_left && response.drag_delta() != Vec2::ZERO
     }
 
     fn altitude(&self, scene: &Scene<'_>, pointer: Pos2) -> Altitude {
@@ -161,9 +171,9 @@ impl Levels {
                 Err(why) => queue.view(ViewCommand::Notice(why)),
             }
         }
-        if let (Some(drag), Some(pointer)) = (&self.drag, response.interact_pointer_pos())
+        if let (Some(drag), Some(pointer)) = (&mut self.drag, response.interact_pointer_pos())
             && response.dragged()
-            && response.drag_delta() != Vec2::ZERO
+            && drag.follows(response)
         {
             let altitude = Some(drag.altitude(scene, pointer));
             queue.document(DocumentCommand::DragEdit(Edit::SetAltitude { of: drag.leg.clone(), altitude }));
