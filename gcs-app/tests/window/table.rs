@@ -3,7 +3,7 @@
 use super::alone::Alone;
 use super::{SQUARE, Window};
 use egui::accesskit::Role;
-use egui::{Key, Modifiers, Pos2, vec2};
+use egui::{Key, Modifiers, Pos2, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{By, NodeT, Queryable};
 use flight_plan::{AltitudeReference, FlightPlan, Leg, Value};
@@ -12,10 +12,15 @@ use gcs_app::document::Document;
 use gcs_app::forecast::{Analysis, Forecast, Passage, Point};
 use gcs_app::panels::{self, Panel};
 use std::sync::Arc;
+use terrain::Terrain;
 
 /// The window with the table in front, all of it to be seen.
 fn opened(text: &str) -> Window {
-    let mut window = Window::open_with(text, vec2(1600.0, 1000.0), None);
+    opened_in(text, vec2(1600.0, 1000.0))
+}
+
+fn opened_in(text: &str, size: Vec2) -> Window {
+    let mut window = Window::open_with(text, size, None);
     window.until_analysed();
     window.harness.get_all_by_label("Table").next().unwrap().click();
     window.steps(3);
@@ -69,6 +74,67 @@ fn altitudes_say_what_they_are_above_and_where_they_come_from() {
     for stage in ["Stage take-off", "Stage Once around"] {
         assert!(window.shows(stage), "{stage}");
     }
+}
+
+/// What stands below the head of a column in the row of a leg.
+fn figure(window: &mut Window, leg: &str, head: &str) -> String {
+    window.click(&format!("TF {leg}"));
+    window.steps(30);
+    let row = window.cell(&format!("Altitude of {leg}")).y;
+    let [heads] = window.places_of(|text| text == "Energy left")[..] else { panic!("which head?") };
+    let heads = window.places_of(|text| text == head).into_iter().find(|at| at.top() == heads.top());
+    let left = heads.unwrap_or_else(|| panic!("no column {head}")).left();
+    let shapes = window.harness.output().shapes.iter();
+    let mut texts = shapes.flat_map(|clipped| super::painted::texts(&clipped.shape)).filter(|text| {
+        let at = text.galley.rect.translate(text.pos.to_vec2());
+        (at.center().y - row).abs() < 6.0 && (at.left() - left).abs() < 4.0
+    });
+    texts.next().unwrap_or_else(|| panic!("{leg}: nothing below {head}")).galley.text().to_owned()
+}
+
+/// A number, or minutes and seconds.
+fn number(text: &str) -> f64 {
+    let parts =
+        text.trim_end_matches([' ', '%', '°', 's']).split(':').map(|part| part.parse::<f64>().unwrap());
+    parts.fold(0.0, |sum, part| sum * 60.0 + part)
+}
+
+/// Against what follows from the fixes, the ground and the aircraft, not from the forecast that they are taken from.
+#[test]
+fn the_figures_of_a_leg_are_those_of_its_flight() {
+    let mut window = opened_in(SQUARE, vec2(2600.0, 1000.0));
+    let plan = window.plan();
+    let [a, b, c, d] = ["A", "B", "C", "D"].map(|fix| plan.fix(&fix.into()).unwrap().position);
+    let cruise_mps = aircraft::Profile::by_name(&plan.aircraft).unwrap().cruise_airspeed_mps;
+    let figures = |window: &mut Window, leg: &str| {
+        let heads = ["Track", "Distance, km", "Total, km", "ETE", "Elapsed", "Speed, m/s", "Energy left"];
+        heads.map(|head| number(&figure(window, leg, head)))
+    };
+    let [_, _, mut total_km, _, mut elapsed_s, _, mut energy] = figures(&mut window, "side1");
+    for (leg, from, to) in [("side2", a, b), ("side3", b, c), ("side4", c, d)] {
+        let [track, km, total, ete_s, elapsed, mps, left] = figures(&mut window, leg);
+        let (course, way_m) = (from.bearing_deg(to), from.distance_m(to));
+        assert!((track - course.rem_euclid(360.0)).abs() < 10.0, "{leg}: {track}° for {course}°");
+        assert!((km * 1000.0 - way_m).abs() < 150.0, "{leg}: {km} km for {way_m} m");
+        assert!((total - total_km - km).abs() < 0.16, "{leg}: {total_km} + {km} = {total} km");
+        assert!((elapsed - elapsed_s - ete_s).abs() < 1.6, "{leg}: {elapsed_s} + {ete_s} = {elapsed} s");
+        assert!(
+            (mps - cruise_mps).abs() < 2.5 && (mps * ete_s - km * 1000.0).abs() < 80.0,
+            "{leg}: {mps} m/s"
+        );
+        assert!(left < 100.0 && left <= energy, "{leg}: {energy} % and then {left} %");
+        (total_km, elapsed_s, energy) = (total, elapsed, left);
+    }
+    let amsl_m = number(&figure(&mut window, "side3", "Altitude AMSL, m"));
+    assert!((amsl_m - 349.0 - 150.0).abs() < 2.0, "{amsl_m}");
+    let ground = gcs_app::assets::demo_terrain();
+    let forecast = &window.app().analysis().forecast;
+    let points = forecast.passages_of(&"side3".into()).next().unwrap().to_vec();
+    let above = points.iter().map(|q| q.altitude_amsl_m - ground.elevation_m(q.position).unwrap());
+    let least_m = above.fold(f64::INFINITY, f64::min);
+    let shown_m = number(&figure(&mut window, "side3", "Above ground, m"));
+    assert!((shown_m - least_m).abs() < 2.0, "{shown_m} {least_m}");
+    assert_eq!(figure(&mut window, "side3", "Type"), "TF");
 }
 
 #[test]
@@ -250,7 +316,7 @@ fn of_a_hundred_thousand_passages_the_table_lays_out_what_is_seen() {
 #[derive(Debug)]
 pub struct Unknown;
 
-impl terrain::Terrain for Unknown {
+impl Terrain for Unknown {
     fn elevation_m(&self, _: geometry::LatLon) -> Option<f64> {
         None
     }
