@@ -51,17 +51,23 @@ impl Fault {
         // before it rolls it is not in the air, and before it stands nothing is asked of its engine
         let is_near_ground = matches!(state, S::Stop | S::TakeOff | S::Land | S::SafeLand);
         let is_level = matches!(state, S::Nav | S::Hold | S::Directed);
+        let is_pilots = state == S::Manual;
+        // ours is written over it, or ordered behind it, in the same moment
+        let is_written = matches!(state, S::TakeOff | S::Nav | S::Hold | S::Directed | S::SafeReturn);
+        let is_ordered = state == S::SafeReturn;
         match self {
             Simulated("gps-loss+30", _) => &["gps-lost"],
-            Simulated("engine-out", _) if !is_near_ground => &["engine-out", "engine-suspected"],
+            Simulated("engine-out", _) if !is_near_ground && !is_pilots => {
+                &["engine-out", "engine-suspected"]
+            }
             Simulated("ice+30", _) if is_level => &["slow", "sinks", "off-altitude", "engine-suspected"],
             Simulated("low-battery", _) => &["energy-low"],
             Simulated("silence+5" | "silence+30", _) => &["autopilot-silent"],
             Simulated("no-stream=33+30", _) if is_up => &["stream-stopped"],
             Simulated("crash", _) if !is_near_ground => &["stands-still"],
             DiskFull => &["not-stored"],
-            Switched(_) if !matches!(state, S::Stop | S::Manual) => &["not-in-command"],
-            ListReplaced if !matches!(state, S::Stop | S::Manual) => &["list-replaced", "not-in-command"],
+            Switched(_) if is_up && !is_pilots && !is_ordered => &["not-in-command"],
+            ListReplaced if is_up && !is_pilots && !is_written => &["list-replaced", "not-in-command"],
             _ => &[],
         }
     }
