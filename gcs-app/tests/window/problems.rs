@@ -96,7 +96,6 @@ fn a_problem_inside_a_procedure_is_listed_once_with_the_calls_that_have_it() {
     assert!(said[0].starts_with("Problem: Up (in West and East): "), "{said:?}");
     let by_calls = |row: &String| row.starts_with("Problem: west.up") || row.starts_with("Problem: east.up");
     assert!(!rows(&window).iter().any(by_calls), "{:?}", rows(&window));
-    assert!(window.shows(&format!("Problems ({})", rows(&window).len())));
     let first = window.harness.query_all_by_label_contains("Problem: Up (in").next().unwrap().rect().center();
     window.click_at(first);
     assert_eq!(window.selected(), "up", "it is mended in the procedure");
