@@ -10,6 +10,13 @@ use std::ops::Range;
 /// announced at slightly different places. Seconds.
 const NEIGHBOUR_S: f64 = 30.0;
 
+/// Type of the passage that ends on a runway.
+const LAND: &str = "land";
+/// The direction of a roll-out is that of so much of it: the last points may be of one that stands, metres.
+const ROLLED_M: f64 = 20.0;
+/// Longer than a roll-out, metres.
+const ROLLS_ON_M: f64 = 2000.0;
+
 /// Deviations of one passage, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
@@ -80,8 +87,11 @@ pub fn signed(planned: &Track, flown: &Track) -> Vec<Option<f64>> {
     let mut result = vec![None; flown.points().len()];
     for (i, passage) in flown.passages().iter().enumerate() {
         let Some(twin) = by_key.get(&passage.key) else { continue };
-        let path: Vec<Vec2> =
+        let mut path: Vec<Vec2> =
             with_neighbours(planned, *twin).iter().map(|p| frame.to_local(p.position)).collect();
+        if passage.kind == LAND {
+            path.extend(rolled_on(&path));
+        }
         for index in flown.range(i) {
             result[index] = offset_m(&path, frame.to_local(flown.points()[index].position));
         }
@@ -99,6 +109,14 @@ fn with_neighbours(track: &Track, passage: usize) -> &[TrackPoint] {
     let from = points.partition_point(|p| p.time_s < first.time_s - NEIGHBOUR_S);
     let to = points.partition_point(|p| p.time_s <= last.time_s + NEIGHBOUR_S);
     points.get(from..to.max(from)).unwrap_or(&[])
+}
+
+/// Where a path that ends on a runway would lead on. Whoever rolls farther is no more off the centre line for that.
+fn rolled_on(path: &[Vec2]) -> Option<Vec2> {
+    let last = *path.last()?;
+    let before = path.iter().rev().find(|p| (last - **p).length() > ROLLED_M)?;
+    let ahead = last - *before;
+    Some(last + ahead * (ROLLS_ON_M / ahead.length()))
 }
 
 /// Signed distance from a polyline, positive to the right of its direction.
@@ -234,6 +252,27 @@ mod tests {
             flown.push(*p);
         }
         assert!(signed(&planned, &flown).iter().all(|o| o.unwrap().abs() < 0.1));
+    }
+
+    #[test]
+    fn a_longer_roll_out_is_judged_by_the_centre_line_of_the_runway() {
+        let landing = |seconds: usize, aside_m: f64| {
+            let mut track = Track::default();
+            track.begin(key("land"), LAND, "Landing".into());
+            let touch_down = HOME.destination(142.0, aside_m);
+            for k in 0..seconds + 30 {
+                let along_m = 25.0 * k.min(seconds) as f64;
+                let position = touch_down.destination(52.0, along_m);
+                track.push(TrackPoint { time_s: k as f64, position, altitude_amsl_m: 349.0 });
+            }
+            track
+        };
+        let planned = landing(20, 0.0);
+        for (seconds, aside_m) in [(40, 0.0), (40, 3.0), (40, -3.0), (15, 3.0)] {
+            for offset in signed(&planned, &landing(seconds, aside_m)) {
+                assert!((offset.unwrap() - aside_m).abs() < 0.05, "{offset:?} for {seconds} s, {aside_m} m");
+            }
+        }
     }
 
     #[test]

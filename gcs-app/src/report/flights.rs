@@ -1,6 +1,6 @@
 //! The flights of a plan that lands and takes off again: when, how far, and with how much energy.
 
-use super::record::{Record, Track};
+use super::record::{Record, Track, TrackPoint};
 use flight_exec::rehearse::Preview;
 use std::ops::Range;
 
@@ -68,22 +68,17 @@ pub fn of(track: &Track) -> Vec<Flight> {
     let end = (track.passages().len(), track.points().len());
     let ends = begins.iter().skip(1).copied().chain([end]);
     let flight = |((passage, point), (next_passage, next_point)): ((usize, usize), (usize, usize))| {
-        let points = point..next_point;
-        let is_last = next_passage == end.0;
-        Flight {
-            passages: passage..next_passage,
-            points: if is_last { points } else { moving(track, points) },
-        }
+        let points = track.points().get(point..next_point).unwrap_or_default();
+        Flight { passages: passage..next_passage, points: point..point + until_rest(points) }
     };
     begins.iter().copied().zip(ends).map(flight).collect()
 }
 
-/// Without the points at which it stood at its end.
-fn moving(track: &Track, range: Range<usize>) -> Range<usize> {
-    let points = track.points().get(range.clone()).unwrap_or_default();
-    let Some(rest) = points.last().map(|point| point.position) else { return range };
+/// How many of these points there are until it stands for good: what is behind them is no flight.
+pub fn until_rest(points: &[TrackPoint]) -> usize {
+    let Some(rest) = points.last().map(|point| point.position) else { return 0 };
     let last = points.iter().rposition(|point| point.position.distance_m(rest) > AT_REST_M);
-    range.start..(range.start + last.map_or(1, |last| last + 2)).min(range.end)
+    last.map_or(1, |last| last + 2).min(points.len())
 }
 
 /// What the flights of a preview take.
@@ -114,7 +109,7 @@ pub fn reported(track: &Track, battery: &[(f64, f64)], full_j: f64) -> Vec<Energ
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{PassageKey, TrackPoint};
+    use crate::report::PassageKey;
     use geometry::LatLon;
 
     const FIELD: LatLon = LatLon::new(36.3, -84.2);
@@ -157,6 +152,17 @@ mod tests {
             (2, 2..3, 2400.0, 300.0, 3000.0, Some(energy[1])),
         ];
         assert_eq!(rounded, expected);
+    }
+
+    #[test]
+    fn who_stands_flies_no_more() {
+        let mut points = twice().points().to_vec();
+        let flown = points.len();
+        let last = points[flown - 1];
+        assert_eq!(until_rest(&points), flown);
+        points.extend((1..90).map(|s| TrackPoint { time_s: last.time_s + f64::from(s), ..last }));
+        assert_eq!(until_rest(&points), flown);
+        assert_eq!((until_rest(&points[flown..]), until_rest(&[])), (1, 0));
     }
 
     #[test]
