@@ -223,7 +223,8 @@ impl<'a> Flight<'a> {
     }
 
     /// What became of the flight, as it was recorded and as it is now.
-    pub fn ending(&self, mut recorded: Recorded, components: &Components, destination: &Runway) -> Ending {
+    pub fn ending(&self, recorded: Recorded, components: &Components, destination: &Runway) -> Ending {
+        let mut recorded = recorded.since(self.started_s);
         let active = self.subscribed.status().and_then(|status| status.plan);
         recorded.ends_with(active.as_ref().or(self.sent.last()).map_or("", |hash| hash));
         recorded.lost(self.plan_events.lost, "events of the FP Manager were lost");
@@ -245,7 +246,7 @@ impl<'a> Flight<'a> {
             steps: self.script.steps(),
             refusals: std::mem::take(&mut recorded.refusals),
         };
-        Ending { recorded: recorded.since(self.started_s), outcome }
+        Ending { recorded, outcome }
     }
 
     fn last_refusal(&self) -> &str {

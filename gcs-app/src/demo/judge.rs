@@ -1,10 +1,10 @@
 //! Was the mission really flown as planned? Pure: from what was recorded to a verdict.
 
+use super::recorded::Transition;
 use crate::report::{Findings, Record, clock};
 use flight_exec::Phase;
 use flight_plan::{Cause, Id};
 use geometry::{LatLon, LocalFrame, Vec2};
-use usal::contract::GatewayState;
 
 /// Greatest cross-track error on TF legs, against the previewed path and against the authored one, metres.
 const TF_LIMIT_M: f64 = 15.0;
@@ -38,8 +38,8 @@ pub struct Outcome {
     pub by_hand: Vec<String>,
     /// The executor's last phase.
     pub phase: Phase,
-    /// The gateway's states in order, as far as events told.
-    pub states: Vec<GatewayState>,
+    /// The gateway's states in order, as far as events told; times count from the start of the plan.
+    pub states: Vec<Transition>,
     /// Steps of the mission logic that did not happen.
     pub missing_steps: Vec<String>,
     /// Steps in all.
@@ -96,8 +96,10 @@ fn landed(outcome: &Outcome) -> (bool, String) {
         return (
             false,
             format!(
-                "still moving at {:.1} m/s when it ended, not landed on {}",
-                outcome.ground_speed_mps, runway.id
+                "still moving at {:.1} m/s when it ended{}, not landed on {}",
+                outcome.ground_speed_mps,
+                last_state(outcome),
+                runway.id
             ),
         );
     }
@@ -126,8 +128,15 @@ fn finished(outcome: &Outcome) -> (bool, String) {
             *cause == Cause::Operator,
             format!("the plan was not flown to its end: emergency plan {plan} was flown instead"),
         ),
-        (other, _) => (false, format!("the plan did not come to its end: {other:?}")),
+        (other, _) => {
+            (false, format!("the plan did not come to its end: it was {other:?}{}", last_state(outcome)))
+        }
     }
+}
+
+/// `, with the gateway in SafeHold`.
+fn last_state(outcome: &Outcome) -> String {
+    outcome.states.last().map_or_else(String::new, |last| format!(", with the gateway in {:?}", last.to))
 }
 
 /// Every passage of the preview was flown, in the same order, and no other.
@@ -207,17 +216,25 @@ fn covered(findings: &Findings) -> (bool, String) {
     }
 }
 
+/// When, why and with which alarms it entered Safe mode, and what helps: who reads it was not there.
 fn never_safe(outcome: &Outcome) -> (bool, String) {
-    use GatewayState::{SafeApproach, SafeHold, SafeLand, SafeReturn, Terminate};
-    let unsafe_state = outcome
-        .states
-        .iter()
-        .find(|s| matches!(s, SafeHold | SafeReturn | SafeApproach | SafeLand | Terminate));
-    match unsafe_state {
-        Some(state) => (false, format!("the gateway went to {state:?}")),
-        None => (true, "the gateway never had to enter Safe mode".into()),
-    }
+    let Some(entered) = outcome.states.iter().find(|state| state.is_safe_mode()) else {
+        return (true, "the gateway never had to enter Safe mode".into());
+    };
+    let Transition { time_s, to, cause, alarms } = entered;
+    let alarms = match alarms.as_slice() {
+        [] => "No alarm was raised then.".into(),
+        raised => {
+            let raised: Vec<String> =
+                raised.iter().map(|alarm| format!("{}: {}", alarm.id, alarm.advice)).collect();
+            format!("Alarms: {}", raised.join(" "))
+        }
+    };
+    (false, format!("the gateway went to {to:?} at {}, for {cause}. {alarms} {REMEDY}", clock(*time_s)))
 }
+
+/// The demo's own FP Manager and waypoints are late where everything else is, too.
+const REMEDY: &str = "What to do: read what came before in the list of what happened; on a busy machine fly with a lower --speed.";
 
 fn nothing_refused(outcome: &Outcome) -> (bool, String) {
     match outcome.refusals.first() {
@@ -230,6 +247,7 @@ fn nothing_refused(outcome: &Outcome) -> (bool, String) {
 mod tests {
     use super::*;
     use flight_plan::Runway;
+    use usal::contract::{Alarm, GatewayState, Severity};
 
     fn outcome() -> Outcome {
         let threshold = LatLon::new(36.319, -84.173);
@@ -250,11 +268,50 @@ mod tests {
             emergency: None,
             by_hand: vec![],
             phase: Phase::Finished,
-            states: vec![GatewayState::Stop, GatewayState::TakeOff, GatewayState::Nav],
+            states: [GatewayState::Stop, GatewayState::TakeOff, GatewayState::Nav].map(went_to).to_vec(),
             missing_steps: vec![],
             steps: 6,
             refusals: vec![],
         }
+    }
+
+    fn went_to(to: GatewayState) -> Transition {
+        Transition { time_s: 754.0, to, cause: "the FP Manager is silent".into(), alarms: vec![] }
+    }
+
+    fn in_safe_hold(alarms: Vec<Alarm>) -> Outcome {
+        let states =
+            vec![went_to(GatewayState::Nav), Transition { alarms, ..went_to(GatewayState::SafeHold) }];
+        Outcome { states, on_ground: false, ground_speed_mps: 22.0, phase: Phase::Flying, ..outcome() }
+    }
+
+    #[test]
+    fn safe_mode_is_told_with_its_time_its_cause_its_alarms_and_what_helps() {
+        let alarm = Alarm {
+            id: "fp-manager-silent".into(),
+            severity: Severity::Warning,
+            source: "gateway".into(),
+            advice: "Restart it.".into(),
+            cause: None,
+        };
+        let (holds, text) = never_safe(&in_safe_hold(vec![alarm]));
+        let told = "the gateway went to SafeHold at 12:34, for the FP Manager is silent. Alarms: fp-manager-silent: Restart it. What to do: ";
+        assert!(!holds && text.starts_with(told) && text.contains("--speed"), "{text}");
+        assert!(never_safe(&in_safe_hold(vec![])).1.contains("No alarm was raised then."));
+    }
+
+    #[test]
+    fn a_flight_that_did_not_end_says_in_which_state_it_was() {
+        let ended = in_safe_hold(vec![]);
+        assert_eq!(
+            finished(&ended).1,
+            "the plan did not come to its end: it was Flying, with the gateway in SafeHold"
+        );
+        let (_, text) = landed(&ended);
+        assert_eq!(
+            text,
+            "still moving at 22.0 m/s when it ended, with the gateway in SafeHold, not landed on R05"
+        );
     }
 
     #[test]
@@ -281,9 +338,7 @@ mod tests {
         );
         assert!(!finished(&Outcome { phase: Phase::Holding, ..outcome() }).0);
         assert!(!scripted(&Outcome { missing_steps: vec!["fire out".into()], ..outcome() }).0);
-        assert!(
-            !never_safe(&Outcome { states: vec![GatewayState::Nav, GatewayState::SafeHold], ..outcome() }).0
-        );
+        assert!(!never_safe(&in_safe_hold(vec![])).0);
         assert!(!nothing_refused(&Outcome { refusals: vec!["too steep".into()], ..outcome() }).0);
     }
 

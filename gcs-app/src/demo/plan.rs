@@ -3,11 +3,12 @@
 use super::Args;
 use super::flight::Ending;
 use super::mission::{self, Step, When};
+use super::recorded::Transition;
 use crate::assets;
 use crate::headless::wind::Air;
 use crate::headless::{Loaded, Source, forecast, wind};
 use crate::panels::ended::destination;
-use crate::report::{Record, Track, assemble, authored, flights};
+use crate::report::{Happening, Record, Track, assemble, authored, flights};
 use aircraft::{Autopilot, Profile, Wind};
 use anyhow::{Context, bail};
 use flight_exec::Event;
@@ -143,7 +144,8 @@ impl Prepared {
             recorded.plans.iter().map(|(_, plan)| flight_plan::instantiate(plan).0).collect();
         let mut plans = vec![self.program.flown()];
         plans.extend(flown_plans.iter().map(|plan| plan.as_ref()));
-        let flown = assemble::track(&recorded.points, &recorded.events, &plans);
+        let points = recorded.points.get(..flights::until_rest(&recorded.points)).unwrap_or_default();
+        let flown = assemble::track(points, &recorded.events, &plans);
         let turn_radius_m = self.profile.turn_radius_m(self.profile.cruise_airspeed_mps + wind.speed_mps());
         Record {
             title: self.program.plan.name.clone(),
@@ -160,12 +162,21 @@ impl Prepared {
             routes: assemble::routes(&self.program, &flown),
             energy: flights::reported(&flown, &recorded.battery, self.profile.energy_j),
             flown,
-            happenings: recorded.events.iter().map(|(t, e)| assemble::happening(*t, e)).collect(),
+            happenings: happenings(ending),
             verdict: Vec::new(),
             by_hand: ending.outcome.by_hand.clone(),
             terrain: self.terrain.clone(),
         }
     }
+}
+
+/// What the executor told, and where the gateway entered Safe mode.
+fn happenings(ending: &Ending) -> Vec<Happening> {
+    let plan = ending.recorded.events.iter().map(|(time_s, event)| assemble::happening(*time_s, event));
+    let safe = ending.outcome.states.iter().filter(|state| state.is_safe_mode());
+    let mut all: Vec<Happening> = plan.chain(safe.map(Transition::happening)).collect();
+    all.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+    all
 }
 
 #[cfg(test)]

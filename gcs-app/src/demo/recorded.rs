@@ -1,13 +1,13 @@
 //! What the recording of a flight holds, as far as the report and the judge want it. Pure.
 
-use crate::report::TrackPoint;
+use crate::report::{Happening, TrackPoint};
 use flight_exec::Event;
 use flight_plan::{FlightPlan, Id, Runway};
 use geometry::LatLon;
 use recording::Message;
 use serde::{Deserialize, Serialize};
 use usal::contract::{
-    FpManagerEvent, GatewayEvent, GatewayState, PlanDocument, Power, Stamped, TimedGatewayEvent,
+    Alarm, FpManagerEvent, GatewayEvent, GatewayState, PlanDocument, Power, Stamped, TimedGatewayEvent,
 };
 use wire::Convert;
 
@@ -33,6 +33,41 @@ pub struct Truth {
     pub altitude_amsl_m: f64,
 }
 
+/// What is behind a state of the gateway may be told so much later than the state, seconds.
+const TOLD_WITHIN_S: f64 = 5.0;
+
+/// The gateway went to another state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Transition {
+    /// When, seconds.
+    pub time_s: f64,
+    /// To which one.
+    pub to: GatewayState,
+    /// Why, in the gateway's words.
+    pub cause: String,
+    /// The alarms that were raised then, or hardly later.
+    pub alarms: Vec<Alarm>,
+}
+
+impl Transition {
+    /// Into Safe mode, or worse.
+    pub fn is_safe_mode(&self) -> bool {
+        use GatewayState::{SafeApproach, SafeHold, SafeLand, SafeReturn, Terminate};
+        matches!(self.to, SafeHold | SafeReturn | SafeApproach | SafeLand | Terminate)
+    }
+
+    /// For the report.
+    pub fn happening(&self) -> Happening {
+        let Self { time_s, to, cause, .. } = self;
+        Happening {
+            time_s: *time_s,
+            text: format!("the gateway went to {to:?}: {cause}"),
+            important: true,
+            details: serde_json::json!({"event": "state-changed", "to": to, "cause": cause}),
+        }
+    }
+}
+
 /// A flight, as it was recorded. Times are seconds.
 #[derive(Debug, Default)]
 pub struct Recorded {
@@ -43,7 +78,9 @@ pub struct Recorded {
     /// What the executor told, with its time.
     pub events: Vec<(f64, Event)>,
     /// The gateway's states, in order.
-    pub states: Vec<GatewayState>,
+    pub states: Vec<Transition>,
+    /// The alarms that are raised now.
+    raised: Vec<Alarm>,
     /// Refused waypoints and patterns, and what was lost.
     pub refusals: Vec<String>,
     /// The plans that were active, each with its hash.
@@ -60,7 +97,7 @@ impl Recorded {
         let taken = match topic {
             TRUTH => serde_json::from_slice(data).map(|stamped| self.truth(&stamped)),
             PLAN_EVENTS => serde_json::from_slice(data).map(|stamped| self.plan_event(stamped)),
-            GATEWAY_EVENTS => serde_json::from_slice(data).map(|stamped| self.gateway_event(&stamped)),
+            GATEWAY_EVENTS => serde_json::from_slice(data).map(|stamped| self.gateway_event(stamped)),
             POWER => serde_json::from_slice(data).map(|stamped| self.power(&stamped)),
             PLAN => serde_json::from_slice(data).map(|document| self.plan(document)),
             _ => return,
@@ -85,9 +122,21 @@ impl Recorded {
         self.events.push((stamped.time_s, event));
     }
 
-    fn gateway_event(&mut self, stamped: &TimedGatewayEvent) {
-        if let GatewayEvent::StateChanged { to, .. } = &stamped.value {
-            self.states.push(*to);
+    fn gateway_event(&mut self, stamped: TimedGatewayEvent) {
+        let time_s = stamped.time_s;
+        match stamped.value {
+            GatewayEvent::StateChanged { to, cause, .. } => {
+                self.states.push(Transition { time_s, to, cause, alarms: self.raised.clone() });
+            }
+            GatewayEvent::AlarmRaised(alarm) => {
+                if let Some(last) = self.states.last_mut().filter(|last| time_s - last.time_s < TOLD_WITHIN_S)
+                {
+                    last.alarms.push(alarm.clone());
+                }
+                self.raised.push(alarm);
+            }
+            GatewayEvent::AlarmCleared { id } => self.raised.retain(|alarm| alarm.id != id),
+            _ => {}
         }
     }
 
@@ -128,6 +177,7 @@ impl Recorded {
         self.points.iter_mut().for_each(|p| p.time_s -= started_s);
         self.battery.iter_mut().for_each(|(time_s, _)| *time_s -= started_s);
         self.events.iter_mut().for_each(|(time_s, _)| *time_s -= started_s);
+        self.states.iter_mut().for_each(|state| state.time_s -= started_s);
         self
     }
 }
@@ -191,8 +241,34 @@ mod tests {
             state("take-off", "nav"),
             ("legwork/demo/a/variable/b", json!(1)),
         ]);
-        assert_eq!(taken.states, [GatewayState::TakeOff, GatewayState::Nav]);
+        let states: Vec<GatewayState> = taken.states.iter().map(|state| state.to).collect();
+        assert_eq!(states, [GatewayState::TakeOff, GatewayState::Nav]);
         assert!(taken.refusals.is_empty(), "{:?}", taken.refusals);
+    }
+
+    #[test]
+    fn a_state_has_the_alarms_that_are_raised_then_or_hardly_later() {
+        let at = |time_s: f64, value: Value| {
+            (GATEWAY_EVENTS, json!({"time_s": time_s, "validity_s": 1.0, "value": value}))
+        };
+        let raised = |time_s: f64, id: &str| {
+            let alarm = json!({"id": id, "severity": "caution", "source": "gateway", "advice": "land", "cause": null});
+            let mut event = alarm;
+            event["event"] = json!("alarm-raised");
+            at(time_s, event)
+        };
+        let safe = json!({"event": "state-changed", "from": "nav", "to": "safe-hold", "cause": "silent"});
+        let taken = recorded(&[
+            raised(1.0, "over"),
+            at(2.0, json!({"event": "alarm-cleared", "id": "over"})),
+            raised(3.0, "before"),
+            at(10.0, safe),
+            raised(11.0, "soon"),
+            raised(40.0, "later"),
+        ]);
+        let [state] = &taken.since(4.0).states[..] else { panic!() };
+        let ids: Vec<&str> = state.alarms.iter().map(|alarm| alarm.id.as_str()).collect();
+        assert_eq!((ids, state.cause.as_str(), state.time_s), (vec!["before", "soon"], "silent", 6.0));
     }
 
     #[test]
