@@ -11,7 +11,7 @@ use egui::{
     Visuals, WidgetText, vec2,
 };
 use egui_tiles::{Behavior, Container, ResizeState, TabState, Tabs, Tile, TileId, Tiles, UiResponse};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// Everything that is drawn in the tiles of a frame.
 #[derive(Debug)]
@@ -86,6 +86,12 @@ impl<'a> Content<'a> {
         id == what_if::ID && self.scene.vehicle.is_airborne() && !is_wanted
     }
 
+    /// The least heights of the panels, with their titles and what is around them, screen points.
+    pub(super) fn least_heights(&self) -> HashMap<PanelId, f32> {
+        let around = TAB_BAR + MARGIN.sum().y;
+        self.panels.iter().map(|panel| (panel.id(), panel.least_height() + around)).collect()
+    }
+
     fn panel(&self, id: PanelId) -> Option<&dyn Panel> {
         self.panels.iter().find(|panel| panel.id() == id).map(Box::as_ref)
     }
@@ -140,7 +146,7 @@ impl<'a> Content<'a> {
 }
 
 /// Least width of a header beside tabs; with less, it stands below them, screen points.
-const HEADER: f32 = 240.0;
+pub(super) const HEADER: f32 = 240.0;
 /// Around a panel.
 const MARGIN: Margin = Margin { left: 10, right: 10, top: 4, bottom: 8 };
 

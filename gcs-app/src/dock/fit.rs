@@ -1,6 +1,7 @@
 //! Lengths of tiles. In egui_tiles they are shares; beside the map ours are screen points, so that the
 //! map takes what the window gains and what a hidden panel leaves, and its neighbours keep their size.
 
+use super::content::HEADER;
 use super::{GAP, MAP, TAB_BAR};
 use crate::panels::PanelId;
 use egui::{Vec2, vec2};
@@ -30,8 +31,43 @@ impl Wanted {
     }
 }
 
-/// Makes the lengths of a tile of this size, and of those in it, add up. `least`: the least the map gets, screen points.
-pub fn fit(tiles: &mut Tiles<PanelId>, tile: TileId, size: Vec2, least: Vec2, wanted: &mut Wanted) {
+/// The least that the map and the panels get where there is room for all of that, screen points.
+#[derive(Debug)]
+pub struct Least {
+    /// Of the map.
+    pub map: Vec2,
+    /// Heights of panels, with what is around them.
+    pub panels: HashMap<PanelId, f32>,
+}
+
+impl Least {
+    /// The least height of a tile of this width.
+    fn height(&self, tiles: &Tiles<PanelId>, tile: TileId, width: f32) -> f32 {
+        match tiles.get(tile).filter(|_| tiles.is_visible_in_layout(tile)) {
+            Some(Tile::Pane(MAP)) => self.map.y,
+            Some(Tile::Pane(panel)) => self.panels.get(panel).copied().unwrap_or(0.0),
+            Some(Tile::Container(container)) => {
+                let heights = container.children().map(|child| self.height(tiles, *child, width));
+                match container {
+                    Container::Linear(linear) if linear.dir == LinearDir::Vertical => heights.sum(),
+                    // a panel that is alone has a title that is as high
+                    Container::Tabs(_) => heights.fold(0.0, f32::max) + header(width),
+                    _ => heights.fold(0.0, f32::max),
+                }
+            }
+            None => 0.0,
+        }
+    }
+}
+
+/// What a header takes that has no room beside tabs, screen points.
+fn header(width: f32) -> f32 {
+    // the tabs take about as much as it does
+    if width < 2.0 * HEADER { TAB_BAR + 4.0 } else { 0.0 }
+}
+
+/// Makes the lengths of a tile of this size, and of those in it, add up.
+pub fn fit(tiles: &mut Tiles<PanelId>, tile: TileId, size: Vec2, least: &Least, wanted: &mut Wanted) {
     let Some(Tile::Container(container)) = tiles.get(tile) else { return };
     let children: Vec<TileId> = container.children().copied().collect();
     let Container::Linear(linear) = container else {
@@ -42,8 +78,19 @@ pub fn fit(tiles: &mut Tiles<PanelId>, tile: TileId, size: Vec2, least: Vec2, wa
         LinearDir::Horizontal => Vec2::X,
         LinearDir::Vertical => Vec2::Y,
     };
-    let wishes = children.iter().map(|child| wanted.of(*child, linear.shares[*child])).collect();
-    let (wishes, lengths) = lengths(tiles, linear, wishes, size.dot(along), least.dot(along));
+    let is_moved = children.iter().any(|child| !wanted.is_given(*child, linear.shares[*child]));
+    let is_map_in = children.iter().any(|child| has_map(tiles, *child));
+    let wish = |child: &TileId| match linear.shares[*child] {
+        // without the map shares are no lengths until some are raised: what the operator moves is a share of what is seen
+        share if is_moved && !is_map_in => share,
+        share => wanted.of(*child, share),
+    };
+    let wishes = children.iter().map(wish).collect();
+    let (wishes, mut lengths) = lengths(tiles, linear, wishes, size.dot(along), least.map.dot(along));
+    if linear.dir == LinearDir::Vertical {
+        let leasts: Vec<f32> = children.iter().map(|child| least.height(tiles, *child, size.x)).collect();
+        raise(&mut lengths, &leasts, &is_shown(tiles, linear), size.y);
+    }
     for ((child, wish), given) in children.iter().zip(wishes).zip(&lengths) {
         wanted.0.insert(*child, (wish, *given));
     }
@@ -75,7 +122,7 @@ fn lengths(
     length: f32,
     least: f32,
 ) -> (Vec<f32>, Vec<f32>) {
-    let is_shown: Vec<bool> = linear.children.iter().map(|id| tiles.is_visible_in_layout(*id)).collect();
+    let is_shown = is_shown(tiles, linear);
     let room = room(length, is_shown.iter().filter(|shown| **shown).count());
     settle_newcomers(&mut wishes, room);
     let mut lengths = wishes.clone();
@@ -91,6 +138,30 @@ fn lengths(
         *length = if i == map { left } else { (*length * shrunk).max(2.0 * FRESH) };
     }
     (wishes, lengths)
+}
+
+fn is_shown(tiles: &Tiles<PanelId>, linear: &Linear) -> Vec<bool> {
+    linear.children.iter().map(|id| tiles.is_visible_in_layout(*id)).collect()
+}
+
+/// Gives those of a column that are too low what others have to spare. Where everyone has enough, nothing changes.
+fn raise(lengths: &mut [f32], leasts: &[f32], is_shown: &[bool], height: f32) {
+    let all = lengths.iter_mut().zip(leasts).zip(is_shown);
+    let shown: Vec<_> = all.filter(|(_, shown)| **shown).map(|(tile, _)| tile).collect();
+    let sum: f32 = shown.iter().map(|(length, _)| **length).sum();
+    let scale = room(height, shown.len()) / sum.max(FRESH);
+    let spare = |(length, least): &(&mut f32, &f32)| **length * scale - **least;
+    let needed: f32 = shown.iter().map(|tile| (-spare(tile)).max(0.0)).sum();
+    let left: f32 = shown.iter().map(|tile| spare(tile).max(0.0)).sum();
+    let given = needed.min(left);
+    if given <= 0.0 {
+        return;
+    }
+    for tile in shown {
+        let spare = spare(&tile);
+        let share = spare / if spare < 0.0 { needed } else { left };
+        *tile.0 = *tile.0 * scale - share * given;
+    }
 }
 
 /// A tile that was just dropped gets as much as the others have on the average.
@@ -127,10 +198,75 @@ mod tests {
         Stored::default_of(&all).tree(&known).expect("sound")
     }
 
+    fn least() -> Least {
+        let panels = HashMap::from([("problems", 188.0), ("table", 200.0)]);
+        Least { map: LEAST, panels }
+    }
+
+    /// Height of a tile with this panel, alone or in tabs, in a dock of this size.
+    fn height(tree: &mut (PanelTree, Wanted), size: Vec2, panel: &str) -> f32 {
+        let root = tree.0.root().expect("not empty");
+        fit(&mut tree.0.tiles, root, size, &least(), &mut tree.1);
+        let tiles = &tree.0.tiles;
+        let is_it = |id: &TileId| matches!(tiles.get(*id), Some(Tile::Pane(pane)) if *pane == panel);
+        let is_column = |linear: &Linear| linear.dir == LinearDir::Vertical;
+        let columns = tiles.tiles().filter_map(|tile| match tile {
+            Tile::Container(Container::Linear(linear)) if is_column(linear) => Some(linear),
+            _ => None,
+        });
+        let holds = |id: &TileId| match tiles.get(*id) {
+            Some(Tile::Container(Container::Tabs(tabs))) => tabs.children.iter().any(is_it),
+            _ => is_it(id),
+        };
+        let (column, tile) = columns
+            .filter_map(|column| Some((column, *column.children.iter().find(|id| holds(id))?)))
+            .next()
+            .expect("it is in a column");
+        let at = column.children.iter().position(|id| *id == tile).expect("there");
+        column.shares.split(&column.children, room(size.y, column.children.len()))[at]
+    }
+
+    #[test]
+    fn panels_have_their_least_height_where_others_have_more_than_theirs() {
+        let mut tree = (default_tree(), Wanted::default());
+        let high = height(&mut tree, NOMINAL, "problems");
+        for (size, problems, table) in [
+            // below the map there is a row more where tabs and header have no room beside each other
+            (vec2(960.0, 558.0), 188.0, 230.0),
+            (vec2(1280.0, 600.0), 188.0, 204.0),
+            (NOMINAL, high, 204.0),
+        ] {
+            let got = (height(&mut tree, size, "problems"), height(&mut tree, size, "table"));
+            assert!((got.0 - problems).abs() < 1.0 && (got.1 - table).abs() < 1.0, "{size}: {got:?}");
+        }
+        let low = height(&mut tree, vec2(960.0, 300.0), "table");
+        assert!((low - (299.0 - LEAST.y)).abs() < 1.0, "the map goes first: {low}");
+    }
+
+    #[test]
+    fn what_the_operator_moves_in_a_low_window_stays() {
+        let mut tree = (default_tree(), Wanted::default());
+        let size = vec2(960.0, 558.0);
+        height(&mut tree, size, "problems");
+        let pane = |tree: &PanelTree, panel: &str| {
+            let is_it = |tile: &&Tile<PanelId>| matches!(tile, Tile::Pane(pane) if *pane == panel);
+            tree.tiles.iter().find(|(_, tile)| is_it(tile)).map(|(id, _)| *id).expect("there")
+        };
+        let (plan, problems) = (pane(&tree.0, "plan"), pane(&tree.0, "problems"));
+        let column = tree.0.tiles.parent_of(plan).expect("in a column");
+        if let Some(Tile::Container(Container::Linear(linear))) = tree.0.tiles.get_mut(column) {
+            linear.shares.set_share(plan, 257.0);
+            linear.shares.set_share(problems, 300.0);
+        }
+        for _ in 0..2 {
+            assert!((height(&mut tree, size, "problems") - 300.0).abs() < 1.0);
+        }
+    }
+
     /// Lengths of what is at the root, in a dock of this width.
     fn columns((tree, wanted): &mut (PanelTree, Wanted), width: f32) -> Vec<f32> {
         let root = tree.root().expect("not empty");
-        fit(&mut tree.tiles, root, vec2(width, 900.0), LEAST, wanted);
+        fit(&mut tree.tiles, root, vec2(width, 900.0), &least(), wanted);
         let Some(Tile::Container(Container::Linear(linear))) = tree.tiles.get(root) else { panic!("no row") };
         let shown: Vec<TileId> =
             linear.children.iter().copied().filter(|id| tree.tiles.is_visible_in_layout(*id)).collect();

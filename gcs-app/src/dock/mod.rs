@@ -114,8 +114,9 @@ impl Dock {
             self.tree.set_visible(tile, is_shown);
         }
         if let Some(root) = self.tree.root() {
-            let least = if is_read { fit::READ } else { fit::LEAST };
-            fit::fit(&mut self.tree.tiles, root, ui.available_size(), least, &mut self.wanted);
+            let map = if is_read { fit::READ } else { fit::LEAST };
+            let least = fit::Least { map, panels: content.least_heights() };
+            fit::fit(&mut self.tree.tiles, root, ui.available_size(), &least, &mut self.wanted);
         }
         content.begin(&self.tree.tiles);
         self.tree.ui(content, ui);

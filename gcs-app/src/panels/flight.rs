@@ -10,8 +10,8 @@ use flight_exec::{Command, IterationPlace, Phase};
 use flight_plan::{Cause, Id};
 use usal::contract::GatewayState;
 
-/// Below the primary flight display there is room for an alarm, points.
-const ROOM_FOR_ALARMS: f32 = 70.0;
+/// Below the primary flight display there is room for an alarm and the vital values, points.
+const ROOM_BELOW: f32 = 140.0;
 
 /// The panel: the primary flight display, alarms, and every value with its age.
 #[derive(Debug)]
@@ -27,25 +27,30 @@ impl Panel for Flight {
     fn place(&self) -> Place {
         Place::Right { height: 468.0 }
     }
+    /// It gives nothing away: what is not in sight is not known in time.
+    fn least_height(&self) -> f32 {
+        430.0
+    }
     /// Once something was received from a vehicle.
     fn is_relevant(&self, scene: &Scene<'_>) -> bool {
         scene.vehicle.received_s.is_some()
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
         // where the display takes all the room, alarms and the vital values come first: nobody scrolls for what he does not expect
-        let is_low = ui.available_height() < pfd::HEIGHT + ROOM_FOR_ALARMS;
+        let is_low = ui.available_height() < pfd::HEIGHT + ROOM_BELOW;
         if is_low {
             raised(ui, scene);
             dense(ui);
             VITAL.iter().for_each(|row| row(ui, scene));
             ui.add_space(4.0);
         } else {
-            pfd::show(ui, scene);
+            pfd::show(ui, scene, pfd::HEIGHT);
             ui.add_space(4.0);
         }
+        let room = ui.available_height();
         ScrollArea::vertical().id_salt("flight values").auto_shrink(false).show(ui, |ui| {
             if is_low {
-                pfd::show(ui, scene);
+                pfd::show(ui, scene, room);
             } else {
                 alarms::show(ui, scene);
             }

@@ -44,6 +44,10 @@ impl Panel for Inspector {
     fn place(&self) -> Place {
         Place::Right { height: 290.0 }
     }
+    /// All that there is to say of a plan.
+    fn least_height(&self) -> f32 {
+        300.0
+    }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ScrollArea::vertical().id_salt("inspector").auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 5.0;

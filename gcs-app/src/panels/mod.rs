@@ -101,6 +101,11 @@ pub trait Panel: std::fmt::Debug {
         true
     }
 
+    /// What is lower shows too little to be of use; a low window takes it from the others. Without its title, screen points.
+    fn least_height(&self) -> f32 {
+        0.0
+    }
+
     /// What its title says now.
     fn title(&self, _scene: &Scene<'_>) -> String {
         self.name().into()

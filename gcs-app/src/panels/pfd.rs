@@ -12,13 +12,15 @@ use tape::Side;
 
 /// Of the display, points.
 pub const HEIGHT: f32 = 204.0;
+/// Of a lower one nothing is read.
+const LEAST_HEIGHT: f32 = 130.0;
 
 /// Of the height above the ground at the foot of the altitude's tape, points.
 const AGL: f32 = 20.0;
 
-/// Draws the display over the full width.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
-    let size = vec2(ui.available_width(), HEIGHT);
+/// Draws the display over the full width, and no higher than there is room.
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, room: f32) {
+    let size = vec2(ui.available_width(), room.clamp(LEAST_HEIGHT, HEIGHT));
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     let text = summary(scene);
     response.widget_info(|| {

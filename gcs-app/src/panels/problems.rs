@@ -61,6 +61,10 @@ impl Panel for Problems {
     fn place(&self) -> Place {
         Place::Left { height: 188.0 }
     }
+    /// The verdict, and three problems of two lines.
+    fn least_height(&self) -> f32 {
+        137.0
+    }
     fn title(&self, scene: &Scene<'_>) -> String {
         let problems: Vec<&Problem> = scene.problems().collect();
         let known = self.listed.is_of(scene).then_some(self.listed.order.len());

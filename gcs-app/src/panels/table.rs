@@ -87,6 +87,10 @@ impl Panel for Table {
     fn place(&self) -> Place {
         Place::Below
     }
+    /// The timeline, the heads of the columns, and five rows.
+    fn least_height(&self) -> f32 {
+        164.0
+    }
     fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         timeline::show(ui, scene, queue);
     }
@@ -222,6 +226,7 @@ impl Table {
     }
 
     fn table(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        ui.spacing_mut().item_spacing.y = 1.0;
         let weak = theme::of(ui).weak;
         let whole = ui.clip_rect();
         let mut table = TableBuilder::new(ui)

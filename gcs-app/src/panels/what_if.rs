@@ -38,6 +38,10 @@ impl Panel for WhatIfPanel {
     fn place(&self) -> Place {
         Place::Right { height: 330.0 }
     }
+    /// The alarms, and the first words of what comes of one: the rest is scrolled to.
+    fn least_height(&self) -> f32 {
+        180.0
+    }
     fn is_shown_at_first(&self) -> bool {
         false
     }
