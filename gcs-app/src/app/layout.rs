@@ -4,7 +4,7 @@
 use super::{App, Now, path_aboard};
 use crate::command::{DocumentCommand, LinkCommand, Queue, ViewCommand};
 use crate::dock::Content;
-use crate::map::furniture::below_tool;
+use crate::map::tool_chip;
 use crate::panels::{
     Elevations, Scene, answer, bar, browse, changed, consider, decision, emergency, field, flight,
     interchange, maps, push, recover, start, story, toasts, tour, unsaved,
@@ -157,7 +157,7 @@ fn announcements(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 fn notice(ui: &Ui, map: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(text) = &scene.view.notice else { return };
     let side = if decision::open(scene).is_some() { Align2::CENTER_BOTTOM } else { Align2::CENTER_TOP };
-    floating(ui, "notice", below_tool(ui.ctx(), map), side, |ui| {
+    floating(ui, "notice", tool_chip::below(ui.ctx(), map), side, |ui| {
         ui.set_max_width(ui.available_width().min(NOTICE));
         ui.horizontal(|ui| {
             if field::small_button(ui, "✖", "Close this message") {

@@ -1,14 +1,13 @@
 //! What lies on the map's edge: scale, sources, legend, and the buttons.
 
-use super::chips;
 use super::graticule::{Round, round_length};
 use super::names::Names;
-use super::text;
 use super::tools::{Card, Toolbox};
 use super::view::View;
+use super::{chips, text, tool_chip};
 use crate::assets;
 use crate::command::{Queue, ViewCommand};
-use crate::panels::{Scene, start, tour};
+use crate::panels::{Scene, tour};
 use crate::theme::{self, Palette};
 use crate::units::{self, Units};
 use egui::{Align2, Painter, Popup, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
@@ -58,20 +57,30 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, nam
     }
     let needle = view.rect.right_bottom() - vec2(26.0, 44.0);
     let north_at = Rect::from_min_max(needle - vec2(8.0, 30.0), needle + vec2(8.0, 0.0));
-    // up is north, with or without it: the buttons are needed more
-    if !north_at.intersects(buttons) {
+    let said = tool_chip::shown(painter.ctx(), view.rect);
+    // up is north, with or without it: the buttons and what the tool says are needed more
+    if !north_at.intersects(buttons) && said.is_none_or(|said| !north_at.intersects(said)) {
         north(painter, needle, p);
         names.keep_clear(north_at);
     }
-    let over_map = [said(painter.ctx(), view.rect), chips::shown(painter.ctx())];
+    let over_map = [said, chips::shown(painter.ctx())];
     over_map.into_iter().flatten().for_each(|rect| names.keep_clear(rect));
 }
 
-/// What the tools take of the map.
+/// What the tools take of the map: all of their columns.
 fn toolbar_at(map: Rect, tools: usize, scene: &Scene<'_>) -> Rect {
+    columns(map, tools, scene).fold(Rect::NOTHING, Rect::union)
+}
+
+/// Their columns, from the left.
+fn columns(map: Rect, tools: usize, scene: &Scene<'_>) -> impl Iterator<Item = Rect> {
     let shown = if are_folded(map, tools, scene) { 1 } else { tools };
-    let (columns, rows) = (shown.div_ceil(in_column(map)), shown.min(in_column(map)));
-    Rect::from_min_size(map.left_top() + vec2(12.0, 12.0), TOOL * vec2(columns as f32, rows as f32))
+    let most = in_column(map);
+    (0..shown.div_ceil(most)).map(move |index| {
+        let rows = (shown - index * most).min(most);
+        let corner = map.left_top() + vec2(12.0 + TOOL * index as f32, 12.0);
+        Rect::from_min_size(corner, TOOL * vec2(1.0, rows as f32))
+    })
 }
 
 /// What the buttons at the right edge take of it.
@@ -213,42 +222,23 @@ pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &m
 pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut Queue) {
     let map = ui.min_rect();
     let cards: Vec<_> = tools.cards().collect();
-    let toolbar = toolbar_at(map, cards.len(), scene);
-    let beside_tools = toolbar.right() + 4.0 - map.left();
+    let columns: Vec<Rect> = columns(map, cards.len(), scene).collect();
     let mut shown = Rect::NOTHING;
     if are_folded(map, cards.len(), scene) {
-        let mut folded = ui.new_child(egui::UiBuilder::new().max_rect(toolbar).id_salt("folded tools"));
+        let area = toolbar_at(map, cards.len(), scene);
+        let mut folded = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt("folded tools"));
         shown = folded_tools(&mut folded, &cards, queue);
     } else {
-        for (index, cards) in cards.chunks(in_column(map)).enumerate() {
-            let corner = map.left_top() + vec2(12.0 + TOOL * index as f32, 12.0);
-            let area = Rect::from_min_size(corner, vec2(34.0, map.height().max(40.0)));
+        for (index, (cards, area)) in cards.chunks(in_column(map)).zip(&columns).enumerate() {
             let salt = ("map tools", index);
-            let mut column = ui.new_child(egui::UiBuilder::new().max_rect(area).id_salt(salt));
+            let mut column = ui.new_child(egui::UiBuilder::new().max_rect(*area).id_salt(salt));
             column.spacing_mut().item_spacing.y = 4.0;
             cards.iter().for_each(|card| tool_button(&mut column, card, queue));
             shown |= column.min_rect();
         }
     }
     tour::mark(ui.ctx(), tour::TOOLS, shown);
-    let Some(status) = tools.status(scene) else {
-        return ui.data_mut(|data| data.remove::<Rect>(said_by_tool()));
-    };
-    // beside the card for a new mission, where that lies on the map
-    let card = if start::is_wanted(scene) && start::is_on(map) { start::WIDTH + 36.0 } else { 0.0 };
-    let beside = Rect::from_min_max(
-        map.left_top() + vec2(beside_tools + card, 12.0),
-        map.right_bottom() - vec2(52.0, 0.0),
-    );
-    let mut chip = ui.new_child(egui::UiBuilder::new().max_rect(beside).id_salt("tool status"));
-    theme::card(&chip).show(&mut chip, |ui| {
-        // a click on it goes to the map
-        ui.add(egui::Label::new(status).selectable(false).wrap());
-        if tools.has_options() {
-            ui.horizontal_wrapped(|ui| tools.options(ui, scene));
-        }
-    });
-    ui.data_mut(|data| data.insert_temp(said_by_tool(), chip.min_rect()));
+    tool_chip::show(ui, tools, &columns, scene);
 }
 
 /// A tool's card, and whether it is in use.
@@ -274,20 +264,6 @@ fn folded_tools(ui: &mut Ui, cards: &[ToolCard], queue: &mut Queue) -> Rect {
         }
     });
     response.rect
-}
-
-fn said_by_tool() -> egui::Id {
-    egui::Id::unique("what the tool in use says")
-}
-
-/// What is left of the map below what the tool in use says.
-pub fn below_tool(ctx: &egui::Context, map: Rect) -> Rect {
-    said(ctx, map).map_or(map, |said| map.with_min_y(said.bottom()))
-}
-
-/// Where the tool in use says something on the map.
-fn said(ctx: &egui::Context, map: Rect) -> Option<Rect> {
-    ctx.data(|data| data.get_temp::<Rect>(said_by_tool())).filter(|said| map.intersects(*said))
 }
 
 /// So many tools are in a column: there is a second one where the map is too low for one.

@@ -31,6 +31,7 @@ mod reveal;
 mod sheet;
 pub mod sketch;
 pub mod text;
+pub mod tool_chip;
 pub mod tools;
 mod variables;
 pub mod view;

@@ -103,6 +103,16 @@ impl Toolbox {
         !self.is_guided
     }
 
+    /// A place can be typed for the tool in use: whoever draws takes one.
+    pub fn takes_places(&self) -> bool {
+        self.in_use().is_some_and(|tool| tool.typed_from().is_some())
+    }
+
+    /// The tool in use has begun something that is not ended.
+    pub fn is_drawing(&self) -> bool {
+        self.in_use().is_some_and(|tool| tool.wants(Key::Escape))
+    }
+
     /// Draws the choices that the tool in use offers.
     pub fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
         if let Some(tool) = self.tools.get_mut(self.current) {

@@ -1,0 +1,127 @@
+//! What the tool in use says, and the choices that it offers. On a small map that is one line at the lower edge, its choices
+//! behind a button, and while something is drawn it is where the pointer is not.
+
+use super::chips;
+use super::furniture::NARROW;
+use super::tools::Toolbox;
+use crate::panels::{Scene, start};
+use crate::theme;
+use egui::{
+    Context, Id, Label, Margin, Popup, PopupCloseBehavior, Rangef, Rect, RichText, Role, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
+};
+
+/// Height of the line on a small map, screen points.
+const LINE: f32 = 28.0;
+/// From its lower edge to that of the map: the scale, the sources and the place of the pointer stand there.
+const BELOW: f32 = 36.0;
+/// From the map's edge, and from the tools.
+const BESIDE: f32 = 12.0;
+/// The buttons at the map's right edge take so much.
+const BUTTONS: f32 = 52.0;
+/// Tools say it last; the line has no room for it.
+const ENDING: &str = " Esc ends it.";
+/// The line gives way to a pointer that comes so near.
+const CLEAR: f32 = 40.0;
+
+/// Draws it. `columns`: what the tools take of the map.
+pub fn show(ui: &mut Ui, tools: &mut Toolbox, columns: &[Rect], scene: &Scene<'_>) {
+    let map = ui.min_rect();
+    let shown = tools.status(scene).map(|status| match map.width() < NARROW {
+        true => line(ui, tools, &status, columns, scene),
+        false => whole(ui, tools, status, columns, scene),
+    });
+    ui.data_mut(|data| match shown {
+        Some(rect) => _ = data.insert_temp(said_id(), rect),
+        None => data.remove::<Rect>(said_id()),
+    });
+}
+
+/// Everything, in as many lines as that takes.
+fn whole(ui: &mut Ui, tools: &mut Toolbox, status: String, columns: &[Rect], scene: &Scene<'_>) -> Rect {
+    let map = ui.min_rect();
+    // beside the card for a new mission, where that lies on the map
+    let card = if start::is_wanted(scene) && start::is_on(map) { start::WIDTH + 36.0 } else { 0.0 };
+    let left = columns.iter().map(|column| column.right()).fold(map.left(), f32::max) + 4.0 + card;
+    let room = Rect::from_min_max(pos2(left, map.top() + BESIDE), map.right_bottom() - vec2(BUTTONS, 0.0));
+    let mut chip = ui.new_child(UiBuilder::new().max_rect(room).id_salt("tool status"));
+    theme::card(&chip).show(&mut chip, |ui| {
+        // a click on it goes to the map
+        ui.add(Label::new(status).selectable(false).wrap());
+        if tools.has_options() {
+            ui.horizontal_wrapped(|ui| tools.options(ui, scene));
+        }
+    });
+    chip.min_rect()
+}
+
+fn line(ui: &mut Ui, tools: &mut Toolbox, status: &str, columns: &[Rect], scene: &Scene<'_>) -> Rect {
+    let map = ui.min_rect();
+    let room = place(ui.ctx(), map, columns, tools.is_drawing());
+    let mut chip = ui.new_child(UiBuilder::new().max_rect(room).id_salt("tool status"));
+    theme::card(&chip).inner_margin(Margin::symmetric(8, 4)).show(&mut chip, |ui| {
+        ui.set_width(ui.available_width());
+        ui.horizontal(|ui| {
+            if tools.has_options() && tools.takes_places() {
+                choices(ui, tools, scene);
+            }
+            let text = RichText::new(status.strip_suffix(ENDING).unwrap_or(status)).size(12.0);
+            ui.add(Label::new(text).selectable(false).truncate()).on_hover_text(status);
+        });
+    });
+    chip.min_rect()
+}
+
+/// At the map's lower edge; at the upper one while something is drawn and the pointer is near.
+fn place(ctx: &Context, map: Rect, columns: &[Rect], is_drawing: bool) -> Rect {
+    let lower = chips::shown(ctx).map_or(map.bottom(), |chips| chips.top() + BELOW - 4.0).min(map.bottom());
+    let low = beside(map, lower - BELOW - LINE, BESIDE, columns);
+    let pointer = ctx.pointer_hover_pos().filter(|_| is_drawing);
+    match pointer.is_some_and(|at| at.y > low.top() - CLEAR) {
+        true => beside(map, map.top() + BESIDE, BUTTONS, columns),
+        false => low,
+    }
+}
+
+/// The line at a height, right of those columns of the tools that reach there.
+fn beside(map: Rect, top: f32, right: f32, columns: &[Rect]) -> Rect {
+    let rows = Rangef::new(top, top + LINE);
+    let taken = columns.iter().filter(|column| column.y_range().intersection(rows).span() > 0.0);
+    let left = taken.map(|column| column.right()).fold(map.left() + BESIDE - 4.0, f32::max) + 4.0;
+    Rect::from_x_y_ranges(left..=(map.right() - right).max(left), rows)
+}
+
+/// The choices, behind a button.
+fn choices(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>) {
+    let open_id = Id::unique("choices of the tool");
+    let mut open = ui.data(|data| data.get_temp::<bool>(open_id)).unwrap_or(false);
+    let button = ui.small_button("⏷").on_hover_text("What is drawn, and where");
+    let name = "Choices of the tool";
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, name));
+    open ^= button.clicked();
+    // a list among them has a popup of its own, of which there is one at a time
+    let popup = Popup::menu(&button).open_bool(&mut open);
+    popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
+        ui.set_max_width(CHOICES);
+        ui.horizontal_wrapped(|ui| tools.options(ui, scene));
+    });
+    ui.data_mut(|data| data.insert_temp(open_id, open));
+}
+
+/// Width of the choices, screen points.
+const CHOICES: f32 = 260.0;
+
+fn said_id() -> Id {
+    Id::unique("what the tool in use says")
+}
+
+/// What is left of the map below what the tool in use says at its upper edge.
+pub fn below(ctx: &Context, map: Rect) -> Rect {
+    let above = shown(ctx, map).filter(|said| said.center().y < map.center().y);
+    above.map_or(map, |said| map.with_min_y(said.bottom()))
+}
+
+/// Where it was on the map in the last frame.
+pub fn shown(ctx: &Context, map: Rect) -> Option<Rect> {
+    ctx.data(|data| data.get_temp::<Rect>(said_id())).filter(|said| map.intersects(*said))
+}
