@@ -77,7 +77,7 @@ impl App {
                     tour::mark(ui.ctx(), tour::NEW_MISSION, ui.min_rect());
                 });
             }
-            over_map(ui, floor, &scene, queue);
+            decision_card(ui, floor.with_max_y(whole.bottom()), &scene, queue);
             if let Some(found) = scene.left_behind.filter(|_| !scene.view.recovers_later) {
                 let keys = (!scene.is_asking(), scene.vehicles.flying().next().is_none());
                 let ask = |ui: &mut Ui| recover::show(ui, found, keys, queue);
@@ -153,11 +153,10 @@ fn announcements(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
 }
 
-/// Over the map, so that nothing moves under the pointer; clear of a decision that is asked for.
+/// Over the map, so that nothing moves under the pointer.
 fn notice(ui: &Ui, map: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(text) = &scene.view.notice else { return };
-    let side = if decision::open(scene).is_some() { Align2::CENTER_BOTTOM } else { Align2::CENTER_TOP };
-    floating(ui, "notice", tool_chip::below(ui.ctx(), map), side, |ui| {
+    floating(ui, "notice", tool_chip::below(ui.ctx(), map), Align2::CENTER_TOP, |ui| {
         ui.set_max_width(ui.available_width().min(NOTICE));
         ui.horizontal(|ui| {
             if field::small_button(ui, "✖", "Close this message") {
@@ -191,15 +190,19 @@ fn room_of_start(floor: Rect, whole: Rect) -> (Rect, f32) {
     }
 }
 
-/// The decision that is asked for.
-fn over_map(ui: &Ui, map: Rect, scene: &Scene<'_>, queue: &mut Queue) {
+/// The decision that is asked for: over what stands below the map, so that the aircraft and what lies ahead of it stay in sight.
+/// `column`: the map and what is below it.
+fn decision_card(ui: &Ui, column: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     if let Some((request, left_s)) = decision::open(scene) {
-        floating(ui, "decision", map, Align2::CENTER_TOP, |ui| {
-            ui.set_width(300.0);
+        floating(ui, "decision", column, Align2::CENTER_BOTTOM, |ui| {
+            ui.set_width(ui.available_width().min(DECISION));
             decision::show(ui, &request, left_s, scene, queue);
         });
     }
 }
+
+/// Width of a decision where there is room for it, screen points.
+const DECISION: f32 = 300.0;
 
 fn floating(ui: &Ui, id: &str, map: Rect, side: Align2, show: impl FnOnce(&mut Ui)) {
     let at = side.pos_in_rect(&map.shrink(12.0));
