@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.strong(format!("Another program has changed {}", scene.document.file_name()));
         ui.label("Load what is in the file now (undo brings yours back), or keep yours: saving then replaces the file.");
         ui.add_space(8.0);
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             if ui.add(primary_button("Load theirs", theme::of(ui))).clicked() {
                 queue.document(DocumentCommand::LoadTheirs);
             }

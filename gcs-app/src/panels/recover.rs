@@ -6,13 +6,15 @@ use crate::recovery::{LeftBehind, LeftDocument};
 use crate::{theme, units};
 use egui::{Key, Label, Response, RichText, ScrollArea, Ui};
 
+/// Where there is room for it, screen points.
+const WIDTH: f32 = 380.0;
 /// Of the list of plans, screen points.
 const LIST_HEIGHT: f32 = 120.0;
 
 /// Draws it. It hides nothing that a flight is led with: a window may have crashed in the middle of one.
 /// `may_close`: Escape is for it. `is_calm`: no vehicle flies, and Return may be for it.
 pub fn show(ui: &mut Ui, found: &LeftBehind, (may_close, is_calm): (bool, bool), queue: &mut Queue) {
-    ui.set_width(380.0);
+    ui.set_width(ui.available_width().min(WIDTH));
     let weak = theme::of(ui).weak;
     ui.strong("The last window ended without saving");
     ui.label("It had changes of");
@@ -24,7 +26,7 @@ pub fn show(ui: &mut Ui, found: &LeftBehind, (may_close, is_calm): (bool, bool),
     });
     ui.label(RichText::new("You may go on meanwhile: they are kept until you decide.").color(weak));
     ui.add_space(8.0);
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let recover = ui.add(primary_button("Recover the changes", theme::of(ui)));
         offer_return(ui, &recover, is_calm);
         if recover.clicked() {

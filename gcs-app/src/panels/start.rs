@@ -44,6 +44,10 @@ const AROUND: f32 = 90.0;
 /// Draws the card, in so much height.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, height: f32, queue: &mut Queue) {
     let mut guide = scene.view.guide.clone();
+    if ui.available_width() < WIDTH {
+        // a small window: all questions are in sight
+        ui.spacing_mut().item_spacing.y = 2.0;
+    }
     let closed = title(ui);
     let most = (height - AROUND).max(60.0);
     let questions = ScrollArea::vertical().id_salt("questions").max_height(most).min_scrolled_height(most);

@@ -30,7 +30,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             });
         }
         ui.add_space(8.0);
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             if documents.is_empty() {
                 if ui.button("Close all the same").clicked() {
                     queue.document(DocumentCommand::Discard(with.clone()));

@@ -8,7 +8,7 @@ use flight_plan::FlightPlan;
 use gcs_app::link::Call;
 use std::path::Path;
 
-fn window_in(folder: &Path, text: &str) -> Window {
+pub fn window_in(folder: &Path, text: &str) -> Window {
     let mut window = Window::open(text);
     window.harness.state_mut().keep_copies(folder);
     window.steps(3);
@@ -16,7 +16,7 @@ fn window_in(folder: &Path, text: &str) -> Window {
 }
 
 /// Deletes a leg; the window is gone without being closed.
-fn edit_and_kill(folder: &Path) -> FlightPlan {
+pub fn edit_and_kill(folder: &Path) -> FlightPlan {
     let mut window = window_in(folder, SQUARE);
     window.click("TF side2");
     window.press(egui::Key::Delete);
