@@ -7,7 +7,14 @@ use crate::state::log::merged;
 use crate::state::{Level, Line, Outcome, Request};
 use crate::theme;
 use crate::units;
-use egui::{RichText, ScrollArea, Ui};
+use egui::{RichText, ScrollArea, Ui, vec2};
+
+/// In a panel that is narrower, events stand below the commands, screen points.
+const NARROW: f32 = 480.0;
+/// There so many commands are in sight: the last ones.
+const COMMANDS: usize = 2;
+/// Of a row.
+const ROW: f32 = 20.0;
 
 /// The panel: commands on the left, events on the right.
 #[derive(Debug)]
@@ -24,6 +31,12 @@ impl Panel for EventLog {
         Place::Below
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
+        if ui.available_width() < NARROW {
+            let rows = scene.vehicle.requests.newest_first().count().clamp(1, COMMANDS) + 1;
+            let height = (ROW + ui.spacing().item_spacing.y) * rows as f32;
+            ui.allocate_ui(vec2(ui.available_width(), height), |ui| commands(ui, scene));
+            return events(ui, scene);
+        }
         ui.columns(2, |columns| {
             if let [left, right] = columns {
                 commands(left, scene);
@@ -38,7 +51,7 @@ fn commands(ui: &mut Ui, scene: &Scene<'_>) {
     let requests: Vec<&Request> = scene.vehicle.requests.newest_first().collect();
     ScrollArea::vertical().id_salt("commands").auto_shrink(false).show_rows(
         ui,
-        20.0,
+        ROW,
         requests.len(),
         |ui, rows| {
             for request in requests.get(rows).unwrap_or_default() {
@@ -72,7 +85,7 @@ fn events(ui: &mut Ui, scene: &Scene<'_>) {
     let lines = merged(&scene.vehicle.log, scene.toasts.log());
     ScrollArea::vertical().id_salt("events").auto_shrink(false).show_rows(
         ui,
-        20.0,
+        ROW,
         lines.len(),
         |ui, rows| {
             for line in lines.get(rows).unwrap_or_default() {

@@ -185,11 +185,15 @@ fn first_mark(low: f64, step: f64) -> f64 {
     (low / step).ceil() * step + 0.0
 }
 
+/// Marks of the altitude that are nearer to each other can't be read, screen points.
+const LEAST_MARK: f32 = 16.0;
+
 fn draw_axes(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     let font = FontId::proportional(10.5);
     let unit = scene.units().altitude();
     let (low, high) = (unit.from_si(axes.low_m), unit.from_si(axes.high_m));
-    let step = round_step(high - low, 5.0, &[50., 100., 200., 250., 500., 1000., 2000., 5000., 10_000.]);
+    let marks = f64::from(axes.plot.height() / LEAST_MARK).clamp(1.0, 5.0);
+    let step = round_step(high - low, marks, &[50., 100., 200., 250., 500., 1000., 2000., 5000., 10_000.]);
     let mut value = first_mark(low, step);
     while value < high {
         let y = axes.y(unit.to_si(value));
@@ -373,12 +377,19 @@ fn draw_cursor(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     let above = point
         .ground_amsl_m
         .map_or_else(String::new, |g| format!(" · {} AGL", altitude.show(point.altitude_amsl_m - g)));
-    let text = format!(
-        "{leg} · {} · {}{above}",
-        units::duration(point.time_s),
-        altitude.show(point.altitude_amsl_m)
-    );
-    let galley = painter.layout_no_wrap(text, FontId::proportional(11.5), p.text);
+    let numbers =
+        format!("{} · {}{above}", units::duration(point.time_s), altitude.show(point.altitude_amsl_m));
+    let room = axes.plot.width() - 12.0;
+    let lines = |text: String| {
+        let mut job = LayoutJob::simple(text, FontId::proportional(11.5), p.text, room);
+        job.wrap.max_rows = 2;
+        painter.layout_job(job)
+    };
+    // a name that is too long to stand before the numbers stands above them
+    let galley = match lines(format!("{leg} · {numbers}")) {
+        one if one.rows.len() == 1 => one,
+        _ => lines(format!("{leg}\n{numbers}")),
+    };
     let x = (at.x + 8.0).min(axes.plot.right() - galley.size().x - 6.0);
     let plate = Rect::from_min_size(pos2(x, axes.plot.top() + 4.0), galley.size()).expand2(vec2(5.0, 3.0));
     painter.rect(plate, 4.0, p.card, Stroke::new(1.0, p.line), egui::StrokeKind::Outside);

@@ -21,7 +21,8 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
     speed(ui, scene, queue);
     let hover = "What if: other winds, values and branches, and alarms at the cursor";
-    let text = if ui.max_rect().width() < NARROW { "If…" } else { "What if" };
+    let is_narrow = ui.max_rect().width() < NARROW;
+    let text = if is_narrow { "If…" } else { "What if" };
     let opens = ui.button(text);
     opens.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "What if"));
     if opens.on_hover_text(hover).clicked() {
@@ -44,7 +45,8 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     );
     if let (Some(why), false) = (scene.out_of_date(), forecast.points.is_empty()) {
         // what follows is not of the plan that is shown
-        ui.label(RichText::new("◌ Out of date").color(p.caution)).on_hover_text(why);
+        let text = if is_narrow { "◌" } else { "◌ Out of date" };
+        ui.label(RichText::new(text).color(p.caution)).on_hover_text(why);
     }
     let why_none = scene.analysis.no_forecast.as_ref();
     // beside the reason why there is none, noughts say nothing

@@ -89,7 +89,8 @@ pub fn aircraft(painter: &Painter, axes: &Axes, time_s: f64, scene: &Scene<'_>, 
 /// That the preview is not what is flown, until the way that is was told.
 pub fn warn(ui: &Ui, painter: &Painter, axes: &Axes) {
     let text = "The aircraft flies another way: it was asked which";
-    let at = axes.plot.left_top() + vec2(6.0, 4.0);
+    // the cursor's words stand above
+    let at = axes.plot.left_bottom() + vec2(6.0, -20.0);
     let galley = painter.layout_no_wrap(text.into(), egui::FontId::proportional(11.5), theme::of(ui).caution);
     let plate = egui::Rect::from_min_size(at, galley.size()).expand(3.0);
     painter.rect_filled(plate, 3.0, theme::of(ui).card);

@@ -188,13 +188,12 @@ impl Levels {
         let Some((drag, pointer)) = self.drag.as_ref().zip(pointer) else { return };
         let words = inherited::altitude_text(scene, &drag.altitude(scene, pointer));
         let text = format!("{} {words}", scene.document.plan().label(&drag.leg));
-        painter.text(
-            pointer + vec2(12.0, -10.0),
-            Align2::LEFT_BOTTOM,
-            text,
-            FontId::proportional(12.0),
-            p.text,
-        );
+        // to the side where there is more room for it
+        let (beside, align) = match pointer.x > painter.clip_rect().center().x {
+            true => (-12.0, Align2::RIGHT_BOTTOM),
+            false => (12.0, Align2::LEFT_BOTTOM),
+        };
+        painter.text(pointer + vec2(beside, -10.0), align, text, FontId::proportional(12.0), p.text);
     }
 }
 
