@@ -1,12 +1,19 @@
 //! A flight in a small window, or one that shows everything larger: what nobody flies without is in sight.
 
+use super::considering::{considered, foresight};
 use super::emergency::in_emergency;
+use super::filing::edit;
+use super::fleet::tab;
 use super::flying::flying;
-use super::vehicle::position;
+use super::recovering::{edit_and_kill, window_in};
+use super::states::{THEMES, examine, placed, widgets};
+use super::vehicle::{decision, position};
+use super::whatif::FIRE_WATCH;
 use super::{SQUARE, Window};
-use egui::vec2;
+use egui::{Key, Rect, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
-use gcs_app::link::Telemetry;
+use flight_exec::Foresight;
+use gcs_app::link::{Reply, Telemetry};
 use usal::contract::{Alarm, Power, Severity, Stamped};
 
 #[test]
@@ -33,6 +40,130 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
         window.click("What if");
         assert!(window.shows("Coverage of the whole path"), "{size}: it was asked for");
     }
+}
+
+/// The smallest window.
+const SMALL: Vec2 = vec2(960.0, 600.0);
+
+fn opened(text: &str) -> Window {
+    let mut window = Window::open_with(text, SMALL, None);
+    window.until_analysed();
+    window
+}
+
+fn rect(window: &Window, label: &str) -> Rect {
+    window.harness.get_by_label(label).rect()
+}
+
+/// Where the tool in use says this.
+fn said(window: &Window, words: &str) -> Rect {
+    window.harness.get_by_label_contains(words).rect()
+}
+
+#[test]
+fn a_decision_hides_nothing_of_the_map() {
+    let (mut window, mut value) = flying();
+    value.decision = Some(decision(Some("again")));
+    window.receive_status(value);
+    for size in [SMALL, vec2(1280.0, 800.0)] {
+        window.harness.set_size(size);
+        window.steps(3);
+        let (map, first) = (rect(&window, "Map"), said(&window, "Decide at ask"));
+        assert!(first.top() > map.bottom() - 20.0, "{size}: {first} over {map}");
+        assert!(said(&window, "Nobody decides").bottom() < rect(&window, "⏸ Hold").top(), "{size}");
+    }
+}
+
+#[test]
+fn on_a_small_map_a_tool_says_one_line_that_gives_way_to_what_is_drawn() {
+    let mut window = opened(SQUARE);
+    window.press(Key::A);
+    let map = rect(&window, "Map");
+    let line = said(&window, "Scan ");
+    assert!(line.height() < 20.0 && line.bottom() > map.bottom() - 60.0, "{line}, the map {map}");
+    for beside in ["Measure (M)", "Zoom in"] {
+        assert!(!line.intersects(rect(&window, beside)), "{beside}");
+    }
+    // nothing is drawn yet: it stays where its choices can be reached
+    window.harness.hover_at(line.center() - vec2(0.0, 30.0));
+    window.steps(2);
+    assert_eq!(said(&window, "Scan "), line);
+    window.click_at(map.center());
+    window.harness.hover_at(line.center() - vec2(0.0, 30.0));
+    window.steps(2);
+    let away = said(&window, "Scan ");
+    assert!(away.bottom() < map.top() + 50.0 && away.height() < 20.0, "{away}");
+    window.harness.hover_at(map.center());
+    window.steps(2);
+    assert_eq!(said(&window, "Scan ").y_range(), line.y_range(), "it comes back");
+}
+
+#[test]
+fn the_choices_of_a_tool_are_behind_a_button_of_its_line() {
+    let mut window = opened(SQUARE);
+    window.press(Key::Z);
+    assert!(!window.shows("keep in"));
+    window.click("Choices of the tool");
+    window.click("keep in");
+    assert!(window.shows("Place to draw") && window.shows("Keep-in"), "it is still open");
+    window.click_at(rect(&window, "Map").center());
+    assert!(!window.shows("keep in"));
+}
+
+/// Nothing of it is cut, in the dark and in the light.
+fn assert_whole(window: &mut Window, question: &str) {
+    window.harness.set_size(SMALL);
+    let mut found = Vec::new();
+    for theme in THEMES {
+        examine(question, SMALL, theme, window, &mut found);
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn every_question_is_whole_in_the_smallest_window() {
+    let folder = tempfile::tempdir().unwrap();
+    edit_and_kill(folder.path());
+    let mut window = window_in(folder.path(), SQUARE);
+    assert_whole(&mut window, "Recover the changes");
+    window.click("Later");
+    let (mut window, ticket) = considered();
+    let next = Some("the-way-along-the-northern-ridge-to-the-old-power-line".into());
+    let foresight = Foresight { next_leg: next, ..foresight() };
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight))));
+    assert_whole(&mut window, "Skip side2, fly …");
+    window.click("Cancel");
+    edit(&mut window);
+    window.press_ctrl(Key::Q);
+    assert_whole(&mut window, "Save and quit");
+    window.click("Discard the changes");
+    assert!(window.app().is_leaving());
+}
+
+#[test]
+fn what_if_leaves_the_inspector_its_room() {
+    let mut window = opened(SQUARE);
+    window.click("What if");
+    let below = rect(&window, "Hide What if").top();
+    for text in ["Add alternate by cause", "Select something in the tree"] {
+        let shown = said(&window, text);
+        assert!(shown.bottom() < below, "{text} at {shown}");
+    }
+    let alarms = said(&window, "Coverage of the whole path");
+    assert!(alarms.bottom() < SMALL.y, "{alarms}");
+}
+
+#[test]
+fn problems_and_table_show_more_than_two_rows() {
+    let mut window = opened(FIRE_WATCH);
+    tab(&mut window, "Table");
+    let all = widgets(&window);
+    let is_whole = |name: &str| {
+        placed(&all).into_iter().filter(|w| w.name.starts_with(name) && w.seen == w.rect).count()
+    };
+    assert!(is_whole("Name of ") >= 3, "and the headings of stages between them: {}", is_whole("Name of "));
+    let problems = SMALL.y - rect(&window, "Hide Problems").top();
+    assert!(problems > 170.0, "{problems}");
 }
 
 /// The tool in use.
