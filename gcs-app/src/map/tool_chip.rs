@@ -62,6 +62,7 @@ fn line(ui: &mut Ui, tools: &mut Toolbox, status: &str, columns: &[Rect], scene:
     theme::card(&chip).inner_margin(Margin::symmetric(8, 4)).show(&mut chip, |ui| {
         ui.set_width(ui.available_width());
         ui.horizontal(|ui| {
+            ui.spacing_mut().button_padding.x = 3.0;
             if tools.has_options() && tools.takes_places() {
                 choices(ui, tools, scene);
             }

@@ -49,16 +49,12 @@ impl Panel for EventLog {
 fn commands(ui: &mut Ui, scene: &Scene<'_>) {
     super::group_title(ui, "Commands");
     let requests: Vec<&Request> = scene.vehicle.requests.newest_first().collect();
-    ScrollArea::vertical().id_salt("commands").auto_shrink(false).show_rows(
-        ui,
-        ROW,
-        requests.len(),
-        |ui, rows| {
-            for request in requests.get(rows).unwrap_or_default() {
-                command(ui, request, scene);
-            }
-        },
-    );
+    let list = ScrollArea::vertical().id_salt("commands").auto_shrink(false).min_scrolled_height(0.0);
+    list.show_rows(ui, ROW, requests.len(), |ui, rows| {
+        for request in requests.get(rows).unwrap_or_default() {
+            command(ui, request, scene);
+        }
+    });
 }
 
 fn command(ui: &mut Ui, request: &Request, scene: &Scene<'_>) {

@@ -166,6 +166,30 @@ fn problems_and_table_show_more_than_two_rows() {
     assert!(problems > 170.0, "{problems}");
 }
 
+#[test]
+fn the_cursors_words_stay_on_the_plot_of_the_profile() {
+    let long = FIRE_WATCH.replace("Sweep the fire", "Sweep the fire from the northern side of the valley");
+    let mut window = opened(&long);
+    let profile = said(&window, "Vertical profile");
+    window.click_at(profile.center());
+    let words = window.places_of(|text| text.contains(" AGL"));
+    let marks = window.places_of(|text| ["500", "1000"].contains(&text));
+    assert!(!words.is_empty() && !marks.is_empty());
+    for (words, mark) in words.iter().flat_map(|words| marks.iter().map(move |mark| (words, mark))) {
+        assert!(profile.contains_rect(*words) && words.left() > mark.right(), "{words} and {mark}");
+    }
+}
+
+#[test]
+fn a_narrow_log_has_its_events_below_the_commands() {
+    let (mut window, _) = flying();
+    window.harness.set_size(SMALL);
+    tab(&mut window, "Log");
+    let titles = ["COMMANDS", "EVENTS"].map(|title| said(&window, title));
+    assert_eq!(titles[0].left(), titles[1].left());
+    assert!(titles[0].bottom() < titles[1].top() && titles[1].bottom() < SMALL.y - 100.0, "{titles:?}");
+}
+
 /// The tool in use.
 fn tool(window: &Window) -> &'static str {
     window.app().map().tool_cards().into_iter().find(|(_, in_use)| *in_use).unwrap().0.id
