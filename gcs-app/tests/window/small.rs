@@ -180,16 +180,6 @@ fn the_cursors_words_stay_on_the_plot_of_the_profile() {
     }
 }
 
-#[test]
-fn a_narrow_log_has_its_events_below_the_commands() {
-    let (mut window, _) = flying();
-    window.harness.set_size(SMALL);
-    tab(&mut window, "Log");
-    let titles = ["COMMANDS", "EVENTS"].map(|title| said(&window, title));
-    assert_eq!(titles[0].left(), titles[1].left());
-    assert!(titles[0].bottom() < titles[1].top() && titles[1].bottom() < SMALL.y - 100.0, "{titles:?}");
-}
-
 /// The tool in use.
 fn tool(window: &Window) -> &'static str {
     window.app().map().tool_cards().into_iter().find(|(_, in_use)| *in_use).unwrap().0.id
