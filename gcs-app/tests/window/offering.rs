@@ -185,7 +185,7 @@ fn messages_and_work() {
 #[test]
 fn what_the_vehicle_answered_is_put_aside() {
     let mut window = flying_its_plan();
-    choose(&mut window, "Flight Hold here");
+    choose(&mut window, "Flight Hold now: the aircraft circles where it is");
     let is_hold = |(_, call): &(_, Call)| *call == Call::Plan(Command::Hold);
     let (ticket, _) = std::iter::from_fn(|| window.asked()).find(is_hold).unwrap();
     window.answer(ticket, Err("not now".into()));

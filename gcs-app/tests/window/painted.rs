@@ -38,6 +38,15 @@ fn ends(shape: &Shape, colour: Color32) -> Vec<Pos2> {
     }
 }
 
+/// How many corners of triangles have this colour.
+fn corners(shape: &Shape, colour: Color32) -> usize {
+    match shape {
+        Shape::Vec(several) => several.iter().map(|shape| corners(shape, colour)).sum(),
+        Shape::Mesh(mesh) => mesh.vertices.iter().filter(|vertex| vertex.color == colour).count(),
+        _ => 0,
+    }
+}
+
 /// The rectangles of a shape.
 fn plates(shape: &Shape) -> Vec<Rect> {
     match shape {
@@ -140,6 +149,14 @@ impl Window {
     pub fn lines_within(&self, name: &str, colour: Color32) -> usize {
         let rect = self.harness.query_all_by_label_contains(name).next().unwrap().rect();
         self.lines_in(rect, colour)
+    }
+
+    /// So many corners of triangles of this colour are painted where this is.
+    pub fn triangles_within(&self, name: &str, colour: Color32) -> usize {
+        let rect = self.harness.query_all_by_label_contains(name).next().unwrap().rect();
+        let shapes = self.harness.output().shapes.iter();
+        let inside = shapes.filter(|clipped| rect.expand(1.0).contains_rect(clipped.clip_rect));
+        inside.map(|clipped| corners(&clipped.shape, colour)).sum()
     }
 
     /// Lines of this colour begin, bend or end within a few points of a place of the screen so often.

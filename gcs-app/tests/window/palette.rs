@@ -192,7 +192,7 @@ fn every_key_stands_beside_its_action() {
         };
         let rows = window.harness.query_all_by_role(egui::accesskit::Role::Button);
         // what led here is here already
-        let Some(row) = rows.filter(is_row).last() else {
+        let Some(row) = rows.filter(is_row).next_back() else {
             assert_eq!(name, "All commands…");
             window.press(Key::Escape);
             continue;

@@ -91,11 +91,11 @@ fn on_a_small_map_a_tool_says_one_line_that_gives_way_to_what_is_drawn() {
     window.click_at(map.center());
     window.harness.hover_at(line.center() - vec2(0.0, 30.0));
     window.steps(2);
-    let away = said(&window, "Scan ");
+    let away = said(&window, "Scan: ");
     assert!(away.bottom() < map.top() + 50.0 && away.height() < 20.0, "{away}");
     window.harness.hover_at(map.center());
     window.steps(2);
-    assert_eq!(said(&window, "Scan ").y_range(), line.y_range(), "it comes back");
+    assert_eq!(said(&window, "Scan: ").y_range(), line.y_range(), "it comes back");
 }
 
 #[test]

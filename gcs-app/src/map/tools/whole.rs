@@ -4,7 +4,7 @@ use super::{Canvas, Grip};
 use crate::chart::zones as chart;
 use crate::command::Selection;
 use crate::map::guard;
-use egui::Pos2;
+use egui::{Pos2, Rect};
 use flight_plan::{Id, Zone, ZoneKind};
 use geometry::Vec2;
 use geometry::polygon::is_in_ring;
@@ -24,14 +24,14 @@ pub fn or_zone(things: Vec<Selection>, at: Pos2, canvas: &Canvas<'_>) -> Vec<Sel
     hatched.next().map(|zone| Selection::Zone(zone.id.clone())).into_iter().collect()
 }
 
-/// The selected zone, if a place of the screen is inside of it and all of it is in view.
+/// The selected zone, if a place of the screen is inside of it and it is smaller than the map.
 pub fn selected(at: Pos2, canvas: &Canvas<'_>) -> Option<Id> {
     let view = canvas.scene.view;
     let Some(Selection::Zone(id)) = view.selection.as_ref().filter(|_| view.also.is_empty()) else {
         return None;
     };
     let zone = canvas.scene.document.plan().zone(id)?;
-    let is_meant = zone.kind == ZoneKind::KeepOut && is_in_view(zone, canvas) && has_inside(zone, at, canvas);
+    let is_meant = zone.kind == ZoneKind::KeepOut && is_small(zone, canvas) && has_inside(zone, at, canvas);
     is_meant.then(|| id.clone())
 }
 
@@ -51,9 +51,11 @@ fn has_inside(zone: &Zone, at: Pos2, canvas: &Canvas<'_>) -> bool {
     is_in_ring(&ring, on_screen(at))
 }
 
-/// All of its outline is seen: who drags inside of one that fills the map means the map.
-fn is_in_view(zone: &Zone, canvas: &Canvas<'_>) -> bool {
-    on_map(zone, canvas).all(|corner| canvas.view.rect.contains(corner))
+/// It is smaller than the map: who drags inside of one that fills the map means the map.
+fn is_small(zone: &Zone, canvas: &Canvas<'_>) -> bool {
+    let corners: Vec<Pos2> = on_map(zone, canvas).collect();
+    let (zone, map) = (Rect::from_points(&corners), canvas.view.rect);
+    zone.width() < map.width() && zone.height() < map.height()
 }
 
 fn on_map<'a>(zone: &Zone, canvas: &'a Canvas<'_>) -> impl Iterator<Item = Pos2> + 'a {

@@ -181,11 +181,20 @@ fn number(range: Range, now: Option<&str>) -> String {
     candidates.into_iter().find(fits).unwrap_or(range.least).to_string()
 }
 
-/// All rows of the language: their elements and labels.
+/// The specimen has one procedure and one runway: there is no other to choose.
+const OF_ONE: [[&str; 2]; 2] = [["call", "Procedure"], ["emergencyPlan", "Lands on"]];
+
+/// A part that is always there, and of one kind: only what it holds is written.
+fn is_fixed(row: &Row) -> bool {
+    matches!(row, Row::Children(children) if children.of.len() == 1 && (children.least, children.most) == (1, 1))
+}
+
+/// All rows of the language that can be written: their elements and labels.
 fn described() -> BTreeSet<[String; 2]> {
     let with_children = describe::all().flat_map(|part| [part].into_iter().chain(part.children()));
     with_children
         .flat_map(|of| of.deep_rows().into_iter().map(move |row| (of, row)))
+        .filter(|(_, row)| !is_fixed(row))
         .map(|(of, row)| {
             let label = match row {
                 Row::Property(property) => property.label,
@@ -194,6 +203,7 @@ fn described() -> BTreeSet<[String; 2]> {
             };
             [of.element.to_owned(), label.to_owned()]
         })
+        .filter(|[element, label]: &[String; 2]| !OF_ONE.contains(&[element.as_str(), label.as_str()]))
         .collect()
 }
 
