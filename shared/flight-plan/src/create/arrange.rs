@@ -1,8 +1,10 @@
 //! Legs that are there, arranged anew: copied, moved, put into a loop, a fork or a procedure.
 
 use super::branch::merge;
+use super::gather::{Gathered, gather};
 use super::kind::LegChoice;
 use super::leg::{Drawn, leg};
+use super::rearrange::replaced;
 use super::thing::remove;
 use crate::{Branch, Call, Edit, FlightPlan, Id, Leg, LegKind, Place, Procedure, Spot, Thing, Value};
 use aircraft::Profile;
@@ -46,12 +48,16 @@ pub fn shift(plan: &FlightPlan, id: &Id, by: isize) -> Option<Edit> {
     Some(Edit::MoveLeg { leg: id.clone(), at })
 }
 
-/// A loop around legs of one list.
+/// A loop around legs of one list; `None` also where a way leads into their middle or out of it.
 pub fn loop_around(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     let legs = in_order(plan, legs)?;
     let around = leg(plan, &Profile::default(), LegChoice::Iterative, &Drawn::Nothing, None, None)?;
     let id = around.id.clone();
+    let Gathered { legs: body, next, led } = gather(plan, &legs, &id)?;
+    let around = Leg { next, ..around };
     let mut edits = vec![Edit::InsertLeg { leg: Box::new(around), at: Spot::Before(legs.first()?.clone()) }];
+    edits.extend(led);
+    edits.extend(body.last().map(|last| replaced(last.as_ref().clone())));
     edits.extend(legs.into_iter().map(|leg| Edit::MoveLeg { leg, at: Spot::EndOf(id.clone()) }));
     Some((id, Edit::All(edits)))
 }
@@ -92,11 +98,12 @@ pub fn fork_around(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     Some((id, Edit::All(std::iter::once(fork).chain(merge).collect())))
 }
 
-/// A procedure of legs of one list, which is called in their place: the call, and the edit.
+/// A procedure of legs of one list, which is called in their place: the call, and the edit. `None` also where a way leads into
+/// their middle or out of it.
 pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     let legs = in_order(plan, legs)?;
-    let (list, _) = list_of(plan, legs.first()?)?;
-    let moved: Vec<Arc<Leg>> = list.iter().filter(|leg| legs.contains(&leg.id)).cloned().collect();
+    let id = plan.fresh_id("call");
+    let Gathered { legs: moved, next, led } = gather(plan, &legs, &id)?;
     let first = moved.first()?.clone();
     let procedure = Procedure {
         id: plan.fresh_id("procedure"),
@@ -109,15 +116,15 @@ pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     let call =
         Call { procedure: procedure.id.clone(), arguments: Vec::new(), anchor: None, bearing_deg: None };
     let caller = Leg {
-        id: plan.fresh_id("call"),
+        id: id.clone(),
         name: String::new(),
-        next: None,
+        next,
         actions: Vec::new(),
         kind: LegKind::Call(call),
         ..first.as_ref().clone()
     };
-    let id = caller.id.clone();
     let mut edits = vec![Edit::InsertLeg { leg: Box::new(caller), at: Spot::Before(first.id.clone()) }];
+    edits.extend(led);
     edits.extend(legs.into_iter().map(|leg| Edit::DeleteLeg { leg }));
     edits.push(Edit::Add(Box::new(Thing::Procedure(procedure))));
     Some((id, Edit::All(edits)))

@@ -85,12 +85,12 @@ pub(super) fn lead_to(plan: &FlightPlan, leg: &Id, first: &Id, is_moved: &dyn Fn
     leading.map(|other| replaced(led_to(other, leg, first))).collect()
 }
 
-fn replaced(with: Leg) -> Edit {
+pub(super) fn replaced(with: Leg) -> Edit {
     Edit::ReplaceLeg { leg: with.id.clone(), with: Box::new(with) }
 }
 
 /// A leg whose ways lead to another one than they did.
-fn led_to(leg: &Leg, from: &Id, to: &Id) -> Leg {
+pub(super) fn led_to(leg: &Leg, from: &Id, to: &Id) -> Leg {
     let mut led = leg.clone();
     let lead = |next: &mut Option<Id>| {
         if next.as_ref() == Some(from) {
@@ -288,7 +288,7 @@ fn leave(plan: &FlightPlan, moved: &[&Arc<Leg>], to: &[Arc<Leg>]) -> Result<Vec<
 }
 
 /// The legs that a leg names as what follows it.
-fn leads_to(leg: &Leg) -> Vec<&Id> {
+pub(super) fn leads_to(leg: &Leg) -> Vec<&Id> {
     let ways = leg.as_fork().map_or(&[][..], |fork| fork.branches);
     ways.iter().filter_map(|way| way.next.as_ref()).chain(&leg.next).collect()
 }

@@ -365,6 +365,29 @@ fn legs_are_copied_moved_and_put_into_loops_forks_and_procedures() {
     assert!(matches!(anchored.kind, LegKind::Call(ref call) if call.anchor.is_some()));
 }
 
+/// What is made of a branch's leg stands in the branch, and leads on as that did.
+#[test]
+fn a_leg_of_a_branch_becomes_a_loop_or_a_procedure_in_its_branch() {
+    let survey = made(Template::Survey);
+    let (fork, edit) = fork_around(&survey, &["scan".into()]).unwrap();
+    let plan = edit.apply(&survey).unwrap();
+    let look = Drawn::Circle { centre: at(HOME.destination(180.0, 3000.0)), radius_m: 600.0 };
+    let orbit = leg(&plan, &Profile::default(), LegChoice::Orbit, &look, None, None).unwrap();
+    let plan =
+        begin_way(&plan, &fork, &Way::Branch("skip".into()), orbit.clone()).unwrap().apply(&plan).unwrap();
+    assert_eq!(errors(&plan), Vec::<String>::new());
+    let skip = |plan: &FlightPlan| plan.leg(&fork).unwrap().leg.as_fork().unwrap().branches[1].next.clone();
+    assert_eq!(skip(&plan), Some(orbit.id.clone()));
+    let legs = std::slice::from_ref(&orbit.id);
+    for (id, edit) in [procedure_of(&plan, legs).unwrap(), loop_around(&plan, legs).unwrap()] {
+        let made = edit.apply(&plan).unwrap();
+        assert_eq!(errors(&made), Vec::<String>::new(), "{id}");
+        assert_eq!(skip(&made), Some(id.clone()));
+        assert_eq!(made.leg(&id).unwrap().leg.next, plan.leg(&orbit.id).unwrap().leg.next, "{id}");
+    }
+    assert!(procedure_of(&plan, std::slice::from_ref(&fork)).is_none(), "its ways lead out of it");
+}
+
 #[test]
 fn a_leg_is_not_moved_into_itself() {
     let plan = made(Template::Patrol);
