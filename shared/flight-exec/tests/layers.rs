@@ -11,6 +11,7 @@ const LAYERS: &[&str] = &[
     "layout::path",
     "layout::world",
     "layout::homeward",
+    "layout::touch_down",
     "layout::expand",
     "layout::cursor",
     "layout::stretch",

@@ -53,7 +53,7 @@ fn glides(
         return samples.into_iter().find_map(|from| hill(view, alternate, from));
     };
     let share = short.len() as f64 / from.len() as f64;
-    Some(out_of_reach(view, alternate, *worst, (!named).then_some(share)))
+    Some(out_of_reach(view, alternate, *worst, (named, share)))
 }
 
 /// Seconds between points from which a glide is tried, and how many of them are left out before the next at whose hills one samples.
@@ -86,12 +86,12 @@ fn height_m(view: &View, alternate: &Alternate, way: &[LatLon], from: &Origin) -
     Some(altitude_amsl_m - path.last()?.altitude_amsl_m)
 }
 
-/// `share`: of the points where the plan answers as the fallback, how many are out of its reach.
+/// `share`: of the points where the plan answers, named for it or as the fallback, how many are out of its reach.
 fn out_of_reach(
     view: &View,
     alternate: &Alternate,
     (missing_m, from): (f64, &Origin),
-    share: Option<f64>,
+    (named, share): (bool, f64),
 ) -> Problem {
     let short_m = missing_m * view.profile.glide_ratio;
     let what = if missing_m.is_finite() {
@@ -103,15 +103,15 @@ fn out_of_reach(
         format!("does not get to the runway `{}` against the wind: fly nearer to it", alternate.runway.id)
     };
     let plan = &alternate.plan.id;
-    let Some(share) = share else {
+    let percent = (100.0 * share).ceil();
+    if named {
         let message = format!(
-            "engine failure: `{plan}` is out of glide. From {from}, a glide along it {what}, or name a nearer emergency plan for an engine failure"
+            "engine failure: `{plan}` is out of glide on {percent:.0} % of the flight where it answers. At worst, from {from}, a glide along all of it {what}, or name a nearer emergency plan for an engine failure"
         );
         return Problem::warning("glide-out-of-reach", message).of(&from.leg).with_place(from.position);
-    };
+    }
     let message = format!(
-        "engine failure: runway out of glide on {:.0} % of the flight. Be ready to land elsewhere: no emergency plan is named for the cause `engine`, and at worst, from {from}, a glide {what}, or name a nearer plan for this cause",
-        (100.0 * share).ceil()
+        "engine failure: runway out of glide on {percent:.0} % of the flight. Be ready to land elsewhere: no emergency plan is named for the cause `engine`, and at worst, from {from}, a glide {what}, or name a nearer plan for this cause"
     );
     Problem::warning("glide-out-of-reach", message).of(plan).with_place(from.position)
 }
