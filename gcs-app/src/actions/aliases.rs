@@ -107,7 +107,7 @@ mod tests {
         for (query, action) in [("rtl", "emergency"), ("return to la", "abort"), ("Upload", "push")] {
             assert!(score(query, action).is_some(), "{query}");
         }
-        for (query, action) in [("rl", "emergency"), ("upload", "save"), ("uplaod", "push")] {
+        for (query, action) in [("rl", "emergency"), ("upload", "save"), ("uload", "push")] {
             assert!(score(query, action).is_none(), "{query}");
         }
         assert!(means("geofence", "OUT") && !means("geo", "OUT") && !means("geofence", "TF"));
