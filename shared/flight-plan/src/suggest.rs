@@ -44,24 +44,27 @@ pub fn question(name: &str) -> String {
     format!("; did you mean `{name}`?")
 }
 
-/// Letters to insert, remove or change (Levenshtein 1966); `None` if that is surely too many.
+/// Letters to insert, remove, change, or swap with the next one (optimal string alignment: Damerau 1964, Levenshtein 1966); `None`
+/// if that is surely too many.
 fn slips(a: &str, b: &str) -> Option<usize> {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     if a.len().abs_diff(b.len()) > MAX_SLIPS || a.len().max(b.len()) > LONGEST {
         return None;
     }
-    let mut row: Vec<usize> = (0..=b.len()).collect();
+    let (mut two_above, mut above): (Vec<usize>, Vec<usize>) = (Vec::new(), (0..=b.len()).collect());
     for (i, x) in a.iter().enumerate() {
-        let mut diagonal = i;
-        let mut left = i + 1;
-        for (y, above) in b.iter().zip(row.iter_mut().skip(1)) {
-            let here = (diagonal + usize::from(x != y)).min(left + 1).min(*above + 1);
-            diagonal = std::mem::replace(above, here);
-            left = here;
+        let mut row = vec![i + 1];
+        for (j, y) in b.iter().enumerate() {
+            let before =
+                |letters: &[u8], at: usize| at.checked_sub(1).and_then(|at| letters.get(at).copied());
+            let is_swap = before(a, i) == Some(*y) && before(b, j) == Some(*x);
+            let swapped = j.checked_sub(1).filter(|_| is_swap).and_then(|j| two_above.get(j));
+            let other = (above.get(j)? + usize::from(x != y)).min(row.last()? + 1).min(above.get(j + 1)? + 1);
+            row.push(swapped.map_or(other, |slips| other.min(slips + 1)));
         }
-        row.first_mut().into_iter().for_each(|first| *first = i + 1);
+        two_above = std::mem::replace(&mut above, row);
     }
-    row.last().copied()
+    above.last().copied()
 }
 
 #[cfg(test)]
@@ -74,6 +77,7 @@ mod tests {
         let cases = [
             ("COVA", Some("COVE")),
             ("CAVA", None),
+            ("CVOE", Some("COVE")),
             ("COVES", Some("COVE")),
             ("norht-strip", Some("north-strip")),
             ("RIDGE3", None),
@@ -96,7 +100,7 @@ mod tests {
 
     #[test]
     fn slips_are_counted_as_everybody_counts_them() {
-        for (a, b, n) in [("kitten", "sitting", 3), ("", "ab", 2), ("ab", "ab", 0), ("ab", "ba", 2)] {
+        for (a, b, n) in [("kitten", "sitting", 3), ("", "ab", 2), ("ab", "ab", 0), ("ab", "ba", 1), ("ca", "abc", 3)] {
             assert_eq!(slips(a, b), Some(n), "{a} {b}");
         }
         assert_eq!(slips("a", "abcd"), None);
