@@ -100,7 +100,9 @@ mod tests {
 
     #[test]
     fn slips_are_counted_as_everybody_counts_them() {
-        for (a, b, n) in [("kitten", "sitting", 3), ("", "ab", 2), ("ab", "ab", 0), ("ab", "ba", 1), ("ca", "abc", 3)] {
+        for (a, b, n) in
+            [("kitten", "sitting", 3), ("", "ab", 2), ("ab", "ab", 0), ("ab", "ba", 1), ("ca", "abc", 3)]
+        {
             assert_eq!(slips(a, b), Some(n), "{a} {b}");
         }
         assert_eq!(slips("a", "abcd"), None);

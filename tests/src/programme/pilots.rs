@@ -89,6 +89,10 @@ async fn geofence_breached(rig: &mut Rig) -> anyhow::Result<()> {
 }
 
 async fn list_replaced(rig: &mut Rig, upload: &str) -> anyhow::Result<()> {
+    // where a leg begins, the gateway writes its own list over what another station puts aboard in that moment
+    on_leg(rig, "far").await?;
+    let from_s = rig.seen.time_s;
+    rig.until("the gateway's own list", 60.0, |_, seen| seen.time_s > from_s + 5.0).await?;
     let around = rig.field.at(600.0, 1000.0);
     taken(rig, &format!("{upload} {:.7},{:.7}", around.lat_deg, around.lon_deg)).await?;
     resumed(rig).await
