@@ -253,10 +253,7 @@ impl World {
             13 => self.alive = !self.alive,
             14 => self
                 .join(["plan", "plan", "other", "plan"][pick], [self.token, self.token, self.token, 0][pick]),
-            15 => {
-                self.autopilot.mode = [Mode::Other(5), Mode::Hold, Mode::Waypoints, Mode::Return][pick];
-                self.is_had_back = false;
-            }
+            15 => self.take_by_hand([Mode::Other(5), Mode::Hold, Mode::Waypoints, Mode::Return][pick]),
             16 => self.autopilot.silent = !self.autopilot.silent,
             17 => self.autopilot.fate = [Fate::Done(1), Fate::Done(30), Fate::Failed, Fate::PutOff][pick],
             18 => self.autopilot.engine_runs = !self.autopilot.engine_runs,
@@ -270,6 +267,14 @@ impl World {
             24 => (self.autopilot.on_ground, self.autopilot.armed) = (true, false),
             25 => self.autopilot.fate = Fate::Unanswered([0, 1, 10, 60][pick]),
             _ => self.say(how),
+        }
+    }
+
+    /// The pilot changes the mode. Nobody sees that he chose the same again, or came back to it in silence.
+    fn take_by_hand(&mut self, mode: Mode) {
+        let is_unseen = self.autopilot.silent && mode == self.autopilot.shown;
+        if mode != self.autopilot.mode && !is_unseen {
+            (self.autopilot.mode, self.is_had_back) = (mode, false);
         }
     }
 

@@ -57,6 +57,10 @@ impl Fault {
         let is_ordered = state == S::SafeReturn;
         match self {
             Simulated("gps-loss+30", _) => &["gps-lost"],
+            // it descends with hardly any power there, and sinks too fast before it is suspected
+            Simulated("engine-out", _) if state == S::SafeApproach => {
+                &["engine-out", "engine-suspected", "off-altitude"]
+            }
             Simulated("engine-out", _) if !is_near_ground && !is_pilots => {
                 &["engine-out", "engine-suspected"]
             }
