@@ -304,10 +304,6 @@ impl Transfer {
     /// Time passed.
     pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Outcome> {
         if self.is_stuck(now) {
-            // it may complain of whatever comes, and ask for nothing
-            if self.silent > PATIENCE {
-                return Some(Outcome::Failed(self.why_given_up()));
-            }
             self.go_back(now, out);
             return None;
         }
@@ -359,13 +355,7 @@ impl Transfer {
     fn why_given_up(&self) -> String {
         let trip = self.rto.trip();
         if trip < FARTHEST {
-            let took_some = self.restarts > RESTARTS || self.complains;
-            let why = if took_some {
-                "the link loses too much of the list"
-            } else {
-                "the autopilot does not answer"
-            };
-            return why.into();
+            return "the autopilot does not answer".into();
         }
         format!(
             "the link takes {:.0} s there and back, and an autopilot gives up before that: use a faster one for the list",
