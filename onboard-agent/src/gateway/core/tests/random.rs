@@ -61,6 +61,8 @@ struct World {
     happened: u64,
     /// The operator wanted it to be flown again since the pilot took it.
     is_had_back: bool,
+    /// The pilot took it, and that was not heard yet.
+    is_taken: bool,
     wrong_since: [Option<Time>; 3],
     heard_since: Time,
 }
@@ -81,6 +83,7 @@ impl World {
             orders: 0,
             happened: 0,
             is_had_back: false,
+            is_taken: false,
             wrong_since: [None; 3],
             heard_since: Time::ZERO,
         };
@@ -223,7 +226,9 @@ impl World {
             let (count, plan, from) = (self.core.beats, Some("plan".into()), fp_manager());
             self.step(Input::Heartbeat { count, plan, from });
         }
-        for report in self.autopilot.tick() {
+        let reports = self.autopilot.tick();
+        self.see_pilot();
+        for report in reports {
             if let Report::Adopted(..) = report {
                 let aboard = self.autopilot.list.iter().map(|fed| fed.waypoint.token.0);
                 let aboard: Vec<_> = aboard.collect();
@@ -270,12 +275,18 @@ impl World {
         }
     }
 
-    /// The pilot changes the mode. Nobody sees that he chose the same again, or came back to it in silence.
+    /// The pilot changes the mode, which is seen when it is heard next.
     fn take_by_hand(&mut self, mode: Mode) {
-        let is_unseen = self.autopilot.silent && mode == self.autopilot.shown;
-        if mode != self.autopilot.mode && !is_unseen {
-            (self.autopilot.mode, self.is_had_back) = (mode, false);
+        self.autopilot.mode = mode;
+        self.is_taken = mode != self.autopilot.shown;
+    }
+
+    /// What the pilot chose is heard, if it is. What a *Resume* orders is that order's doing, for all that anybody can tell.
+    fn see_pilot(&mut self) {
+        if self.autopilot.silent || !std::mem::take(&mut self.is_taken) {
+            return;
         }
+        self.is_had_back &= matches!(self.autopilot.mode, Mode::Hold | Mode::Waypoints);
     }
 
     /// It started anew, or another station's list is aboard.
@@ -295,7 +306,7 @@ impl World {
         if self.autopilot.on_ground {
             self.sent.clear();
         }
-        (self.state, self.last_order, self.is_had_back) = (GatewayState::Off, 0, false);
+        (self.state, self.last_order, self.is_had_back, self.is_taken) = (GatewayState::Off, 0, false, false);
         (self.wrong_since, self.heard_since) = ([None; 3], now);
         self.step(Input::Report(Report::Capability(Ok("a plane"))));
     }
