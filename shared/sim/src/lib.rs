@@ -5,8 +5,8 @@
 //! autopilots is in [`core::personality`].
 //!
 //! What it imitates: the autopilot's modes, arming, mission list and protocol, parameters, rates of telemetry and
-//! answers. What it leaves out: terrain, geofences but a circle around home, rally points, a radio-control transmitter, log download, the time
-//! an upload takes; its dead reckoning without satellites is perfect, and telemetry comes at 10 Hz at most. Of ArduPlane:
+//! answers. What it leaves out: terrain, geofences but a circle around home, rally points, a radio-control transmitter, log download, in
+//! lockstep the time an upload takes; its dead reckoning without satellites is perfect, and telemetry comes at 10 Hz at most. Of ArduPlane:
 //! automatic landing after RTL. Of PX4: its events (only texts say why), loitering items but the endless one, VTOL.
 
 #![allow(
@@ -19,6 +19,7 @@ pub mod core;
 pub mod frame;
 mod link;
 mod shell;
+mod turns;
 
 pub use config::{Config, Control, Link};
 pub use core::autopilot::Home;

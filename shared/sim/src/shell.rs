@@ -7,8 +7,9 @@
 use crate::config::{Config, Control};
 use crate::core::mode::Mode;
 use crate::core::{Peer, STEP_NS, Simulator};
-use crate::frame::{self, Decoder};
+use crate::frame::{self, Decoder, Frame};
 use crate::link::Bound;
+use crate::turns::Turns;
 use anyhow::Context;
 use autopilot_link::{Event, Link};
 use geometry::LatLon;
@@ -221,6 +222,11 @@ fn truth(simulator: &Simulator, lockstep: bool, ignored_bytes: u64) -> Truth {
     }
 }
 
+/// Simulated seconds per second, where nobody drives time.
+fn pace(speed: f64) -> f64 {
+    if speed > 0.0 { speed } else { 1.0 }
+}
+
 struct Runner {
     config: Config,
     simulator: Simulator,
@@ -228,6 +234,11 @@ struct Runner {
     decoder: Decoder,
     /// What came last over the link.
     received: Vec<u8>,
+    /// Its main loop; `None`: what comes is read at once.
+    turns: Option<Turns>,
+    /// What came since the last turn, and when the next one is.
+    unread: Vec<(Peer, Frame)>,
+    reads_at: Option<Instant>,
     controls: mpsc::Receiver<Control>,
     shared: Arc<Mutex<Shared>>,
     partner: Option<Peer>,
@@ -247,7 +258,13 @@ impl Runner {
         for peer in link.peers() {
             simulator.connect(peer);
         }
+        let now = Instant::now();
+        // in lockstep everything that comes between two steps is done between them
+        let turn = if config.lockstep { Duration::ZERO } else { simulator.turn() };
         Self {
+            turns: Turns::new(now, turn.div_f64(pace(config.speed))),
+            unread: Vec::new(),
+            reads_at: None,
             config,
             simulator,
             link,
@@ -257,7 +274,7 @@ impl Runner {
             shared,
             partner: None,
             answered: false,
-            next_wall: Instant::now(),
+            next_wall: now,
             next_track_s: 0.0,
         }
     }
@@ -315,15 +332,11 @@ impl Runner {
     /// When the next step is due by the wall clock. Lost time is not made up for in a burst.
     fn plan_next_step(&mut self) {
         let now = Instant::now();
-        let speed = match (self.config.speed, self.partner) {
-            (speed, _) if speed > 0.0 => speed,
-            (_, Some(_)) => {
-                self.next_wall = now;
-                return;
-            }
-            (_, None) => 1.0,
-        };
-        let step = Duration::from_nanos(STEP_NS).div_f64(speed);
+        if self.config.speed == 0.0 && self.partner.is_some() {
+            self.next_wall = now;
+            return;
+        }
+        let step = Duration::from_nanos(STEP_NS).div_f64(pace(self.config.speed));
         self.next_wall = (self.next_wall + step).max(now);
     }
 
@@ -333,6 +346,9 @@ impl Runner {
         let mut again = asked + ASK_AGAIN;
         loop {
             let now = Instant::now();
+            if self.reads_at.take_if(|at| now >= *at).is_some() {
+                self.read();
+            }
             let waits_for_partner = self.partner.is_some() && !self.answered;
             if waits_for_partner && now >= asked + GIVE_UP {
                 tracing::warn!("the lockstep partner is silent: going on in real time");
@@ -349,7 +365,7 @@ impl Runner {
                 return self.drain_controls();
             }
             let until = if waits_for_partner { again } else { self.next_wall };
-            if !self.serve_until(until).await {
+            if !self.serve_until(self.reads_at.map_or(until, |reads_at| until.min(reads_at))).await {
                 return false;
             }
         }
@@ -406,7 +422,16 @@ impl Runner {
 
     fn receive(&mut self, peer: Peer) {
         self.simulator.connect(peer);
-        for frame in frame::take_frames(&mut self.decoder) {
+        self.unread.extend(frame::take_frames(&mut self.decoder).into_iter().map(|frame| (peer, frame)));
+        match &self.turns {
+            Some(turns) => self.reads_at = self.reads_at.or_else(|| Some(turns.after(Instant::now()))),
+            None => self.read(),
+        }
+    }
+
+    /// Does all that was asked for.
+    fn read(&mut self) {
+        for (peer, frame) in std::mem::take(&mut self.unread) {
             self.simulator.receive(peer, frame);
         }
         self.note_answers();

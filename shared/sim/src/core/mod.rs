@@ -23,6 +23,7 @@ use mavlink::dialects::ardupilotmega::{MavMessage, MavSeverity};
 use params::Setting;
 use personality::{Behaviour, Personality, Post, Rules};
 use std::collections::BTreeMap;
+use std::time::Duration;
 use streams::Streams;
 
 /// Simulated time of a step, nanoseconds.
@@ -117,6 +118,11 @@ impl Simulator {
     /// Simulated time, nanoseconds.
     pub fn now_ns(&self) -> u64 {
         self.now_ns
+    }
+
+    /// A turn of its main loop, in which it reads what has come; zero: it reads everything at once.
+    pub fn turn(&self) -> Duration {
+        self.rules.turn
     }
 
     /// How the link did so far.

@@ -18,6 +18,7 @@ use aircraft::{Habits, Profile};
 use mavlink::dialects::ardupilotmega::*;
 use std::fmt;
 use std::str::FromStr;
+use std::time::Duration;
 
 /// Which autopilot it behaves as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -113,6 +114,8 @@ pub struct Rules {
     pub params: fn(&Profile) -> Params,
     /// How it follows lines, and which airspeed it holds.
     pub habits: fn(&Profile) -> Habits,
+    /// A turn of its main loop, in which it reads what has come; zero: it reads everything at once.
+    pub turn: Duration,
     /// What it can send, and how often it does.
     pub streams: &'static [Streamed],
     /// Old commands that ask for a certain message are known.

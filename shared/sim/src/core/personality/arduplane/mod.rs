@@ -15,6 +15,7 @@ use crate::core::streams::Streamed;
 use crate::core::telemetry;
 use aircraft::Habits;
 use mavlink::dialects::ardupilotmega::*;
+use std::time::Duration;
 
 /// The number that it acknowledges `SET_MODE` by.
 const SET_MODE_ID: u16 = 11;
@@ -37,6 +38,8 @@ pub(super) static RULES: Rules = Rules {
     lands_short_s: 1.6,
     params: params::params,
     habits: Habits::arduplane,
+    // 50 Hz: one item of a list in 20 ms for those who wait to be asked
+    turn: Duration::from_millis(20),
     streams: &STREAMS,
     knows_old_requests: true,
     tells_unknown_params: false,
