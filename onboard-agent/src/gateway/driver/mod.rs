@@ -15,6 +15,7 @@ use super::order::{Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
 use autopilot_link::signing::Signing;
 use examination::Examination;
+pub use mavlink::courier::Courier;
 use mavlink::dialect::Dialect;
 
 /// What a link brings.

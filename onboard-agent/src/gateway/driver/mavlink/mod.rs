@@ -6,6 +6,7 @@ mod aboard;
 pub mod chain;
 mod clocks;
 pub mod commands;
+pub mod courier;
 pub mod dialect;
 pub mod driver;
 pub mod examine;
