@@ -97,7 +97,7 @@ def commands(port, folder):
         ],
         "pymavlink": [python, HERE / "listen_by_pymavlink.py", port],
         "MAVProxy": [
-            python, tools / "mavproxy.py", f"--master={link}", "--nowait", f"--state-basedir={folder}", "--default-modules=link",
+            python, tools / "mavproxy.py", f"--master={link}", "--nowait", f"--state-basedir={folder}",
         ],
     }
 
