@@ -41,6 +41,13 @@ async fn fly(personality: &str, name: &str) {
     assert!(flown.is_ok(), "{:#}", flown.unwrap_err());
 }
 
+/// It takes off and lands as one, and is flown as a wing in between.
+#[tokio::test(flavor = "multi_thread")]
+#[cfg_attr(debug_assertions, ignore = "flown with --release")]
+async fn nominal_on_a_vtol() {
+    fly("px4-vtol", "nominal").await;
+}
+
 programme! {
     nominal always,
     strong_wind,

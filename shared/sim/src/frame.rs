@@ -14,6 +14,9 @@ pub const SYSTEM_ID: u8 = 1;
 pub const COMPONENT_ID: u8 = 1;
 const OWN: Sender = Sender { system: SYSTEM_ID, component: COMPONENT_ID };
 
+/// Bytes of a frame around its payload.
+const AROUND: usize = 12;
+
 /// What a frame carries.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Body {
@@ -41,6 +44,14 @@ impl Frame {
     /// A message as if `sender` had sent it.
     pub fn new(sender: Sender, message: MavMessage) -> Self {
         Self { sender, body: Body::Known(Box::new(message)) }
+    }
+
+    /// How many bytes it has on the line.
+    pub fn bytes(&self) -> usize {
+        match &self.body {
+            Body::Known(message) => encode_from(self.sender, 0, message).len(),
+            Body::Strange { payload, .. } => AROUND + payload.len(),
+        }
     }
 
     /// `None`: a message id that the dialect doesn't have is of no use to anybody here.
@@ -95,5 +106,6 @@ mod tests {
         decoder.push(&encode_payload(0, 76, &payload));
         let frames = take_frames(&mut decoder);
         assert!(matches!(&frames[0].body, Body::Strange { id: 76, .. }), "{frames:?}");
+        assert_eq!(frames[0].bytes(), encode_payload(0, 76, &payload).len());
     }
 }

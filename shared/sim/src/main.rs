@@ -47,7 +47,7 @@ struct Options {
     /// Let the partner on the link drive time (TIMESYNC before every step).
     #[arg(long)]
     lockstep: bool,
-    /// A fault: packet-loss=SHARE, duplicate=SHARE, reorder=SHARE, gps-loss, engine-out, low-battery, silence, no-rpm,
+    /// A fault: packet-loss=SHARE, duplicate=SHARE, reorder=SHARE, bandwidth=BITS-PER-SECOND, gps-loss, engine-out, low-battery, silence, no-rpm,
     /// no-stream=MESSAGE-NUMBER, ice, crash or reboot, with @SECOND and +SECONDS; may be given often.
     #[arg(long, value_name = "FAULT")]
     fault: Vec<FaultRequest>,

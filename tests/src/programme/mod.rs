@@ -46,7 +46,7 @@ impl Scenario {
     pub async fn simulate(&self, personality: &str) -> anyhow::Result<()> {
         let mut arguments = vec!["--personality", personality];
         // a mission without a landing is flown, too
-        arguments.extend(["--param", "MIS_TKO_LAND_REQ=0"].iter().filter(|_| personality == "px4"));
+        arguments.extend(["--param", "MIS_TKO_LAND_REQ=0"].iter().filter(|_| personality.starts_with("px4")));
         arguments.extend(self.simulator);
         let mut rig = Rig::start(&arguments).await?;
         self.fly(&mut rig).await

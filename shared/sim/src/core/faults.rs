@@ -1,12 +1,17 @@
-//! Faults on request: what is broken when, and a link that loses, doubles and swaps frames.
+//! Faults on request: what is broken when, and a link that loses, doubles and swaps frames, or is narrow.
 
 use super::STEP_NS;
+use std::collections::VecDeque;
 use std::fmt;
 use std::str::FromStr;
 
 const NS_PER_S: f64 = 1e9;
 /// Requests kept at most; more are refused.
 const MAX_REQUESTS: usize = 64;
+/// A byte on a serial line has a start bit and a stop bit.
+const BITS_A_BYTE: f64 = 10.0;
+/// What a narrow line would carry only after this long is lost: a radio keeps no more.
+const LATEST_NS: u64 = 1_000_000_000;
 
 /// Something that goes wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,6 +22,8 @@ pub enum Fault {
     Duplicate(f64),
     /// Share of the frames that come after the next one, 0..=1.
     Reorder(f64),
+    /// The line carries so many bits in a second, each way.
+    Bandwidth(f64),
     /// No satellite fix (dead reckoning goes on; arming is refused).
     GpsLoss,
     /// The engine gives nothing.
@@ -38,10 +45,11 @@ pub enum Fault {
 }
 
 /// One of each kind.
-const KINDS: [Fault; 12] = [
+const KINDS: [Fault; 13] = [
     Fault::PacketLoss(0.0),
     Fault::Duplicate(0.0),
     Fault::Reorder(0.0),
+    Fault::Bandwidth(1.0),
     Fault::GpsLoss,
     Fault::EngineOut,
     Fault::LowBattery,
@@ -69,6 +77,7 @@ impl Fault {
             Fault::PacketLoss(_) => "packet-loss",
             Fault::Duplicate(_) => "duplicate",
             Fault::Reorder(_) => "reorder",
+            Fault::Bandwidth(_) => "bandwidth",
             Fault::GpsLoss => "gps-loss",
             Fault::EngineOut => "engine-out",
             Fault::LowBattery => "low-battery",
@@ -82,7 +91,7 @@ impl Fault {
     }
 }
 
-/// A fault with its time: `name[=share][@second[+seconds]]`, as `packet-loss=0.2`, `engine-out@300`,
+/// A fault with its time: `name[=number][@second[+seconds]]`, as `packet-loss=0.2`, `engine-out@300`,
 /// `silence@120+10`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaultRequest {
@@ -97,8 +106,12 @@ pub struct FaultRequest {
 impl fmt::Display for FaultRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.fault.name())?;
-        if let Fault::PacketLoss(share) | Fault::Duplicate(share) | Fault::Reorder(share) = self.fault {
-            write!(f, "={share}")?;
+        if let Fault::PacketLoss(number)
+        | Fault::Duplicate(number)
+        | Fault::Reorder(number)
+        | Fault::Bandwidth(number) = self.fault
+        {
+            write!(f, "={number}")?;
         }
         if let Fault::NoStream(id) = self.fault {
             write!(f, "={id}")?;
@@ -116,8 +129,8 @@ impl fmt::Display for FaultRequest {
 /// Why a fault request can't be understood.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{0:?} is no fault; write one of packet-loss=SHARE, duplicate=SHARE, reorder=SHARE (shares from 0 to 1), gps-loss, \
-     engine-out, low-battery, silence, no-rpm, no-stream=MESSAGE-NUMBER, ice, crash, reboot, then @SECOND and +SECONDS if it has \
+    "{0:?} is no fault; write one of packet-loss=SHARE, duplicate=SHARE, reorder=SHARE (shares from 0 to 1), \
+     bandwidth=BITS-PER-SECOND, gps-loss, engine-out, low-battery, silence, no-rpm, no-stream=MESSAGE-NUMBER, ice, crash, reboot, then @SECOND and +SECONDS if it has \
      its time, as in silence@120+10"
 )]
 pub struct FaultSyntax(String);
@@ -146,6 +159,7 @@ impl FromStr for FaultRequest {
             ("packet-loss", Some(share), _) => Fault::PacketLoss(share),
             ("duplicate", Some(share), _) => Fault::Duplicate(share),
             ("reorder", Some(share), _) => Fault::Reorder(share),
+            ("bandwidth", _, Some(bits_per_s)) if bits_per_s >= 1.0 => Fault::Bandwidth(bits_per_s),
             ("gps-loss", _, None) => Fault::GpsLoss,
             ("engine-out", _, None) => Fault::EngineOut,
             ("low-battery", _, None) => Fault::LowBattery,
@@ -170,6 +184,8 @@ pub struct Effects {
     pub duplicate: f64,
     /// Share of frames swapped with the next.
     pub reorder: f64,
+    /// What the line carries, bits per second; `None`: all there is.
+    pub bits_per_s: Option<f64>,
     /// No satellite fix.
     pub gps_lost: bool,
     /// No engine power.
@@ -235,6 +251,7 @@ impl Schedule {
                 Fault::PacketLoss(share) => effects.loss = share,
                 Fault::Duplicate(share) => effects.duplicate = share,
                 Fault::Reorder(share) => effects.reorder = share,
+                Fault::Bandwidth(bits_per_s) => effects.bits_per_s = Some(bits_per_s),
                 Fault::GpsLoss => effects.gps_lost = true,
                 Fault::EngineOut => effects.engine_out = true,
                 Fault::LowBattery => effects.low_battery = true,
@@ -271,22 +288,40 @@ impl Dice {
     }
 }
 
-/// One direction of a bad link. Holds at most one frame back.
+/// Something that a line carries.
+pub trait OnAir: Clone {
+    /// How many bytes it has there.
+    fn bytes(&self) -> usize;
+}
+
+impl OnAir for Vec<u8> {
+    fn bytes(&self) -> usize {
+        self.len()
+    }
+}
+
+/// One direction of a bad link. Holds at most one frame back to swap it, and a second's worth where it is narrow.
 #[derive(Debug)]
 pub struct BadLink<T> {
     held: Option<T>,
+    line: Line<T>,
 }
 
 impl<T> Default for BadLink<T> {
     fn default() -> Self {
-        Self { held: None }
+        Self { held: None, line: Line { waiting: VecDeque::new(), free_ns: 0 } }
     }
 }
 
-impl<T: Clone> BadLink<T> {
+impl<T: OnAir> BadLink<T> {
     /// What comes out when a frame goes in.
-    pub fn pass(&mut self, effects: &Effects, dice: &mut Dice, frame: T) -> Vec<T> {
-        if effects.silent || dice.roll(effects.loss) {
+    pub fn pass(&mut self, now_ns: u64, effects: &Effects, dice: &mut Dice, frame: T) -> Vec<T> {
+        if effects.silent {
+            return Vec::new();
+        }
+        if dice.roll(effects.loss) {
+            // on the air all the same
+            self.line.occupy(now_ns, effects.bits_per_s, &frame);
             return Vec::new();
         }
         let twice = dice.roll(effects.duplicate);
@@ -294,17 +329,56 @@ impl<T: Clone> BadLink<T> {
             self.held = Some(frame);
             return Vec::new();
         }
-        let mut out = vec![frame.clone()];
-        if twice {
-            out.push(frame);
-        }
-        out.extend(self.held.take());
-        out
+        let copy = twice.then(|| frame.clone());
+        let frames = [Some(frame), copy, self.held.take()].into_iter().flatten();
+        frames.filter_map(|frame| self.line.carry(now_ns, effects.bits_per_s, frame)).collect()
     }
 
-    /// What was held back for too long.
-    pub fn release(&mut self) -> Option<T> {
-        self.held.take()
+    /// What was held back for too long, and what the line has carried by now.
+    pub fn release(&mut self, now_ns: u64, effects: &Effects) -> Vec<T> {
+        let held = self.held.take().and_then(|held| self.line.carry(now_ns, effects.bits_per_s, held));
+        self.line.arrived(now_ns).into_iter().chain(held).collect()
+    }
+}
+
+/// A line that takes its time for each byte. What it carries within a step arrives at once.
+#[derive(Debug)]
+struct Line<T> {
+    waiting: VecDeque<(u64, T)>,
+    /// It is busy until then.
+    free_ns: u64,
+}
+
+impl<T: OnAir> Line<T> {
+    /// When a frame that is sent now has passed; `None`: too much waits, it is lost.
+    fn occupy(&mut self, now_ns: u64, bits_per_s: Option<f64>, frame: &T) -> Option<u64> {
+        let Some(bits_per_s) = bits_per_s else { return Some(now_ns) };
+        let takes_ns = frame.bytes() as f64 * BITS_A_BYTE / bits_per_s * NS_PER_S;
+        let passed_ns = self.free_ns.max(now_ns).saturating_add(takes_ns as u64);
+        if passed_ns > now_ns + LATEST_NS {
+            return None;
+        }
+        self.free_ns = passed_ns;
+        Some(passed_ns)
+    }
+
+    fn carry(&mut self, now_ns: u64, bits_per_s: Option<f64>, frame: T) -> Option<T> {
+        let passed_ns = self.occupy(now_ns, bits_per_s, &frame)?;
+        if passed_ns <= now_ns + STEP_NS && self.waiting.is_empty() {
+            return Some(frame);
+        }
+        self.waiting.push_back((passed_ns, frame));
+        None
+    }
+
+    fn arrived(&mut self, now_ns: u64) -> Vec<T> {
+        let mut arrived = vec![];
+        while let Some((_, frame)) =
+            self.waiting.pop_front_if(|(passed_ns, _)| *passed_ns <= now_ns + STEP_NS)
+        {
+            arrived.push(frame);
+        }
+        arrived
     }
 }
 
@@ -318,6 +392,7 @@ mod tests {
             "packet-loss=0.2",
             "duplicate=0.1@5",
             "reorder=1",
+            "bandwidth=57600@5",
             "gps-loss@120",
             "engine-out",
             "low-battery@1.5+2",
@@ -340,6 +415,8 @@ mod tests {
             "packet-loss",
             "packet-loss=2",
             "packet-loss=NaN",
+            "bandwidth",
+            "bandwidth=0",
             "no-stream",
             "no-stream=0.5",
             "gps-loss=1",
@@ -375,11 +452,17 @@ mod tests {
         assert!(error.contains("fire") && error.contains("low-battery"), "{error}");
     }
 
+    impl OnAir for u32 {
+        fn bytes(&self) -> usize {
+            48
+        }
+    }
+
     #[test]
     fn a_bad_link_loses_doubles_and_swaps_about_as_much_as_asked() {
         let effects = Effects { loss: 0.2, duplicate: 0.1, reorder: 0.1, ..Effects::default() };
         let (mut link, mut dice) = (BadLink::default(), Dice::new(7));
-        let out: Vec<u32> = (0..10_000).flat_map(|i| link.pass(&effects, &mut dice, i)).collect();
+        let out: Vec<u32> = (0..10_000).flat_map(|i| link.pass(0, &effects, &mut dice, i)).collect();
         let mut distinct = out.clone();
         distinct.sort_unstable();
         distinct.dedup();
@@ -387,5 +470,23 @@ mod tests {
         assert!((7_800..8_200).contains(&distinct.len()), "{}", distinct.len());
         assert!((600..1_000).contains(&(out.len() - distinct.len())));
         assert!((600..900).contains(&swapped), "{swapped}");
+    }
+
+    #[test]
+    fn a_narrow_line_carries_so_much_in_a_step_keeps_a_second_and_loses_the_rest() {
+        let effects = Effects { bits_per_s: Some(57_600.0), ..Effects::default() };
+        let (mut link, mut dice) = (BadLink::default(), Dice::new(7));
+        let at_once: Vec<u32> = (0..1000).flat_map(|i| link.pass(0, &effects, &mut dice, i)).collect();
+        // 5,760 bytes a second
+        assert_eq!(at_once, (0..12).collect::<Vec<_>>());
+        let steps = (1..20).map(|step| link.release(step * STEP_NS, &effects));
+        let later: Vec<Vec<u32>> = steps.take_while(|came| !came.is_empty()).collect();
+        assert!(later.iter().all(|came| came.len() == 12), "{later:?}");
+        assert_eq!(later.concat(), (12..120).collect::<Vec<_>>(), "in order, and what a second carries");
+        // what is lost on the air takes its time, too
+        let lossy = Effects { loss: 0.5, ..effects };
+        let mut link = BadLink::default();
+        let came = (0..24).flat_map(|i| link.pass(0, &lossy, &mut dice, i)).count();
+        assert!((1..12).contains(&came), "{came}");
     }
 }

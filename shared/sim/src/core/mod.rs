@@ -18,7 +18,7 @@ pub mod visitor;
 use crate::frame::{self, Body, Frame};
 use autopilot::{Autopilot, Home, Severity};
 pub use autopilot_link::Peer;
-use faults::{BadLink, Dice, Effects, FaultRequest, Schedule};
+use faults::{BadLink, Dice, Effects, FaultRequest, OnAir, Schedule};
 use mavlink::dialects::ardupilotmega::{MavMessage, MavSeverity};
 use params::Setting;
 use personality::{Behaviour, Personality, Post, Rules};
@@ -43,6 +43,18 @@ pub struct Outgoing {
     pub to: Peer,
     /// The frame.
     pub bytes: Vec<u8>,
+}
+
+impl OnAir for Outgoing {
+    fn bytes(&self) -> usize {
+        self.bytes.len()
+    }
+}
+
+impl OnAir for (Peer, Frame) {
+    fn bytes(&self) -> usize {
+        self.1.bytes()
+    }
 }
 
 /// How the link did.
@@ -167,7 +179,7 @@ impl Simulator {
             return;
         }
         let effects = self.effects;
-        for (peer, frame) in self.inward.pass(&effects, &mut self.dice, (peer, frame)) {
+        for (peer, frame) in self.inward.pass(self.now_ns, &effects, &mut self.dice, (peer, frame)) {
             self.handle(peer, &frame);
         }
     }
@@ -175,12 +187,11 @@ impl Simulator {
     /// One step: faults, flight, mission protocol, then everything that is due to be sent.
     pub fn step(&mut self) {
         self.now_ns += STEP_NS;
-        if let Some((peer, frame)) = self.inward.release() {
+        let effects = self.effects;
+        for (peer, frame) in self.inward.release(self.now_ns, &effects) {
             self.handle(peer, &frame);
         }
-        if let Some(outgoing) = self.outward.release() {
-            self.outgoing.push(outgoing);
-        }
+        self.outgoing.extend(self.outward.release(self.now_ns, &effects));
         self.apply_faults();
         self.autopilot.step(STEP_S);
         let mut out = Vec::new();
@@ -311,7 +322,7 @@ impl Simulator {
 
     fn emit(&mut self, outgoing: Outgoing) {
         let effects = self.effects;
-        let passed = self.outward.pass(&effects, &mut self.dice, outgoing);
+        let passed = self.outward.pass(self.now_ns, &effects, &mut self.dice, outgoing);
         self.outgoing.extend(passed);
     }
 

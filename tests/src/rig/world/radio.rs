@@ -1,4 +1,4 @@
-//! A radio between somebody else's autopilot and the agent, which loses, doubles and swaps frames as our simulator's does; and beside
+//! A radio between somebody else's autopilot and the agent, which loses, doubles and swaps frames as our simulator's does, or is as narrow; and beside
 //! it the voice that tells the autopilot's simulation what goes wrong. Time is the machine's.
 
 use super::told::Wish;
@@ -136,10 +136,16 @@ impl Side {
 }
 
 /// Carries what one side has received to the other; `hear` listens, however bad the radio is.
-fn carry(from: &mut Side, to: &mut Side, effects: &Effects, dice: &mut Dice, mut hear: impl FnMut(&Frame)) {
+fn carry(
+    from: &mut Side,
+    to: &mut Side,
+    (now_ns, effects): (u64, &Effects),
+    dice: &mut Dice,
+    mut hear: impl FnMut(&Frame),
+) {
     while let Some(frame) = from.decoder.next_frame() {
         hear(&frame);
-        for out in from.radio.pass(effects, dice, frame.bytes.to_vec()) {
+        for out in from.radio.pass(now_ns, effects, dice, frame.bytes.to_vec()) {
             to.send(&out);
         }
     }
@@ -213,15 +219,17 @@ impl Relay {
         u64::try_from(self.began.elapsed().as_nanos()).unwrap_or(u64::MAX)
     }
 
-    fn effects(&self) -> Effects {
-        self.faults.effects(self.now_ns())
+    /// The time, and what is wrong now.
+    fn effects(&self) -> (u64, Effects) {
+        let now_ns = self.now_ns();
+        (now_ns, self.faults.effects(now_ns))
     }
 
     fn on_autopilot(&mut self, event: Event, bytes: &[u8]) {
-        let effects = self.effects();
+        let (now_ns, effects) = self.effects();
         self.autopilot.take(event, bytes);
         let voice = &mut self.voice;
-        carry(&mut self.autopilot, &mut self.agent, &effects, &mut self.dice, |frame| {
+        carry(&mut self.autopilot, &mut self.agent, (now_ns, &effects), &mut self.dice, |frame| {
             if let Some(message) = frame.message() {
                 voice.hear(frame.sender, &message);
             }
@@ -229,9 +237,9 @@ impl Relay {
     }
 
     fn on_agent(&mut self, event: Event, bytes: &[u8]) {
-        let effects = self.effects();
+        let (now_ns, effects) = self.effects();
         self.agent.take(event, bytes);
-        carry(&mut self.agent, &mut self.autopilot, &effects, &mut self.dice, |_| ());
+        carry(&mut self.agent, &mut self.autopilot, (now_ns, &effects), &mut self.dice, |_| ());
     }
 
     fn on_control(&mut self, control: Control) {
@@ -271,7 +279,7 @@ impl Relay {
 
     /// Tells the autopilot what has changed, and says how far that is.
     fn on_beat(&mut self) {
-        let now = self.effects();
+        let (now_ns, now) = self.effects();
         let before = std::mem::replace(&mut self.told, now);
         if now.gps_lost != before.gps_lost {
             self.voice.wish(Wish::Gps(!now.gps_lost));
@@ -285,11 +293,11 @@ impl Relay {
         if let Some(frame) = self.voice.speak(self.began.elapsed()) {
             self.autopilot.send(&frame);
         }
-        if let Some(held) = self.autopilot.radio.release() {
-            self.agent.send(&held);
+        for late in self.autopilot.radio.release(now_ns, &now) {
+            self.agent.send(&late);
         }
-        if let Some(held) = self.agent.radio.release() {
-            self.autopilot.send(&held);
+        for late in self.agent.radio.release(now_ns, &now) {
+            self.autopilot.send(&late);
         }
         if let Some(trouble) = self.voice.trouble() {
             self.complain(trouble.to_owned());
@@ -302,7 +310,11 @@ impl Relay {
 /// It can be made of the radio, or be told to their worlds. As they come, nothing tells how fast the engine turns.
 fn is_had(fault: Fault) -> bool {
     match fault {
-        Fault::PacketLoss(_) | Fault::Duplicate(_) | Fault::Reorder(_) | Fault::Silence => true,
+        Fault::PacketLoss(_)
+        | Fault::Duplicate(_)
+        | Fault::Reorder(_)
+        | Fault::Bandwidth(_)
+        | Fault::Silence => true,
         Fault::GpsLoss | Fault::EngineOut | Fault::LowBattery | Fault::NoRpm => true,
         Fault::NoStream(_) | Fault::Ice | Fault::Crash | Fault::Reboot => false,
     }
