@@ -45,22 +45,50 @@ pub const DIALECT: Dialect = Dialect {
     },
 };
 
-const ADVICE: [Advice; 3] = [
-    Advice {
-        name: "ARMING_CHECK",
-        is_good: |checks| checks != 0.0,
-        otherwise: "it arms whatever is wrong with it: set it to 1",
-    },
-    Advice {
-        name: "MIS_RESTART",
-        is_good: |restart| restart == 0.0,
-        otherwise: "after each hold it would begin its list anew, and fly back: set it to 0",
-    },
-    Advice {
-        name: "LAND_DISARMDELAY",
-        is_good: |seconds| seconds > 0.0,
-        otherwise: "it never disarms after a landing, so no flight ever ends: set it to 20",
-    },
+const ADVICE: [Advice; 9] = [
+    Advice::needed("ARMING_CHECK", |checks| checks != 0.0, "it arms whatever is wrong with it: set it to 1"),
+    Advice::needed(
+        "MIS_RESTART",
+        |restart| restart == 0.0,
+        "after each hold it would begin its list anew, and fly back: set it to 0",
+    ),
+    Advice::needed(
+        "LAND_DISARMDELAY",
+        |seconds| seconds > 0.0,
+        "it never disarms after a landing, so no flight ever ends: set it to 20",
+    ),
+    Advice::needed(
+        "FS_GCS_ENABL",
+        |watches| watches == 0.0,
+        "it does what FS_LONG_ACTN says when the ground station of SYSID_MYGCS is silent, where the plan and Safe mode decide: set it to 0",
+    ),
+    Advice::better(
+        "FS_SHORT_ACTN",
+        // nothing in AUTO, or nothing at all
+        |action| action == 0.0 || action == 3.0,
+        "without its remote control it leaves the plan at once: for flights without a pilot's transmitter set it to 0",
+    ),
+    Advice::better(
+        "FS_LONG_ACTN",
+        // it stays in AUTO, or enters it
+        |action| action == 0.0 || action == 4.0,
+        "without its remote control it takes the aircraft away from the plan, which shows as its own failsafe: to fly on set it to 0",
+    ),
+    Advice::better(
+        "ARSPD_USE",
+        |uses| uses == 1.0,
+        "it holds a throttle and no airspeed, so that a plan's speeds and times are not kept: with an airspeed sensor set it to 1",
+    ),
+    Advice::better(
+        "NAVL1_PERIOD",
+        |seconds| (8.0..=20.0).contains(&seconds),
+        "it follows lines loosely above 20 s, and swings below 8: its default is 17, and its own simulation flies with 15",
+    ),
+    Advice::better(
+        "WP_RADIUS",
+        |metres| metres >= 10.0,
+        "it begins its turns so near to a waypoint that it swings far out behind it: set it to about the aircraft's turn radius",
+    ),
 ];
 
 const RULES: Rules = Rules { same: items::same, id: None, reads_in_order: false };

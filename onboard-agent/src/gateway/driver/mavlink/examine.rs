@@ -4,7 +4,7 @@ mod judge;
 #[cfg(test)]
 mod tests;
 
-use super::super::examination::{Examination, Finding};
+use super::super::examination::{Degree, Examination, Finding};
 use super::super::{DIALECTS, FromLink, Setup};
 use super::Peer;
 use super::dialect::Dialect;
@@ -32,8 +32,22 @@ pub struct Advice {
     pub name: &'static str,
     /// This value is good.
     pub is_good: fn(f64) -> bool,
-    /// What another one leads to, and what to do; it is in the way of a flight.
+    /// What another one leads to, and what to do.
     pub otherwise: &'static str,
+    /// How much that matters.
+    pub degree: Degree,
+}
+
+impl Advice {
+    /// A value that is in the way of a flight.
+    pub const fn needed(name: &'static str, is_good: fn(f64) -> bool, otherwise: &'static str) -> Self {
+        Self { name, is_good, otherwise, degree: Degree::ToDo }
+    }
+
+    /// One with which it flies, but not as planned.
+    pub const fn better(name: &'static str, is_good: fn(f64) -> bool, otherwise: &'static str) -> Self {
+        Self { name, is_good, otherwise, degree: Degree::Note }
+    }
 }
 
 /// What was found out so far.

@@ -74,22 +74,38 @@ const NO_LANDING_NEEDED: Need = Need {
     otherwise: "PX4 then refuses a list without a landing, and so every list of a longer flight",
 };
 
-const ADVICE: [Advice; 3] = [
-    Advice {
-        name: "COM_DISARM_LAND",
-        is_good: |seconds| seconds > 0.0,
-        otherwise: "it never disarms after a landing, so no flight ever ends: set it to 2",
-    },
-    Advice {
-        name: "FW_LND_ABORT",
-        is_good: |reasons| reasons == 0.0,
-        otherwise: "it breaks off a landing of which no rangefinder has seen the ground, and circles: without one set it to 0",
-    },
-    Advice {
-        name: "NAV_DLL_ACT",
-        is_good: |action| action == 0.0,
-        otherwise: "it takes the aircraft away when its link is silent, where the plan and Safe mode decide: set it to 0",
-    },
+const ADVICE: [Advice; 6] = [
+    Advice::needed(
+        "COM_DISARM_LAND",
+        |seconds| seconds > 0.0,
+        "it never disarms after a landing, so no flight ever ends: set it to 2",
+    ),
+    Advice::needed(
+        "FW_LND_ABORT",
+        |reasons| reasons == 0.0,
+        "it breaks off a landing of which no rangefinder has seen the ground, and circles: without one set it to 0",
+    ),
+    Advice::needed(
+        "NAV_DLL_ACT",
+        |action| action == 0.0,
+        "it takes the aircraft away when its link is silent, where the plan and Safe mode decide: set it to 0",
+    ),
+    // it takes a waypoint only near its altitude, and comes there no faster than these say; their defaults are 3 and 2 m/s
+    Advice::better(
+        "FW_T_CLMB_R_SP",
+        |mps| mps > 3.0,
+        "it climbs no faster, and circles where a leg climbs more steeply: set it to what the aircraft climbs at in cruise, m/s",
+    ),
+    Advice::better(
+        "FW_T_SINK_R_SP",
+        |mps| mps > 2.0,
+        "it sinks no faster, and circles where a leg goes down more steeply: set it to what the aircraft sinks at in cruise, m/s",
+    ),
+    Advice::better(
+        "NAV_FW_ALT_RAD",
+        |metres| metres >= 10.0,
+        "it circles at each waypoint until its altitude is as near as that: set it to 10",
+    ),
 ];
 
 fn is_px4(beat: &HEARTBEAT_DATA) -> bool {

@@ -103,7 +103,9 @@ fn advised(looked: &Looked) -> Vec<Finding> {
         let name = advice.name;
         Some(match (advice.is_good)(value) {
             true => ok("parameters", format!("{name} is {value}")),
-            false => to_do("parameters", format!("{name} is {value}: {}", advice.otherwise)),
+            false => {
+                Finding::new(advice.degree, "parameters", format!("{name} is {value}: {}", advice.otherwise))
+            }
         })
     });
     let silent = advice.iter().filter(|advice| !looked.advised.contains_key(advice.name));

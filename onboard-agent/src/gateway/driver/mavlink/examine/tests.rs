@@ -118,6 +118,35 @@ fn parameters_in_the_way_are_named_with_the_value_to_set() {
     assert!(matches!(&plane[..], [only] if only.contains("ARMING_CHECK is 0")), "{plane:?}");
 }
 
+/// What is said of a parameter that is set so.
+fn said_of(personality: Personality, name: &str, value: f32) -> Vec<(Degree, String)> {
+    let findings = look_over(personality, |sim| {
+        warm_up(sim);
+        set(sim, name, value);
+    });
+    let of_it = findings.into_iter().filter(|finding| finding.says.starts_with(name));
+    of_it.map(|finding| (finding.degree, finding.says)).collect()
+}
+
+#[test]
+fn what_takes_the_aircraft_from_the_plan_or_off_its_path_is_told_with_what_to_do() {
+    use Personality::{ArduPlane, Px4};
+    for (personality, name, bad, good, degree, remedy) in [
+        (ArduPlane, "FS_GCS_ENABL", 1.0, 0.0, Degree::ToDo, "set it to 0"),
+        (ArduPlane, "FS_SHORT_ACTN", 1.0, 3.0, Degree::Note, "set it to 0"),
+        (ArduPlane, "FS_LONG_ACTN", 1.0, 4.0, Degree::Note, "set it to 0"),
+        (ArduPlane, "ARSPD_USE", 0.0, 1.0, Degree::Note, "set it to 1"),
+        (Px4, "FW_T_CLMB_R_SP", 3.0, 6.0, Degree::Note, "in cruise"),
+        (Px4, "FW_T_SINK_R_SP", 2.0, 4.0, Degree::Note, "in cruise"),
+        (Px4, "NAV_FW_ALT_RAD", 1.0, 10.0, Degree::Note, "set it to 10"),
+    ] {
+        let told = said_of(personality, name, bad);
+        assert!(matches!(&told[..], [(of, says)] if *of == degree && says.contains(remedy)), "{told:?}");
+        let told = said_of(personality, name, good);
+        assert!(matches!(&told[..], [(Degree::Ok, _)]), "{told:?}");
+    }
+}
+
 #[test]
 fn what_is_missing_in_flight_is_missed_on_the_ground() {
     for (fault, about) in [("gps-loss", "gps: no 3D fix"), ("low-battery", "battery: ")] {

@@ -29,6 +29,11 @@ pub fn params(profile: &Profile) -> Params {
         free("BATT_CRT_PCT", 10.0, (0.0, 100.0)).is(S::CriticalBattery),
         fixed("MIS_RESTART", 0.0),
         fixed("MIS_OPTIONS", 0.0),
+        // told, and without effect
+        free("FS_GCS_ENABL", 0.0, (0.0, 3.0)),
+        free("FS_SHORT_ACTN", 0.0, (0.0, 4.0)),
+        free("FS_LONG_ACTN", 0.0, (0.0, 5.0)),
+        free("ARSPD_USE", 1.0, (0.0, 2.0)),
         fixed("NAVL1_PERIOD", habits.period_s as f32),
         fixed("NAVL1_DAMPING", habits.damping as f32),
     ])

@@ -41,6 +41,9 @@ fn params(profile: &Profile, mav_type: f32) -> Params {
         free(LANDING_ANGLE_DEG, 5.0, (1.0, 15.0)),
         free("NAV_ACC_RAD", 10.0, (0.05, 200.0)),
         free("NAV_FW_ALT_RAD", 10.0, (0.05, 200.0)).is(S::AltitudeAcceptance),
+        // told, and without effect
+        free("FW_T_CLMB_R_SP", 3.0, (0.1, 50.0)),
+        free("FW_T_SINK_R_SP", 2.0, (0.1, 50.0)),
         free("NAV_LOITER_RAD", turn_m, (-1000.0, 1000.0)).is(S::LoiterRadius),
         whole(LINK_LOSS_ACTION, 0.0, (0.0, 6.0)),
         whole("NAV_RCL_ACT", 2.0, (1.0, 6.0)),
