@@ -19,6 +19,9 @@ use std::time::Duration;
 
 /// Items in flight.
 const WINDOW: usize = 24;
+/// Items in flight on a link that can't keep up: more would only wait before it, for longer than we wait for an answer, and be sent
+/// again and again.
+const LEAST_WINDOW: usize = 6;
 /// Timeouts without any progress before a transfer is given up.
 const PATIENCE: u32 = 30;
 /// Timeouts without any progress after which an autopilot may have stopped to answer.
@@ -63,6 +66,8 @@ pub struct Transfer {
     restarts: u32,
     /// The link has lost something.
     careful: bool,
+    /// Items in flight now: half as many each time that it goes back, one more for each that is taken.
+    window: usize,
     went_back: Time,
     /// When it asked for something new.
     moved: Time,
@@ -113,6 +118,7 @@ impl Transfer {
             phase: Phase::Counting,
             careful: rto.copies() > 1,
             rto,
+            window: WINDOW,
             silent: 0,
             best: 0,
             rewrites: 0,
@@ -338,6 +344,7 @@ impl Transfer {
             Phase::Sending { .. } if self.silent.is_multiple_of(4) => self.send_anew(peer, out),
             Phase::Sending { acked, sent, .. } => {
                 *sent = *acked;
+                self.narrow_window();
                 self.send_window(out);
             }
             // the list has to be asked for again

@@ -1,6 +1,6 @@
 //! Entries on their way to the autopilot.
 
-use super::{Phase, Transfer, WINDOW};
+use super::{LEAST_WINDOW, Phase, Transfer, WINDOW};
 use crate::gateway::driver::mavlink::{Peer, mission_type};
 use crate::gateway::order::Time;
 use mavlink::dialects::ardupilotmega::*;
@@ -32,9 +32,9 @@ impl Transfer {
 
     /// On a link that loses frames each entry goes twice: of those behind a lost one none is taken.
     pub(super) fn send_window(&mut self, out: &mut Vec<MavMessage>) {
-        let copies = self.copies();
+        let (copies, window) = (self.copies(), self.window);
         let Phase::Sending { acked, sent, .. } = &mut self.phase else { return };
-        let end = (*acked + WINDOW).min(self.items.len());
+        let end = (*acked + window).min(self.items.len());
         for item in self.items.iter().take(end).skip(*sent) {
             out.extend(std::iter::repeat_n(MavMessage::MISSION_ITEM_INT(item.clone()), copies));
         }
@@ -49,7 +49,9 @@ impl Transfer {
             return;
         }
         if index > *acked {
+            let taken = index - *acked;
             (*acked, *asked) = (index, 1);
+            self.window = (self.window + taken).min(WINDOW);
             self.moves(now);
             self.send_window(out);
             return;
@@ -90,7 +92,12 @@ impl Transfer {
         if let Phase::Sending { acked, sent, .. } = &mut self.phase {
             *sent = *acked;
         }
+        self.narrow_window();
         self.send_window(out);
         self.rto.start(now);
+    }
+
+    pub(super) fn narrow_window(&mut self) {
+        self.window = (self.window / 2).max(LEAST_WINDOW);
     }
 }

@@ -126,6 +126,24 @@ fn not_receiving_any_more_is_asked_what_it_has() {
     assert_eq!((talk.ack(MAV_MISSION_ERROR), talk.said().as_str()), (None, "0? 1? 2?"));
 }
 
+/// More would only wait before a narrow link, for longer than an answer is waited for.
+#[test]
+fn less_is_sent_at_once_each_time_that_it_goes_back_and_more_again_for_what_is_taken() {
+    let mut talk = Talk::upload(100, &RULES);
+    talk.request(1);
+    assert_eq!(
+        talk.said().split(' ').count(),
+        1 + WINDOW + 1,
+        "the opening, a window, and one more for the one taken"
+    );
+    for at_once in [WINDOW / 2, LEAST_WINDOW, LEAST_WINDOW] {
+        assert_eq!(talk.timeout(), None);
+        assert_eq!(talk.said().split(' ').count(), at_once);
+    }
+    talk.request(4);
+    assert_eq!(talk.said(), "7 8 9 10 11 12", "three were taken: so many more than the least");
+}
+
 #[test]
 fn what_it_will_never_take_is_given_up_and_what_another_station_does_is_waited_for() {
     let mut talk = Talk::upload(3, &RULES);
