@@ -36,8 +36,7 @@ impl Browsing {
     }
 
     /// What is typed, as a path: `~` is the user's own folder, and what is written ends in what says its format.
-    fn target(&self) -> PathBuf {
-        let name = self.name.trim();
+    fn target(&self, name: &str) -> PathBuf {
         let mut path = match (name.strip_prefix("~/"), std::env::home_dir()) {
             (Some(rest), Some(home)) => home.join(rest),
             _ => self.folder.join(name),
@@ -48,13 +47,13 @@ impl Browsing {
         path
     }
 
-    /// What the typed name asks for.
-    fn wish(&self) -> Wish {
-        let name = self.name.trim();
+    /// What a typed name asks for.
+    fn wish(&self, name: &str) -> Wish {
+        let name = name.trim();
         if name.is_empty() {
             return Wish::Nothing;
         }
-        let path = self.target();
+        let path = self.target(name);
         match (self.purpose, path.file_name()) {
             _ if names_folder(name) => Wish::Folder(path, String::new()),
             (_, None) => Wish::Folder(path, String::new()),
@@ -94,13 +93,13 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         });
         folder_row(ui, browsing, queue);
         entries(ui, browsing, queue);
-        let typed = name_row(ui, browsing, queue);
+        let (name, entered) = name_row(ui, browsing, queue);
         // what could not be opened is said here: the dialog covers the window
         if let (Some(why), Purpose::Open) = (&scene.view.notice, browsing.purpose) {
             ui.add(egui::Label::new(RichText::new(why).color(theme::of(ui).caution)).wrap());
         }
         ui.add_space(6.0);
-        buttons(ui, browsing, typed, queue);
+        buttons(ui, browsing.purpose, browsing.wish(&name), entered, queue);
     });
     if modal.should_close() || ui.input(|i| i.key_pressed(Key::Escape)) {
         queue.view(ViewCommand::StopBrowsing);
@@ -162,8 +161,8 @@ fn entry_row(ui: &mut Ui, browsing: &Browsing, entry: &Entry, queue: &mut Queue)
     }
 }
 
-/// True when Enter was pressed in it.
-fn name_row(ui: &mut Ui, browsing: &Browsing, queue: &mut Queue) -> bool {
+/// The name as it is now, and whether Enter was pressed in it: on a slow machine the last letters and Enter come in one frame.
+fn name_row(ui: &mut Ui, browsing: &Browsing, queue: &mut Queue) -> (String, bool) {
     let mut name = browsing.name.clone();
     let label = ui.label("File name");
     let field = egui::TextEdit::singleline(&mut name)
@@ -176,9 +175,9 @@ fn name_row(ui: &mut Ui, browsing: &Browsing, queue: &mut Queue) -> bool {
         select_stem(ui, response.id, &browsing.name);
     }
     if response.changed() {
-        queue.view(ViewCommand::NameFile(name));
+        queue.view(ViewCommand::NameFile(name.clone()));
     }
-    response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter))
+    (name, response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)))
 }
 
 /// The name without what says its format: that is what is typed anew.
@@ -190,10 +189,9 @@ fn select_stem(ui: &Ui, id: Id, name: &str) {
     state.store(ui.ctx(), id);
 }
 
-fn buttons(ui: &mut Ui, browsing: &Browsing, typed: bool, queue: &mut Queue) {
+fn buttons(ui: &mut Ui, purpose: Purpose, wish: Wish, entered: bool, queue: &mut Queue) {
     let p = theme::of(ui);
-    let wish = browsing.wish();
-    let (text, needs_click) = match (&wish, browsing.purpose) {
+    let (text, needs_click) = match (&wish, purpose) {
         (Wish::Folder(..), _) => ("Go there", false),
         (Wish::Overwrite(_), _) => ("Replace the file", true),
         (_, Purpose::Open) => ("Open", false),
@@ -205,8 +203,8 @@ fn buttons(ui: &mut Ui, browsing: &Browsing, typed: bool, queue: &mut Queue) {
     }
     ui.horizontal(|ui| {
         let button = ui.add_enabled(wish != Wish::Nothing, primary_button(text, p));
-        if button.clicked() || (typed && !needs_click) {
-            carry_out(wish, browsing.purpose, queue);
+        if button.clicked() || (entered && !needs_click) {
+            carry_out(wish, purpose, queue);
         }
         if ui.button("Cancel").clicked() {
             queue.view(ViewCommand::StopBrowsing);
@@ -243,9 +241,9 @@ mod tests {
         let here = |name: &str, is_folder| Entry { name: name.into(), is_folder };
         Browsing {
             entries: Some(Ok(vec![here("below", true), here("old.xml", false)])),
-            ..Browsing::new(purpose, "/plans".into(), name.into())
+            ..Browsing::new(purpose, "/plans".into(), String::new())
         }
-        .wish()
+        .wish(name)
     }
 
     #[test]

@@ -55,6 +55,18 @@ fn plan_is_saved_and_opened_without_a_desktops_dialog() {
 }
 
 #[test]
+fn a_name_that_is_typed_faster_than_the_window_draws_is_taken_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window(SQUARE);
+    window.press_ctrl(egui::Key::S);
+    until_listed(&mut window);
+    let path = std::fs::canonicalize(folder.path()).unwrap().join("mine.xml");
+    // the letters and Enter are one frame
+    window.fill_in(egui::accesskit::Role::TextInput, "File name", &path.display().to_string());
+    window.until("saved", |app| app.document().path() == Some(path.as_path()));
+}
+
+#[test]
 fn file_that_is_there_is_replaced_only_when_told_to() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("old.xml");
