@@ -103,8 +103,16 @@ fn event(ui: &mut Ui, line: &Line, scene: &Scene<'_>) {
         ui.label(RichText::new(ago).monospace().size(11.0).color(p.weak));
         ui.label(RichText::new(symbol).color(colour));
         let times = if line.times > 1 { format!(" (×{})", line.times) } else { String::new() };
-        let text = format!("{}{times}", answer::told(scene, line.text.starts_with(PUSH), &line.text));
-        let response = ui.add(egui::Label::new(RichText::new(text).color(colour)).truncate());
-        answer::with_codes(response, &line.text);
+        // what the autopilot says in words of its own is told as it is
+        let is_ours = line.source != "gateway";
+        let told = match is_ours {
+            true => answer::told(scene, line.text.starts_with(PUSH), &line.text),
+            false => line.text.clone(),
+        };
+        let text = RichText::new(format!("{told}{times}")).color(colour);
+        let response = ui.add(egui::Label::new(text).truncate());
+        if is_ours {
+            answer::with_codes(response, &line.text);
+        }
     });
 }

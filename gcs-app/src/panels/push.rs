@@ -98,8 +98,9 @@ fn verdict(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, p: &Palette) {
     };
     ui.label(RichText::new(text).strong().color(colour));
     if let Some(found) = here.filter(|_| report.acceptable) {
+        let so_far = if scene.is_checked() { "" } else { " so far" };
         let text = format!(
-            "⚠ Checked here: it {found}. Here all of the flight is checked, for other variables, too: see Problems"
+            "⚠ Checked here{so_far}: it {found}. Here all of the flight is checked, for other variables, too: see Problems"
         );
         ui.label(RichText::new(text).color(p.caution));
     }
@@ -112,7 +113,7 @@ fn found_here(scene: &Scene<'_>, proposal: &Proposal) -> Option<Verdict> {
     let is_shown = scene.analysis.hash_of(scene.document.version()).is_some_and(|hash| *hash == *report.hash);
     let found = problems::found(scene);
     let is_more = found.errors > 0 || scene.problems().count() > report.problems.len();
-    (is_shown && is_more && (scene.is_checked() || found.errors > 0)).then_some(found)
+    (is_shown && is_more).then_some(found)
 }
 
 /// `1 stage and 2 legs`: a take-off or a landing is a stage without legs.

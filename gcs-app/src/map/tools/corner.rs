@@ -2,23 +2,28 @@
 
 use crate::command::{Queue, ViewCommand};
 use crate::map::sketch::Handled;
-use flight_plan::{Area, Edit, FlightPlan, Id, LegKind, Pattern, Scan, ZoneShape};
+use flight_plan::{Area, Edit, FlightPlan, Id, LegKind, Pattern, Place, Scan, Value, ZoneShape};
 
-/// The corner that a handle is. Of a route the first point is one, too, though it is grabbed as the place of the leg.
+/// The corner that a handle is. Of a route the first point is one, too, though it is grabbed as the place of the leg; one that a
+/// variable or a fix says is not: that moves what says it.
 pub fn corner_of(plan: &FlightPlan, what: &Handled) -> Option<Handled> {
     match what {
         Handled::Corner { .. } => Some(what.clone()),
         Handled::Waypoint(leg) => {
             let leg = leg.clone();
-            let is_route = is_route(&plan.any_leg(&leg)?.kind);
-            is_route.then_some(Handled::Corner { leg, hole: None, corner: 0 })
+            let is_own =
+                matches!(route(&plan.any_leg(&leg)?.kind)?.first()?, Place::Position(Value::Constant(_)));
+            is_own.then_some(Handled::Corner { leg, hole: None, corner: 0 })
         }
         _ => None,
     }
 }
 
-fn is_route(kind: &LegKind) -> bool {
-    matches!(kind, LegKind::Pattern(Pattern::TrackLine { .. } | Pattern::Corridor { .. }))
+fn route(kind: &LegKind) -> Option<&[Place]> {
+    match kind {
+        LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. }) => Some(route),
+        _ => None,
+    }
 }
 
 /// Removes a corner, unless too few would be left.

@@ -28,7 +28,7 @@ mod whole;
 
 pub(super) use bands::in_force;
 pub(super) use handles::{Near, near};
-pub use toolbox::{JITTER, Toolbox};
+pub use toolbox::{Toolbox, has_left};
 
 use super::names::Names;
 use super::sketch::Sketch;

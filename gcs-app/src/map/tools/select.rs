@@ -221,7 +221,11 @@ impl Tool for Select {
     }
 
     fn release(&mut self, queue: &mut Queue) {
-        (self.inserting, self.zone) = (None, None);
+        self.inserting = None;
+        if self.zone.take().is_some() {
+            // who meant the map sees what he did
+            queue.view(ViewCommand::Notice("Moved the selected zone. Ctrl+Z takes it back.".into()));
+        }
         self.group.release();
         (self.grabbed, self.dragged, self.bent) = (None, None, None);
         if let Some(edit) = self.landing.take() {

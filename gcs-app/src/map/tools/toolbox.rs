@@ -17,7 +17,12 @@ const REACH: f32 = 18.0;
 const OFFERED: usize = 150;
 
 /// A hand that is not quite still moves nothing, however long it presses, screen points.
-pub const JITTER: f32 = 4.0;
+const JITTER: f32 = 4.0;
+
+/// The pointer is not where it was pressed, and not only by a hand that is not quite still.
+pub fn has_left(response: &Response) -> bool {
+    response.total_drag_delta().is_some_and(|by| by.length() > JITTER)
+}
 
 /// A drag on its way.
 #[derive(Debug, Default)]
@@ -288,7 +293,7 @@ fn react(
         let pressed = response.ctx.input(|i| i.pointer.press_origin()).unwrap_or(pointer);
         *drag = Drag { offset: grip.at - pressed, has_left: false };
     }
-    drag.has_left |= response.total_drag_delta().is_some_and(|by| by.length() > JITTER);
+    drag.has_left |= has_left(response);
     if response.dragged() && drag.has_left && response.drag_delta() != Vec2::ZERO {
         tool.drag(grip.key, pointer + drag.offset, canvas, queue);
     }

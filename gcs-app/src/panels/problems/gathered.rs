@@ -1,4 +1,5 @@
-//! Problems inside of procedures: each call has them anew, and each is listed once, with the calls that have it.
+//! Problems inside of procedures: each call has them anew, and each is listed once, with the calls that have it. What is said of one
+//! call in other words or figures is a problem of its own.
 
 use crate::document::Document;
 use flight_plan::{Id, Problem, Severity, Verdict};
@@ -16,22 +17,26 @@ pub struct Gathered {
     pub calls: Vec<Id>,
 }
 
-/// What is one problem: the leg as it is written, what is wrong with it, and which of several such problems it is.
-type Kind = (Id, &'static str, Severity, usize);
+/// What is said of a leg: what is wrong, how badly, and in which words; its call is not named in them.
+type Said = (&'static str, Severity, String);
+
+/// What is one problem: the leg as it is written, what is said of it, and which of several such problems it is.
+type Kind = (Id, Said, usize);
 
 /// Each problem once.
 pub fn gather(document: &Document, problems: &[&Problem]) -> Vec<Gathered> {
     let mut gathered: Vec<Gathered> = Vec::with_capacity(problems.len());
     let mut known: HashMap<Kind, usize> = HashMap::new();
-    let mut times: HashMap<(&Id, &'static str, Severity), usize> = HashMap::new();
+    let mut times: HashMap<(&Id, Said), usize> = HashMap::new();
     for (number, problem) in problems.iter().enumerate() {
         let made = problem.subject.as_ref().and_then(|flown| Some((flown, document.call_of(flown)?)));
         let Some((flown, call)) = made else {
             gathered.push(Gathered { number, calls: Vec::new() });
             continue;
         };
-        let time = times.entry((flown, problem.code, problem.severity)).or_default();
-        let kind = (document.written(flown), problem.code, problem.severity, *time);
+        let said = (problem.code, problem.severity, problem.message.replace(&format!("{call}."), ""));
+        let time = times.entry((flown, said.clone())).or_default();
+        let kind = (document.written(flown), said, *time);
         *time += 1;
         let index = *known.entry(kind).or_insert(gathered.len());
         match gathered.get_mut(index) {
@@ -82,14 +87,18 @@ mod tests {
         let document = Document::read(PLAN.as_bytes(), None);
         let problems: Vec<Problem> =
             found.iter().map(|(code, of)| Problem::warning(code, *of).of(&(*of).into())).collect();
+        told(&document, &problems)
+    }
+
+    fn told(document: &Document, problems: &[Problem]) -> Vec<String> {
         let problems: Vec<&Problem> = problems.iter().collect();
-        let gathered = gather(&document, &problems);
+        let gathered = gather(document, &problems);
         assert_eq!(verdict(&gathered, &problems).warnings, gathered.len());
         gathered
             .iter()
             .map(|one| {
                 let problem = problems[one.number];
-                let whose = whose(&document, problem.subject.as_ref().unwrap(), &one.calls);
+                let whose = whose(document, problem.subject.as_ref().unwrap(), &one.calls);
                 format!("{} {whose}", problem.code)
             })
             .collect()
@@ -117,5 +126,15 @@ mod tests {
         let all = ["west.up", "east.up", "c3.up", "c4.up", "c5.up"].map(|of| ("steep", of));
         assert_eq!(listed(&all), ["steep Up (in West, East, c3 and 2 more calls)"]);
         assert_eq!(listed(&all[..4]), ["steep Up (in West, East, c3 and 1 more call)"]);
+    }
+
+    #[test]
+    fn what_is_said_in_other_figures_is_a_problem_of_its_own() {
+        let document = Document::read(PLAN.as_bytes(), None);
+        let low = |of: &str, by_m| {
+            Problem::warning("low", format!("raise `{of}`: {by_m} m above the ground")).of(&of.into())
+        };
+        let problems = [low("west.up", 5), low("east.up", 400), low("c3.up", 5)];
+        assert_eq!(told(&document, &problems), ["low Up (in West and c3)", "low Up (in East)"]);
     }
 }

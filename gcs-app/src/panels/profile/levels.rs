@@ -4,7 +4,7 @@ use super::Axes;
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::forecast::Passage;
 use crate::map::guard;
-use crate::map::tools::JITTER;
+use crate::map::tools::has_left;
 use crate::panels::Scene;
 use crate::panels::inspector::inherited;
 use crate::theme::{self, Palette};
@@ -113,7 +113,7 @@ impl Drag {
 
     /// The pointer was moved now, and not only by a hand that is not quite still.
     fn follows(&mut self, response: &Response) -> bool {
-        self.has_left |= response.total_drag_delta().is_some_and(|by| by.length() > JITTER);
+        self.has_left |= has_left(response);
         self.has_left && response.drag_delta() != Vec2::ZERO
     }
 

@@ -182,7 +182,7 @@ fn run_checks(
     values::near_pole_alone(&mut problems);
     outliers::alone(&inspection, &mut problems);
     if matches!(flown, Cow::Owned(_)) {
-        called::written_only(&inspection, &mut problems);
+        called::written_only(plan, &inspection, &mut problems);
     }
     let (expressions, ids) = (inspection.expressions().clone(), inspection.ids.clone());
     let last = again.then(|| Last::of(inspection, recall));
