@@ -208,7 +208,8 @@ impl Table {
     }
 
     fn said_of(&self, scene: &Scene<'_>, entry: &Entry<'_>) -> Said {
-        self.said.get(part(scene, entry).id()).cloned().unwrap_or_default()
+        let said = self.said.get(entry.leg).or_else(|| self.said.get(part(scene, entry).id()));
+        said.cloned().unwrap_or_default()
     }
 
     /// The leg of a row, if it is one.

@@ -7,7 +7,8 @@ use crate::panels::Scene;
 use crate::panels::inspector::inherited::{self, Inherited};
 use crate::panels::tree::title;
 use crate::units;
-use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, Problem, Section, Value};
+use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, LegContext, Problem, Section, Value, instantiate};
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 /// One row.
@@ -121,11 +122,18 @@ pub(super) struct Said {
 
 /// What the plan says of every leg: looked up once for a version of it.
 pub(super) fn said(plan: &FlightPlan) -> HashMap<Id, Said> {
-    let of_legs = plan.all_legs().into_iter().map(|context| {
+    let of_leg = |context: LegContext<'_>| {
         let (altitude, speed_mps) = (inherited::altitude_said(&context), inherited::speed_said(&context));
         (context.leg.id.clone(), Said { altitude, speed_mps })
-    });
-    // what is around a procedure is not known: each call may say it
+    };
+    let of_legs = plan.all_legs().into_iter().map(of_leg);
+    // legs that calls make have these around them
+    let (flown, _) = instantiate(plan);
+    let made = match &flown {
+        Cow::Owned(flown) => flown.all_legs(),
+        Cow::Borrowed(_) => Vec::new(),
+    };
+    // of a procedure that nothing calls, what is around it is not known
     // what has no legs is flown by the stage itself
     let stages = plan.all_stages().map(|(_, stage)| {
         let altitude = stage.altitude.as_ref().map(Inherited::own);
@@ -135,7 +143,7 @@ pub(super) fn said(plan: &FlightPlan) -> HashMap<Id, Said> {
         let altitude = leg.altitude.as_ref().map(Inherited::own);
         (leg.id.clone(), Said { altitude, speed_mps: leg.speed_mps.as_ref().map(Inherited::own) })
     });
-    stages.chain(of_procedures).chain(of_legs).collect()
+    stages.chain(of_procedures).chain(made.into_iter().map(of_leg)).chain(of_legs).collect()
 }
 
 /// What a row is of: a leg, also that of a procedure, or a stage without legs.
