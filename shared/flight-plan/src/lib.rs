@@ -1,6 +1,7 @@
 //! Pure: the flight plan document: model, XML, problems and checks, edits, compilation to a program.
 
 pub mod alternate;
+mod at_source;
 pub mod checks;
 pub mod clipboard;
 pub mod create;
@@ -26,6 +27,7 @@ pub mod walk;
 pub mod xml;
 
 pub use alternate::{Alternates, InForce};
+pub use at_source::{AtSource, mend_at_source};
 pub use checks::{IncrementalCache, LOWEST_AMSL_M, check, check_again};
 pub use diff::{Change, ChangeKind, Difference};
 pub use edit::shape::radius_of;

@@ -1,6 +1,6 @@
 //! What is wrong with a plan: one sentence each, with its place and often its remedy.
 
-use crate::{Edit, Id, legible};
+use crate::{AtSource, Edit, Id, legible};
 use geometry::LatLon;
 use serde::Serialize;
 
@@ -116,6 +116,8 @@ pub struct Problem {
     pub message: String,
     /// An edit that removes the problem, where there is an obvious one.
     pub fix: Option<Box<Edit>>,
+    /// Another choice: what is wrong is inherited, by other legs too, and can be changed for all of them.
+    pub at_source: Option<Box<AtSource>>,
 }
 
 impl Problem {
@@ -130,6 +132,7 @@ impl Problem {
             location: None,
             message: legible(&message.into()).into_owned(),
             fix: None,
+            at_source: None,
         }
     }
 

@@ -62,6 +62,7 @@ pub use extremes::{MAX_TRIALS, review_extremes};
 use flight_plan::checks::CLEARANCE_M;
 use flight_plan::{
     AltitudeReference, Edit, Env, FlightState, Id, LegKind, Problem, Program, StageKind, Value, Variables,
+    mend_at_source,
 };
 use flights::Flights;
 pub use foresight::foresee;
@@ -189,7 +190,9 @@ impl<'a> View<'a> {
         let mut problems = Vec::new();
         RULES.iter().for_each(|rule| rule(self, &mut problems));
         let causes = waypoints::near_pole_alone(wind::without_what_follows(self, problems));
-        once(causes, &self.program.warnings)
+        let mut found = once(causes, &self.program.warnings);
+        mend_at_source(&self.program.plan, &mut found);
+        found
     }
 }
 

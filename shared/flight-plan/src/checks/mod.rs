@@ -51,7 +51,7 @@ mod variables;
 mod zones;
 
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 pub use altitudes::LOWEST_AMSL_M;
 pub use incremental_cache::IncrementalCache;
@@ -60,7 +60,7 @@ pub use scans::untied;
 pub use terrain_clearance::MARGIN_M as CLEARANCE_M;
 
 use crate::ids::Ids;
-use crate::{FlightPlan, Problem};
+use crate::{FlightPlan, Problem, mend_at_source};
 use ::aircraft::Profile;
 use incremental_cache::{Last, Recall};
 use inspection::Inspection;
@@ -184,6 +184,7 @@ fn run_checks(
     if matches!(flown, Cow::Owned(_)) {
         called::written_only(plan, &inspection, &mut problems);
     }
+    mend_at_source(plan, &mut problems);
     let (expressions, ids) = (inspection.expressions().clone(), inspection.ids.clone());
     let last = again.then(|| Last::of(inspection, recall));
     let flown = match flown {
