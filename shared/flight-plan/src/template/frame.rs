@@ -1,6 +1,6 @@
 //! What all templates have in common: places around the runway, heights above it, the way out and the way home.
 
-use super::{Outline, above_home, fix, hold, leg, stage, to};
+use super::{Outline, Template, above_home, fix, hold, leg, stage, to};
 use crate::{Altitude, Fix, Id, Leg, LegKind, Place, PlanWaypoint, Runway, Stage, StageKind, TurnDirection};
 use aircraft::Profile;
 use geometry::{LatLon, LocalFrame, Vec2};
@@ -21,6 +21,9 @@ const GATE_ROOM_M: f64 = 300.0;
 const TRACKS: f64 = 0.25;
 /// The ground is looked at in a grid of so many by so many places.
 const GRID: u32 = 32;
+/// Along the ways themselves, from place to place, metres; so many places at most.
+const WAY_STEP_M: f64 = 100.0;
+const MOST_STEPS: f64 = 1000.0;
 /// Around what is flown, turn radii.
 const ROOM: f64 = 6.0;
 /// Towards which it is asked how far a mission reaches.
@@ -79,10 +82,27 @@ impl<'a> Frame<'a> {
         let own = [self.at(self.ahead_m, 0.0), self.at(-self.final_m, 0.0), self.at(0.0, self.side_m())];
         let places = outline.extent.corners(self.runway.heading_deg).into_iter().chain(own);
         let flown = Surroundings::of(&places.map(|at| frame.to_local(at)).collect::<Vec<_>>());
+        // the grid alone is too coarse for a ridge across a narrow corridor
+        let ways: Vec<Vec2> = self.ways(outline).into_iter().map(|at| frame.to_local(at)).collect();
+        let along = ways.windows(2).filter_map(<[Vec2]>::as_array).flat_map(|[from, to]| along(*from, *to));
         flown
             .grid(ROOM * self.turn_radius_m)
+            .chain(along)
             .filter_map(|at| terrain.elevation_m(frame.to_geo(at)))
             .fold(self.runway.elevation_amsl_m, f64::max)
+    }
+
+    /// From the departure along the mission's line, or around its area, to the final; and from either end to both.
+    fn ways(&self, outline: &Outline) -> Vec<LatLon> {
+        let heading_deg = self.runway.heading_deg;
+        let line = match outline.template {
+            Template::Corridor | Template::Patrol => outline.extent.line(heading_deg),
+            _ => outline.extent.corners(heading_deg),
+        };
+        let (out, home) = (self.at(self.ahead_m, 0.0), self.at(-self.final_m, 0.0));
+        let ends = [line.first().copied(), line.last().copied()];
+        let [first, last] = ends.map(|end| end.unwrap_or(out));
+        [vec![out], line, vec![home, first, last, out]].concat()
     }
 
     /// The highest known ground between the final's beginning and its gate, metres above the runway.
@@ -198,7 +218,12 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// The box around places, none of them near the antimeridian.
+/// The places of a straight way that are looked at.
+fn along(from: Vec2, to: Vec2) -> impl Iterator<Item = Vec2> {
+    let count = ((to - from).length() / WAY_STEP_M).ceil().clamp(1.0, MOST_STEPS) as u32;
+    (0..=count).map(move |i| from + (to - from) * (f64::from(i) / f64::from(count)))
+}
+
 /// How far some places reach in each of some directions: with so many, all that lies between them and little else.
 struct Surroundings([(Vec2, f64); DIRECTIONS]);
 
@@ -218,5 +243,48 @@ impl Surroundings {
         let grid = (0..=GRID).flat_map(move |i| (0..=GRID).map(move |j| (i, j)));
         grid.map(move |(i, j)| Vec2 { e: share(i, -west, east), n: share(j, -south, north) })
             .filter(move |at| self.0.iter().all(|(towards, reach_m)| at.dot(*towards) <= reach_m + room_m))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::template::Extent;
+
+    /// Flat ground with one hill, so narrow that no grid over a corridor of 40 km finds it.
+    struct Hill(LatLon);
+    impl Terrain for Hill {
+        fn elevation_m(&self, at: LatLon) -> Option<f64> {
+            Some(if at.distance_m(self.0) < 90.0 { 900.0 } else { 300.0 })
+        }
+    }
+
+    #[test]
+    fn a_ridge_across_a_narrow_corridor_is_flown_over() {
+        let threshold = LatLon::new(46.0, 8.0);
+        let runway = Runway {
+            id: "R".into(),
+            threshold,
+            elevation_amsl_m: 300.0,
+            heading_deg: 90.0,
+            length_m: 500.0,
+            priority: 1,
+            approach_entry: None,
+        };
+        let (from, far_m, course_deg) = (threshold.destination(45.0, 6_000.0), 40_000.0, 45.0);
+        let extent = Extent::Drawn(vec![from, from.destination(course_deg, far_m)]);
+        let outline = Outline {
+            template: Template::Corridor,
+            aircraft: "trainer".into(),
+            runway,
+            extent,
+            height_m: 150.0,
+        };
+        let height_m = |terrain: &dyn Terrain| outline.mission_height_m(&Profile::default(), terrain);
+        assert_eq!(height_m(&terrain::Flat(300.0)), 150.0);
+        for share in [0.111, 0.254, 0.398, 0.517, 0.693, 0.875] {
+            let hill = Hill(from.destination(course_deg, share * far_m));
+            assert!(height_m(&hill) >= 600.0 + CLEARANCE_M, "{share}");
+        }
     }
 }
