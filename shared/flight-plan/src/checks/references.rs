@@ -144,6 +144,23 @@ mod tests {
     use aircraft::Profile;
     use terrain::Flat;
 
+    /// Two letters that changed places are one slip.
+    #[test]
+    fn a_misspelt_fix_is_asked_about_and_named_by_its_remedy() {
+        let watch = r#"<fix id="WATCH" lat="36.31" lon="-84.18"/></fixes>"#;
+        for wrong in ["WACTH", "WATHC", "WTCH", "WATCHH"] {
+            let legs = format!(r#"<IF id="a" fix="{wrong}"/>"#);
+            let document = crate::checks::testing::plan_with(&legs).replacen("</fixes>", watch, 1);
+            let plan = read(&document).plan;
+            let found = check(&plan, &Profile::default(), &Flat(300.0));
+            let problem = found.iter().find(|problem| problem.code == "unknown-fix").unwrap();
+            assert!(problem.message.ends_with("; did you mean `WATCH`?"), "{problem}");
+            let mended = problem.fix.as_ref().unwrap().apply(&plan).unwrap();
+            let left = check(&mended, &Profile::default(), &Flat(300.0));
+            assert!(left.iter().all(|problem| problem.code != "unknown-fix"), "{left:?}");
+        }
+    }
+
     #[test]
     fn names_of_things_that_are_not_there() {
         check_legs(&[
