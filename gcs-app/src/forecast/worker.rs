@@ -10,6 +10,7 @@ use super::{Alarm, Coverage, Flown, Shared};
 use flight_exec::rehearse::{Diversion, WhatIf};
 use flight_exec::review::put_remedies;
 use flight_plan::{FlightPlan, Problem};
+use std::collections::HashSet;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -53,6 +54,10 @@ pub struct Analysis {
     pub hash: String,
     /// What the checks found, and the review of the path if it was made. The review is made in calm air, whatever the forecast is.
     pub problems: Vec<Problem>,
+    /// What the last review found, be it of an earlier version.
+    pub last_review: Arc<[Problem]>,
+    /// What the review of an earlier version found, until it is known whether that is still so.
+    pub unsettled: Arc<[Problem]>,
     /// The path was reviewed, or there is none.
     pub reviewed: bool,
     /// Nothing more will be found of this version: the extremes of its variables were reviewed, too.
@@ -116,7 +121,16 @@ impl Analysis {
             self.diversion = former.diversion;
             self.coverage = former.coverage;
             self.what_if_problems = former.what_if_problems;
+            self.last_review = former.last_review;
+            self.unsettled = if self.reviewed { Arc::default() } else { self.not_known_anew() };
         }
+    }
+
+    /// What the last review found, and the checks of this version have not.
+    fn not_known_anew(&self) -> Arc<[Problem]> {
+        let key = |problem: &Problem| (problem.code, problem.subject.clone());
+        let known: HashSet<_> = self.problems.iter().map(key).collect();
+        self.last_review.iter().filter(|old| !known.contains(&key(old))).cloned().collect()
     }
 
     fn take(&mut self, found: Found) {
@@ -125,6 +139,10 @@ impl Analysis {
             Found::Forecast(version, flown) if version == self.version => self.take_forecast(flown),
             Found::Hash(version, hash) if version == self.version => self.hash = hash,
             Found::Problems(version, problems) if version == self.version => {
+                // of the extremes of its variables, there are more to come
+                let so_far = if self.reviewed { self.last_review.to_vec() } else { Vec::new() };
+                self.last_review = so_far.into_iter().chain(problems.iter().cloned()).collect();
+                self.unsettled = Arc::default();
                 self.problems.extend(problems);
                 self.reviewed = true;
             }
@@ -231,5 +249,34 @@ impl Outbox {
         let told = self.found.send(found).is_ok();
         (self.wake)();
         told
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of_version(version: u64, problems: Vec<Problem>) -> Found {
+        Found::Analysis(Analysis { document: 1, version, problems, ..Analysis::default() })
+    }
+
+    #[test]
+    fn what_a_review_found_is_unsettled_from_a_newer_version_to_its_review() {
+        let low = || Problem::error("below-terrain", "raise it").of(&"a".into());
+        let zone = || Problem::error("keep-out", "fly around it").of(&"b".into());
+        let mut known = Analysis::default();
+        let unsettled = |known: &Analysis| known.unsettled.iter().map(|p| p.code).collect::<Vec<_>>();
+        known.take(of_version(1, Vec::new()));
+        known.take(Found::Problems(1, vec![low()]));
+        // the extremes of its variables are reviewed after that
+        known.take(Found::Problems(1, vec![zone()]));
+        assert_eq!(unsettled(&known), [""; 0]);
+        known.take(of_version(2, Vec::new()));
+        assert_eq!(unsettled(&known), ["below-terrain", "keep-out"]);
+        known.take(of_version(3, vec![low()]));
+        assert_eq!(unsettled(&known), ["keep-out"], "the check has found the other one already");
+        known.take(Found::Problems(3, Vec::new()));
+        known.take(of_version(4, Vec::new()));
+        assert_eq!(unsettled(&known), [""; 0], "the newer review found nothing");
     }
 }

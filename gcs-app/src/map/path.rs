@@ -68,8 +68,12 @@ impl Layer {
             sheet.view,
             |made| *made == of,
             |wide| {
-                let faulty = scene.faulty();
-                (of, highlight(wide, scene, (p.warning, p), |passage| faulty.contains(&passage.leg)))
+                let (faulty, perhaps) = (scene.faulty(), scene.perhaps_faulty());
+                let mut shapes =
+                    highlight(wide, scene, (p.weak, p), |passage| perhaps.contains(&passage.leg));
+                shapes
+                    .extend(highlight(wide, scene, (p.warning, p), |passage| faulty.contains(&passage.leg)));
+                (of, shapes)
             },
         );
         self.draw_looked_at(sheet);

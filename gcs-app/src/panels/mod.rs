@@ -351,11 +351,24 @@ impl<'a> Scene<'a> {
     pub fn problems(&self) -> impl Iterator<Item = &'a Problem> {
         self.document.reading_problems().iter().chain(&self.analysis.problems)
     }
+    /// What was wrong with an earlier version of the plan, and may be still: that is being looked into. Of what is still there.
+    pub fn unsettled(&self) -> impl Iterator<Item = &'a Problem> {
+        let document = self.document;
+        let is_there = move |problem: &&Problem| {
+            problem.subject.as_ref().is_none_or(|of| problems::find(document, of).is_some())
+        };
+        self.analysis.unsettled.iter().take(problems::MOST).filter(is_there)
+    }
     /// What an error forbids to fly: legs and stages as they are planned, and the zones that flights come into conflict with.
     pub fn faulty(&self) -> HashSet<&'a Id> {
         let errors = self.problems().filter(|problem| problem.is_error());
         let planned = |problem: &'a Problem| problem.subject.as_ref().filter(|_| !problem.is_off_plan());
         errors.flat_map(|problem| planned(problem).into_iter().chain(problem.zone.as_deref())).collect()
+    }
+    /// What an error forbade to fly, until it is known whether it still does.
+    pub fn perhaps_faulty(&self) -> HashSet<&'a Id> {
+        let errors = self.unsettled().filter(|problem| problem.is_error() && !problem.is_off_plan());
+        errors.filter_map(|problem| problem.subject.as_ref()).collect()
     }
     /// A question or a dialog has the operator's attention: keys mean nothing to what is behind it.
     pub fn is_asking(&self) -> bool {

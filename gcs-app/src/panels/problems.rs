@@ -1,6 +1,7 @@
 //! What is wrong with the plan, with a jump to its place and, often, a remedy.
 
 mod gathered;
+mod remedies;
 
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
@@ -8,8 +9,9 @@ use crate::document::Document;
 use crate::theme;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{FontId, Rect, Response, RichText, ScrollArea, Sense, Shape, TextFormat, Ui, UiBuilder, vec2};
-use flight_plan::{Edit, FlightPlan, Id, Problem, Verdict, diff};
+use flight_plan::{Id, Problem, Verdict};
 use gathered::Gathered;
+use remedies::Remedies;
 
 /// The panel.
 #[derive(Debug, Default)]
@@ -19,6 +21,7 @@ pub struct Problems {
     /// What was selected when it was last drawn.
     selected: Option<Selection>,
     listed: Listed,
+    remedies: Remedies,
 }
 
 /// What a frame needs to know of all problems, made anew when they change: only rows in view are drawn.
@@ -68,7 +71,8 @@ impl Panel for Problems {
     fn title(&self, scene: &Scene<'_>) -> String {
         let problems: Vec<&Problem> = scene.problems().collect();
         let known = self.listed.is_of(scene).then_some(self.listed.order.len());
-        format!("Problems ({})", known.unwrap_or_else(|| gathered::gather(scene.document, &problems).len()))
+        let known = known.unwrap_or_else(|| gathered::gather(scene.document, &problems).len());
+        format!("Problems ({})", known + scene.unsettled().count())
     }
     fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
         if !scene.is_checked() {
@@ -81,6 +85,7 @@ impl Panel for Problems {
         let problems: Vec<&Problem> = scene.problems().collect();
         self.listed.refresh(scene, &problems);
         verdict(ui, scene, self.listed.verdict);
+        self.remedies.follow(ui);
         let pointed = ScrollArea::vertical().id_salt("problems").auto_shrink(false);
         let pointed = pointed.show(ui, |ui| self.rows(ui, scene, &problems, is_news, queue)).inner;
         if scene.view.pointed != pointed {
@@ -110,7 +115,8 @@ impl Problems {
         for ((number, (problem, calls)), height) in listed.enumerate().zip(&mut self.listed.heights) {
             let rect = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), *height));
             let rect = if near.intersects(rect) {
-                let response = row(ui, scene, (number, problem, calls), &mut self.open, queue);
+                let how = (&mut self.open, &mut self.remedies);
+                let response = row(ui, scene, (number, problem, calls), how, queue);
                 if response.hovered() {
                     pointed.clone_from(&problem.subject);
                 }
@@ -125,6 +131,11 @@ impl Problems {
                 is_news = false;
             }
         }
+        for problem in scene.unsettled() {
+            if unsettled(ui, scene, problem).clicked() {
+                subject(scene, problem).into_iter().for_each(|of| queue.view(ViewCommand::JumpTo(of)));
+            }
+        }
         if let Some(more) = self.listed.order.len().checked_sub(MOST).filter(|more| *more > 0) {
             ui.label(RichText::new(format!("and {more} more")).color(theme::of(ui).weak));
         }
@@ -133,12 +144,10 @@ impl Problems {
 }
 
 /// Most problems that are listed: who has more mends the first ones first.
-const MOST: usize = 300;
+pub const MOST: usize = 300;
 
 /// Of its headline, until it is opened.
 const ROWS: usize = 2;
-/// So many changes of a remedy are told before it is made.
-const MOST_CHANGES: usize = 8;
 
 /// Rows so far out of view are drawn, too, for those who go on by keyboard or screen reader; screen points.
 const BEYOND: f32 = 600.0;
@@ -194,7 +203,7 @@ fn row(
     ui: &mut Ui,
     scene: &Scene<'_>,
     (number, problem, calls): (usize, &Problem, &[Id]),
-    open: &mut Option<String>,
+    (open, remedies): (&mut Option<String>, &mut Remedies),
     queue: &mut Queue,
 ) -> Response {
     let p = theme::of(ui);
@@ -205,10 +214,8 @@ fn row(
     let whole = UiBuilder::new().id_salt(("problem", number)).sense(Sense::click());
     let shown = ui.scope_builder(whole, |ui| {
         let background = ui.painter().add(Shape::Noop);
-        let asked = inside(ui, scene.document, problem, (&headline, &message), open);
-        if let Some(fix) = problem.fix.as_ref().filter(|_| asked) {
-            queue.edit((**fix).clone());
-        }
+        inside(ui, problem, (&headline, &message), open);
+        remedies.show(ui, scene, problem, &message, queue);
         let rect = ui.min_rect().with_max_x(ui.max_rect().right()).expand2(vec2(0.0, 1.0));
         if is_selected || ui.response().hovered() {
             let colour = p.line.gamma_multiply(if is_selected { 1.0 } else { 0.6 });
@@ -229,22 +236,32 @@ fn row(
     response
 }
 
-/// Its symbol, its headline or all of its text, and below that its remedy. True: that is asked for.
-fn inside(
-    ui: &mut Ui,
-    document: &Document,
-    problem: &Problem,
-    (headline, message): (&str, &str),
-    open: &mut Option<String>,
-) -> bool {
+/// What was found of an earlier version, and may be so no more: grey, and without a remedy.
+fn unsettled(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem) -> Response {
     let p = theme::of(ui);
-    let (symbol, colour) = if problem.is_error() { ("✖", p.warning) } else { ("⚠", p.caution) };
+    let text = format!("{} {}", symbol(problem), said(scene.document, problem, &[], problem.headline()));
+    let label =
+        egui::Label::new(RichText::new(text).size(12.0).color(p.weak)).truncate().sense(Sense::click());
+    let response = ui.add(label);
+    let name = format!("Being checked: {}", told(scene.document, problem));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    response.on_hover_text(format!("{}\nFound before the last change; it is being checked.", problem.message))
+}
+
+fn symbol(problem: &Problem) -> &'static str {
+    if problem.is_error() { "✖" } else { "⚠" }
+}
+
+/// Its symbol, its headline or all of its text.
+fn inside(ui: &mut Ui, problem: &Problem, (headline, message): (&str, &str), open: &mut Option<String>) {
+    let p = theme::of(ui);
+    let colour = if problem.is_error() { p.warning } else { p.caution };
     let is_open = open.as_deref() == Some(message);
     let text = if is_open { at_its_place(problem, message) } else { headline.to_owned() };
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.add_space(2.0);
-        ui.label(RichText::new(symbol).color(colour));
+        ui.label(RichText::new(symbol(problem)).color(colour));
         let width = (ui.available_width() - MORE).max(60.0);
         let job = LayoutJob {
             wrap: TextWrapping {
@@ -262,17 +279,6 @@ fn inside(
             *open = (!is_open).then(|| message.to_owned());
         }
     });
-    let fix = problem.fix.as_deref();
-    fix.is_some_and(|fix| {
-        ui.horizontal(|ui| {
-            ui.add_space(20.0);
-            let button = ui.small_button("Fix");
-            let button = button.on_hover_ui(|ui| remedy(ui, document.plan(), fix));
-            // the next one comes under the pointer: the second click of a double click is not meant for it
-            button.clicked() && !button.double_clicked() && !button.triple_clicked()
-        })
-        .inner
-    })
 }
 
 /// Width of the mark behind a headline, screen points.
@@ -285,18 +291,6 @@ fn more(ui: &mut Ui, is_open: bool, message: &str) -> bool {
     let name = format!("{what}: {message}");
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     button.on_hover_text("All of it").clicked()
-}
-
-/// What a remedy would do to the plan.
-fn remedy(ui: &mut Ui, plan: &FlightPlan, fix: &Edit) {
-    let changes = diff::of_edit(plan, fix);
-    ui.label(RichText::new("Makes this edit; undo takes it back:").color(theme::of(ui).weak));
-    for change in changes.iter().take(MOST_CHANGES) {
-        ui.label(change.in_names(plan));
-    }
-    if let Some(more) = changes.len().checked_sub(MOST_CHANGES).filter(|more| *more > 0) {
-        ui.label(format!("and {more} more"));
-    }
 }
 
 fn at_its_place(problem: &Problem, message: &str) -> String {

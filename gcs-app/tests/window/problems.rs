@@ -1,14 +1,17 @@
 //! What is wrong with a plan, as people read and find it.
 
+use super::alone::Alone;
 use super::filing::window_on;
 use super::{SQUARE, Window};
 use egui::vec2;
 use egui_kittest::kittest::{NodeT, Queryable};
+use flight_plan::Id;
 use gcs_app::command::Selection;
+use gcs_app::panels::Panel;
 
 const LANDING: &str = r#"<stage id="land" type="land" runway="R05"/>"#;
 /// Across the way of `side2`; it has no limits of altitude.
-const ZONE: &str =
+pub const ZONE: &str =
     r#"<zones><keepOut id="quarry" lat="36.3241" lon="-84.1567" radius="60"/></zones><mainPlan"#;
 
 fn opened(text: &str) -> Window {
@@ -115,6 +118,83 @@ fn a_remedy_says_what_it_does_before_it_is_made() {
     window.steps(60);
     assert!(window.shows("leg side2 changed: altitude 1900 → "));
     assert_eq!(window.plan(), flight_plan::read(steep).plan);
+}
+
+/// The stage's 20 m are wrong for all that inherit them; the leg alone may be raised, too.
+#[test]
+fn a_stage_that_is_too_low_is_named_and_can_be_raised_itself() {
+    let low = SQUARE.replacen(
+        r#"altitude="150" altitudeReference="home">"#,
+        r#"altitude="20" altitudeReference="amsl">"#,
+        1,
+    );
+    let mut window = opened(&low);
+    assert!(window.shows("Problem: side2: raise this leg"), "{:?}", window.errors());
+    assert!(
+        window.shows("(it inherits 20 m AMSL from “circuit”)") || window.shows("inherits 20 m AMSL from")
+    );
+    let of_leg = |window: &Window| window.plan().leg(&"side2".into()).unwrap().leg.altitude.clone();
+    window.harness.get_all_by_label("Fix “circuit” (2 legs)").next().unwrap().scroll_to_me();
+    window.steps(10);
+    let there = window.harness.get_all_by_label("Fix “circuit” (2 legs)").next().unwrap().rect().center();
+    window.click_at(there);
+    window.until_analysed();
+    let said = window.plan().stage(&"circuit".into()).unwrap().altitude.clone().unwrap();
+    assert!(matches!(said.metres, flight_plan::Value::Constant(metres) if metres > 300.0), "{said:?}");
+    assert_eq!(of_leg(&window), None, "it goes on inheriting");
+    window.click("Undo");
+    assert_eq!(window.plan(), flight_plan::read(&low).plan, "one step");
+}
+
+/// Whoever clicks twice has read one of them.
+#[test]
+fn a_remedy_that_comes_under_the_pointer_is_pressed_when_there_was_time_to_read_it() {
+    let wrong = |fix: &str| format!(r#"<TF id="x{fix}" fix="{fix}"/>"#);
+    let legs = format!(r#"<TF id="side2" fix="B"/>{}{}"#, wrong("RIGDE"), wrong("RIDEG"));
+    let fixes = r#"<fix id="RIDGE" lat="36.3150" lon="-84.1600"/></fixes>"#;
+    let text = SQUARE.replacen(r#"<TF id="side2" fix="B"/>"#, &legs, 1).replacen("</fixes>", fixes, 1);
+    let mut window = opened(&text);
+    let wrong =
+        |window: &Window| window.errors().iter().filter(|error| error.contains("[unknown-fix]")).count();
+    assert_eq!(wrong(&window), 2);
+    let fix = window.harness.get_all_by_label("Fix").next().unwrap().rect().center();
+    window.click_at(fix);
+    window.until_analysed();
+    assert_eq!(wrong(&window), 1);
+    // apart from the first by more than a double click is, at the same place
+    window.steps(40);
+    assert!(window.harness.get_all_by_label("Fix").any(|other| other.rect().contains(fix)));
+    let once = window.plan();
+    window.click_at(fix);
+    window.until_analysed();
+    assert_eq!(window.plan(), once, "it was not read");
+    window.steps(90);
+    window.click_at(fix);
+    window.until_analysed();
+    assert_eq!(wrong(&window), 0);
+}
+
+/// While a change is reviewed nobody knows that the error is gone: what the last review found, of what is still there.
+#[test]
+fn what_was_wrong_stays_in_grey_until_the_change_is_reviewed() {
+    let window = opened(&SQUARE.replacen("<mainPlan", ZONE, 1));
+    let known = window.app().analysis().clone();
+    assert!(known.unsettled.is_empty());
+    let unsettled = known.problems.iter().filter(|problem| problem.code == "keep-out").cloned().collect();
+    let mut checked = known.clone();
+    (checked.problems, checked.unsettled) = (Vec::new(), unsettled);
+    (checked.reviewed, checked.is_complete) = (false, false);
+    let alone = Alone::default();
+    let scene = alone.scene(window.app(), window.app().document(), &checked);
+    assert!(scene.faulty().is_empty() && scene.perhaps_faulty().contains(&Id::new("side2")));
+    let mut panel = gcs_app::panels::problems::Problems::default();
+    let mut queue = gcs_app::command::Queue::default();
+    let drawn = |ui: &mut egui::Ui| panel.ui(ui, &scene, &mut queue);
+    let builder = egui_kittest::Harness::builder().with_size(vec2(320.0, 400.0));
+    let mut harness = builder.with_context_setup(gcs_app::theme::install).build_ui(drawn);
+    harness.run_steps(2);
+    let row = |of: &str| harness.query_all_by_label_contains(of).count();
+    assert!(row("Being checked: side2: ") == 1 && row("Problem: ") == 0 && row("Fix") == 0);
 }
 
 /// Moving the scan is no help where the zone is inside of what is to be seen. The remedy has to be tried, and comes a little later.
