@@ -103,10 +103,10 @@ pub enum DocumentCommand {
     LoadTheirs,
     /// Keep the document as it is; saving replaces what another program has written.
     KeepMine,
-    /// Open what a crashed window left behind.
-    Recover,
+    /// Open what a crashed window left behind: all of it, or the document with this number.
+    Recover(Option<usize>),
     /// Delete it.
-    ForgetLeftBehind,
+    ForgetLeftBehind(Option<usize>),
     /// Save where it came from, asking if it came from nowhere.
     Save,
     /// Ask where to save.

@@ -4,6 +4,7 @@
 use crate::document::Document;
 use crate::files::{Stamp, write_whole};
 use flight_plan::FlightPlan;
+use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::ErrorKind;
@@ -11,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::Duration;
 
 /// Seconds between two copies, at least.
 const PERIOD_S: f64 = 2.0;
@@ -38,18 +39,9 @@ pub struct LeftDocument {
     pub name: String,
     /// When it was last changed, to the [`PERIOD_S`], seconds since 1970-01-01T00:00:00Z; a copy that does not say was written then.
     #[serde(default, alias = "kept_unix_s")]
-    pub changed_unix_s: Option<u64>,
-    /// How long ago that was when it was found.
-    #[serde(skip)]
-    pub age: Duration,
+    pub changed_unix_s: Option<i64>,
     /// The plan as it would be saved.
     pub text: String,
-}
-
-impl LeftDocument {
-    fn changed(&self) -> Option<SystemTime> {
-        UNIX_EPOCH.checked_add(Duration::from_secs(self.changed_unix_s?))
-    }
 }
 
 /// What a window left behind that ended without being closed.
@@ -64,16 +56,16 @@ struct Unsaved {
     path: Option<PathBuf>,
     stamp: Option<Stamp>,
     plan: Arc<FlightPlan>,
-    changed: SystemTime,
+    changed_unix_s: i64,
 }
 
 impl Unsaved {
-    fn of(document: &Document, changed: SystemTime) -> Self {
+    fn of(document: &Document, changed_unix_s: i64) -> Self {
         Self {
             path: document.path().map(Path::to_owned),
             stamp: document.stamp(),
             plan: document.plan().clone(),
-            changed,
+            changed_unix_s,
         }
     }
 
@@ -82,8 +74,7 @@ impl Unsaved {
             path: self.path.clone(),
             stamp: self.stamp,
             name: self.plan.name.clone(),
-            changed_unix_s: unix_s(self.changed),
-            age: Duration::ZERO,
+            changed_unix_s: Some(self.changed_unix_s),
             text: flight_plan::write(&self.plan),
         }
     }
@@ -102,10 +93,11 @@ pub struct Keeper {
     jobs: Option<Sender<Job>>,
     failures: Receiver<String>,
     worker: Option<JoinHandle<()>>,
-    /// The versions of which there are copies, each with when it came to be; `None`: what is there is not of this window.
-    kept: Option<Vec<(u64, SystemTime)>>,
+    /// The versions of which there are copies, each with when it came to be, seconds since 1970-01-01T00:00:00Z; `None`: what is
+    /// there is not of this window.
+    kept: Option<Vec<(u64, i64)>>,
     /// The versions that were recovered, each with when it came to be in the window that crashed.
-    recovered: Vec<(u64, SystemTime)>,
+    recovered: Vec<(u64, i64)>,
     last_s: f64,
     left_behind: Option<LeftBehind>,
     /// Held while the window lives: the place is not free.
@@ -165,22 +157,33 @@ impl Keeper {
         self.left_behind.as_ref()
     }
 
-    /// It was decided: what was left behind is given away, and its copy is no longer needed once the document that it
-    /// became is kept or saved.
-    pub fn take_left_behind(&mut self) -> Option<LeftBehind> {
+    /// It was decided, of all or `only` of one of them: what was left behind is given away, and its copy is no longer needed once the
+    /// document that it became is kept or saved.
+    pub fn take_left_behind(&mut self, only: Option<usize>) -> Vec<LeftDocument> {
         // what is there now is not of this document
         self.kept = None;
-        self.left_behind.take()
+        let Some(mut left) = self.left_behind.take() else { return Vec::new() };
+        let Some(number) = only.filter(|number| *number < left.documents.len()) else {
+            return left.documents;
+        };
+        let taken = vec![left.documents.remove(number)];
+        self.left_behind = Some(left).filter(|left| !left.documents.is_empty());
+        taken
     }
 
     /// What was left behind has become this version of a document: it is as old as it was.
     pub fn recovered_as(&mut self, version: u64, left: &LeftDocument) {
-        self.recovered.extend(left.changed().map(|changed| (version, changed)));
+        self.recovered.extend(left.changed_unix_s.map(|changed| (version, changed)));
     }
 
     /// Keeps a copy of these documents with unsaved changes if they have changed, or takes it away where there are none. Returns
-    /// after how long to look again.
-    pub fn tend<'d>(&mut self, unsaved: impl Iterator<Item = &'d Document>, now_s: f64) -> Option<Duration> {
+    /// after how long to look again. `now_s`: by the window's clock; `utc`: the time of day.
+    pub fn tend<'d>(
+        &mut self,
+        unsaved: impl Iterator<Item = &'d Document>,
+        now_s: f64,
+        utc: Timestamp,
+    ) -> Option<Duration> {
         let unsaved: Vec<&Document> = unsaved.collect();
         let versions = unsaved.iter().map(|document| document.version());
         let has_all = |kept: &Vec<(u64, _)>| versions.clone().eq(kept.iter().map(|(version, _)| *version));
@@ -193,10 +196,10 @@ impl Keeper {
         }
         self.last_s = now_s;
         let before = self.kept.take().unwrap_or_default();
-        let now = SystemTime::now();
         let known = || before.iter().chain(&self.recovered);
-        let since = |version| known().find(|(of, _)| *of == version).map_or(now, |(_, changed)| *changed);
-        let kept: Vec<(u64, SystemTime)> = versions.map(|version| (version, since(version))).collect();
+        let since =
+            |version| known().find(|(of, _)| *of == version).map_or(utc.as_second(), |(_, changed)| *changed);
+        let kept: Vec<(u64, i64)> = versions.map(|version| (version, since(version))).collect();
         let unsaved =
             unsaved.into_iter().zip(&kept).map(|(document, (_, changed))| Unsaved::of(document, *changed));
         self.order(unsaved.collect());
@@ -255,19 +258,14 @@ fn carry_out(job: Job, copy: &Path) -> std::io::Result<()> {
     }
 }
 
-fn unix_s(at: SystemTime) -> Option<u64> {
-    at.duration_since(UNIX_EPOCH).ok().map(|since| since.as_secs())
-}
-
 /// `None`: nothing was left there, or nothing that can be read.
 fn read(copy: &Path) -> Option<LeftBehind> {
     let written = copy.metadata().and_then(|meta| meta.modified()).ok()?;
+    let written = Timestamp::try_from(written).ok()?;
     let mut kept: Kept = serde_json::from_slice(&std::fs::read(copy).ok()?).ok()?;
     for document in &mut kept.documents {
         // once it is written again, the file no longer says so
-        document.changed_unix_s = document.changed_unix_s.or_else(|| unix_s(written));
-        let age = document.changed().and_then(|changed| changed.elapsed().ok());
-        document.age = age.unwrap_or_default();
+        document.changed_unix_s = document.changed_unix_s.or(Some(written.as_second()));
     }
     (!kept.documents.is_empty()).then_some(LeftBehind { documents: kept.documents })
 }
@@ -290,8 +288,19 @@ mod tests {
         document
     }
 
+    /// The time of day in these tests, seconds since 1970-01-01T00:00:00Z.
+    const TODAY_S: i64 = 1_790_000_000;
+
+    fn utc(later_s: i64) -> Timestamp {
+        Timestamp::from_second(TODAY_S + later_s).unwrap()
+    }
+
     fn tend(keeper: &mut Keeper, document: &Document, now_s: f64) -> Option<Duration> {
-        keeper.tend(std::iter::once(document).filter(|document| document.is_dirty()), now_s)
+        keeper.tend(std::iter::once(document).filter(|document| document.is_dirty()), now_s, utc(0))
+    }
+
+    fn ages(keeper: &Keeper) -> Vec<Option<i64>> {
+        keeper.left_behind().unwrap().documents.iter().map(|left| left.changed_unix_s).collect()
     }
 
     #[test]
@@ -299,12 +308,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (first, second) = (edited(), edited());
         let mut killed = Keeper::open(folder.path()).unwrap();
-        assert_eq!(killed.tend([&first, &second].into_iter(), 0.0), None);
-        assert_eq!(killed.tend([&second, &first].into_iter(), 9.0), None);
+        assert_eq!(killed.tend([&first, &second].into_iter(), 0.0, utc(0)), None);
+        assert_eq!(killed.tend([&second, &first].into_iter(), 9.0, utc(9)), None);
         drop(killed);
-        let found = Keeper::open(folder.path()).unwrap().take_left_behind().unwrap();
-        assert_eq!(found.documents.len(), 2);
-        assert_eq!(flight_plan::read(found.documents[1].text.as_bytes()).plan, **first.plan());
+        let found = Keeper::open(folder.path()).unwrap().take_left_behind(None);
+        assert_eq!(found.len(), 2);
+        assert_eq!(flight_plan::read(found[1].text.as_bytes()).plan, **first.plan());
     }
 
     #[test]
@@ -316,7 +325,7 @@ mod tests {
         assert_eq!(tend(&mut killed, &document, 0.0), None);
         drop(killed);
         let mut next = Keeper::open(folder.path()).unwrap();
-        let found = next.take_left_behind().unwrap().documents.remove(0);
+        let found = next.take_left_behind(None).remove(0);
         assert_eq!(found.path.as_deref(), document.path());
         assert_eq!(flight_plan::read(found.text.as_bytes()).plan, **document.plan());
         assert_eq!(tend(&mut next, &Document::default(), 0.0), None);
@@ -395,16 +404,49 @@ mod tests {
         assert_eq!(Keeper::open(folder.path()).unwrap().left_behind(), None);
     }
 
-    /// Each since it was edited, though all are written when one is; copies of earlier versions are as old as their file.
+    /// Though both are written when one is edited.
+    #[test]
+    fn of_two_documents_each_is_as_old_as_its_own_last_change() {
+        let folder = tempfile::tempdir().unwrap();
+        let (still, mut busy) = (edited(), edited());
+        let mut window = Keeper::open(folder.path()).unwrap();
+        window.tend([&still, &busy].into_iter(), 0.0, utc(0));
+        busy.edit(&Edit::MoveFix { fix: "A".into(), to: LatLon::new(2.0, 2.0) }).unwrap();
+        window.tend([&busy, &still].into_iter(), 600.0, utc(600));
+        drop(window);
+        let next = Keeper::open(folder.path()).unwrap();
+        assert_eq!(ages(&next), [Some(TODAY_S + 600), Some(TODAY_S)]);
+    }
+
+    #[test]
+    fn one_of_several_is_decided_and_the_others_wait() {
+        let folder = tempfile::tempdir().unwrap();
+        let (first, second) = (edited(), edited());
+        let mut killed = Keeper::open(folder.path()).unwrap();
+        killed.tend([&first, &second].into_iter(), 0.0, utc(0));
+        drop(killed);
+        let mut next = Keeper::open(folder.path()).unwrap();
+        assert_eq!(next.take_left_behind(Some(1)).len(), 1);
+        tend(&mut next, &Document::default(), 0.0);
+        drop(next);
+        let mut again = Keeper::open(folder.path()).unwrap();
+        assert_eq!(ages(&again).len(), 1, "the other one waits on");
+        again.take_left_behind(Some(0));
+        assert_eq!(again.left_behind(), None);
+    }
+
+    /// Copies of earlier versions are as old as their file.
     #[test]
     fn plans_are_left_with_their_names_and_ages() {
         let folder = tempfile::tempdir().unwrap();
         let kept = r#"{"documents":[{"path":null,"name":"Ridge","kept_unix_s":1000,"text":""},{"path":null,"text":""}]}"#;
         std::fs::write(folder.path().join("0.json"), kept).unwrap();
-        let found = Keeper::open(folder.path()).unwrap().take_left_behind().unwrap();
-        let [ridge, old] = found.documents.as_slice() else { panic!("{found:?}") };
+        let copy = folder.path().join("0.json");
+        let written = Timestamp::try_from(copy.metadata().unwrap().modified().unwrap()).unwrap();
+        let found = Keeper::open(folder.path()).unwrap().take_left_behind(None);
+        let [ridge, old] = found.as_slice() else { panic!("{found:?}") };
         assert_eq!((ridge.name.as_str(), old.name.as_str()), ("Ridge", ""));
-        assert!(ridge.age.as_secs() > 1_000_000_000 && old.age.as_secs() < 60, "{ridge:?} {old:?}");
+        assert_eq!((ridge.changed_unix_s, old.changed_unix_s), (Some(1000), Some(written.as_second())));
     }
 
     /// However often it is written again, or recovered and lost once more: when it was last changed stays what it was.
@@ -413,28 +455,25 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let kept = r#"{"documents":[{"path":null,"kept_unix_s":1000,"text":""}]}"#;
         std::fs::write(folder.path().join("0.json"), kept).unwrap();
-        let changed = |keeper: &Keeper| -> Vec<Option<u64>> {
-            keeper.left_behind().unwrap().documents.iter().map(|left| left.changed_unix_s).collect()
-        };
         // beside another one, it is written again
         let other = edited();
         let mut window = Keeper::open(folder.path()).unwrap();
         tend(&mut window, &other, 0.0);
         drop(window);
         let mut next = Keeper::open(folder.path()).unwrap();
-        assert!(matches!(changed(&next)[..], [Some(now), Some(1000)] if now > 1000), "{:?}", changed(&next));
-        let found = next.take_left_behind().unwrap();
+        assert_eq!(ages(&next), [Some(TODAY_S), Some(1000)]);
+        let found = next.take_left_behind(None);
         let mut recovered = edited();
-        next.recovered_as(recovered.version(), &found.documents[1]);
+        next.recovered_as(recovered.version(), &found[1]);
         tend(&mut next, &recovered, 0.0);
         drop(next);
         let mut again = Keeper::open(folder.path()).unwrap();
-        assert_eq!(changed(&again), [Some(1000)]);
-        again.take_left_behind();
+        assert_eq!(ages(&again), [Some(1000)]);
+        again.take_left_behind(None);
         recovered.edit(&Edit::MoveFix { fix: "A".into(), to: LatLon::new(2.0, 2.0) }).unwrap();
         tend(&mut again, &recovered, 0.0);
         drop(again);
-        assert!(changed(&Keeper::open(folder.path()).unwrap())[0].unwrap() > 1000, "it was edited");
+        assert_eq!(ages(&Keeper::open(folder.path()).unwrap()), [Some(TODAY_S)], "it was edited");
     }
 
     #[test]

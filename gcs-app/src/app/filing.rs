@@ -9,7 +9,7 @@ use crate::files::{Choices, Content, Entry, FileEvent, Over, Purpose, Stamp, Wri
 use crate::layers::{LayerCommand, Source};
 use crate::map::{clipboard, drawings};
 use crate::panels::browse::Browsing;
-use crate::recovery::{Keeper, LeftBehind};
+use crate::recovery::{Keeper, LeftDocument};
 use crate::state::Level;
 use flight_exec::rehearse::WhatIf;
 use interchange::{Format, Note};
@@ -44,8 +44,10 @@ impl App {
     }
 
     pub(super) fn tend_copy(&mut self, ctx: &egui::Context) {
+        let now = self.now(ctx);
         let Some(keeper) = &mut self.keeper else { return };
-        if let Some(wait) = keeper.tend(self.shelf.unsaved(&self.document), ctx.input(|i| i.time)) {
+        let unsaved = self.shelf.unsaved(&self.document);
+        if let Some(wait) = keeper.tend(unsaved, now.window_s, now.utc) {
             ctx.request_repaint_after(wait);
         }
         self.view.notice = keeper.failure().or_else(|| self.view.notice.take());
@@ -307,12 +309,15 @@ impl App {
         }
     }
 
-    pub(super) fn recover(&mut self) {
-        let Some(found) = self.take_left_behind() else { return };
+    pub(super) fn recover(&mut self, only: Option<usize>) {
+        let found = self.take_left_behind(only);
+        if found.is_empty() {
+            return;
+        }
         self.document.set_discarded(false);
-        let several = found.documents.len() > 1;
+        let several = found.len() > 1;
         // the one that was shown is shown again
-        for left in found.documents.into_iter().rev() {
+        for left in found.into_iter().rev() {
             let mut recovered = Document::recovered(left.text.as_bytes(), left.path.clone());
             recovered.set_stamp(left.stamp);
             self.keeper.iter_mut().for_each(|keeper| keeper.recovered_as(recovered.version(), &left));
@@ -322,8 +327,8 @@ impl App {
         self.view.notice = several.then(|| self.also_recovered());
     }
 
-    pub(super) fn take_left_behind(&mut self) -> Option<LeftBehind> {
-        self.keeper.as_mut().and_then(Keeper::take_left_behind)
+    pub(super) fn take_left_behind(&mut self, only: Option<usize>) -> Vec<LeftDocument> {
+        self.keeper.as_mut().map_or_else(Vec::new, |keeper| keeper.take_left_behind(only))
     }
 
     /// Saves in a file that was chosen; over another one only if that was chosen, too.

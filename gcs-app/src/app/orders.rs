@@ -73,8 +73,8 @@ impl App {
             }
             DocumentCommand::Open(path) => self.replace(Replacement::Open(path)),
             DocumentCommand::Create(outline) => self.create(*outline),
-            DocumentCommand::Recover => self.recover(),
-            DocumentCommand::ForgetLeftBehind => drop(self.take_left_behind()),
+            DocumentCommand::Recover(only) => self.recover(only),
+            DocumentCommand::ForgetLeftBehind(only) => drop(self.take_left_behind(only)),
             DocumentCommand::Save => self.save(),
             DocumentCommand::AskSaveAs => self.ask_save(),
             DocumentCommand::Browse(folder, name) => self.browse(folder, name),

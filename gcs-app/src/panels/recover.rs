@@ -5,40 +5,75 @@ use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::recovery::{LeftBehind, LeftDocument};
 use crate::{theme, units};
 use egui::{Key, Label, Response, RichText, ScrollArea, Ui};
+use jiff::Timestamp;
 
 /// Where there is room for it, screen points.
 const WIDTH: f32 = 380.0;
 /// Of the list of plans, screen points.
-const LIST_HEIGHT: f32 = 120.0;
+const LIST_HEIGHT: f32 = 190.0;
 
 /// Draws it. It hides nothing that a flight is led with: a window may have crashed in the middle of one.
 /// `may_close`: Escape is for it. `is_calm`: no vehicle flies, and Return may be for it.
-pub fn show(ui: &mut Ui, found: &LeftBehind, (may_close, is_calm): (bool, bool), queue: &mut Queue) {
+pub fn show(
+    ui: &mut Ui,
+    found: &LeftBehind,
+    utc: Timestamp,
+    (may_close, is_calm): (bool, bool),
+    queue: &mut Queue,
+) {
     ui.set_width(ui.available_width().min(WIDTH));
-    let weak = theme::of(ui).weak;
+    let p = theme::of(ui);
+    let several = found.documents.len() > 1;
     ui.strong("The last window ended without saving");
     ui.label("It had changes of");
     ScrollArea::vertical().id_salt("left behind").max_height(LIST_HEIGHT).show(ui, |ui| {
-        for document in &found.documents {
+        for (number, document) in found.documents.iter().enumerate() {
             ui.add(Label::new(format!("• {}", which(document))).truncate());
-            ui.add(Label::new(RichText::new(format!("   {}", when(document))).color(weak)).truncate());
+            ui.add(Label::new(RichText::new(format!("   {}", when(document, utc))).color(p.weak)).truncate());
+            if several {
+                ui.push_id(number, |ui| decide_on(ui, number, queue));
+            }
         }
     });
-    ui.label(RichText::new("You may go on meanwhile: they are kept until you decide.").color(weak));
+    let opens = match several {
+        true => {
+            "Recover all opens the first one; Undo (Ctrl+Z) leads to the others, and each is saved in its own file. "
+        }
+        false => "",
+    };
+    let text = format!("{opens}You may go on meanwhile: they are kept until you decide.");
+    ui.add(Label::new(RichText::new(text).color(p.weak)).wrap());
     ui.add_space(8.0);
     ui.horizontal_wrapped(|ui| {
-        let recover = ui.add(primary_button("Recover the changes", theme::of(ui)));
+        let (all, none) = match several {
+            true => ("Recover all", "Delete all"),
+            false => ("Recover the changes", "Delete them"),
+        };
+        let recover = ui.add(primary_button(all, p));
         offer_return(ui, &recover, is_calm);
         if recover.clicked() {
-            queue.document(DocumentCommand::Recover);
+            queue.document(DocumentCommand::Recover(None));
         }
         // no undo brings them back
-        if field::hold_button(ui, "Delete them", theme::of(ui).caution, 0.0) {
-            queue.document(DocumentCommand::ForgetLeftBehind);
+        if field::hold_button(ui, none, p.caution, 0.0) {
+            queue.document(DocumentCommand::ForgetLeftBehind(None));
         }
         let later = ui.button("Later").on_hover_text("Asked again from the menu, and by the next window");
         if later.clicked() || (may_close && ui.input(|i| i.key_pressed(Key::Escape))) {
             queue.view(ViewCommand::AskRecovery(false));
+        }
+    });
+}
+
+/// One of several, while the others wait.
+fn decide_on(ui: &mut Ui, number: usize, queue: &mut Queue) {
+    ui.horizontal(|ui| {
+        ui.add_space(10.0);
+        if ui.button("Recover").clicked() {
+            queue.document(DocumentCommand::Recover(Some(number)));
+        }
+        if field::hold_button(ui, "Delete", theme::of(ui).caution, 0.0) {
+            queue.document(DocumentCommand::ForgetLeftBehind(Some(number)));
         }
     });
 }
@@ -53,11 +88,12 @@ fn which(left: &LeftDocument) -> String {
 }
 
 /// When the last change was made, and how long ago that is.
-fn when(left: &LeftDocument) -> String {
-    let ago = units::duration(left.age.as_secs_f64());
-    let at = left.changed_unix_s.and_then(|s| jiff::Timestamp::from_second(s.try_into().ok()?).ok());
-    let at = at.map_or_else(String::new, |at| at.strftime(" %Y-%m-%d %H:%M UTC,").to_string());
-    format!("last changed{at} {ago} ago")
+fn when(left: &LeftDocument, utc: Timestamp) -> String {
+    let Some(at) = left.changed_unix_s.and_then(|s| Timestamp::from_second(s).ok()) else {
+        return "nobody knows when it was last changed".into();
+    };
+    let ago_s = (utc.as_second() - at.as_second()).max(0);
+    format!("last changed {} UTC, {} ago", at.strftime("%Y-%m-%d %H:%M"), units::duration(ago_s as f64))
 }
 
 /// Return presses it, until something else is chosen. While something else has the keyboard, or in a flight, Return is not meant for it.

@@ -69,6 +69,44 @@ fn what_is_not_wanted_is_not_offered_again() {
     assert!(!window_in(folder.path(), "").shows("ended without saving"));
 }
 
+/// Two plans were lost: each has its name, its age and its own buttons, and the other one waits.
+#[test]
+fn each_of_several_plans_is_recovered_or_deleted_by_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    edit_and_kill(folder.path());
+    let copy = folder.path().join("0.json");
+    let mut kept: serde_json::Value = serde_json::from_slice(&std::fs::read(&copy).unwrap()).unwrap();
+    let (first, now_s) = (kept["documents"][0].clone(), 1_790_000_000_u64);
+    let mut other = first.clone();
+    other["name"] = "Ridge".into();
+    other["changed_unix_s"] = (now_s - 3665).into();
+    kept["documents"] = serde_json::Value::Array(vec![first, other]);
+    std::fs::write(&copy, kept.to_string()).unwrap();
+    let mut window = window_in(folder.path(), "");
+    assert!(window.shows("• “Square circuit”") && window.shows("• “Ridge”"));
+    assert!(window.shows("13:12 UTC, 1:01:05 ago") && window.shows("Recover all opens the first one"));
+    let second = |window: &Window, name: &str| {
+        let mut found: Vec<_> = window.harness.query_all_by_label(name).map(|b| b.rect().center()).collect();
+        found.sort_by(|a, b| a.y.total_cmp(&b.y));
+        found[1]
+    };
+    let at = second(&window, "Recover");
+    window.click_at(at);
+    assert!(window.app().document().is_dirty());
+    assert!(window.shows("• “Square circuit”") && !window.shows("• “Ridge”"), "the other one waits");
+    drop(window);
+    // the one that was recovered was not saved, either
+    let mut window = window_in(folder.path(), "");
+    assert!(window.shows("Delete all (hold)"));
+    let at = second(&window, "Delete (hold)");
+    window.harness.hover_at(at);
+    window.harness.drag_at(at);
+    window.steps(90);
+    window.harness.drop_at(at);
+    window.steps(3);
+    assert!(window.shows("Recover the changes") && !window.shows("Recover all"), "one is left");
+}
+
 #[test]
 fn copies_that_cannot_be_kept_are_said() {
     let folder = tempfile::tempdir().unwrap();
