@@ -18,7 +18,7 @@ mod value;
 
 use super::field;
 use super::{Panel, PanelId, Place, Scene};
-use crate::command::Queue;
+use crate::command::{BranchId, Queue};
 use crate::theme;
 use crate::units;
 use egui::{RichText, ScrollArea, Ui};
@@ -90,6 +90,7 @@ fn common(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
 }
 
 fn part(ui: &mut Ui, scene: &Scene<'_>, draft: Draft, queue: &mut Queue) {
+    branch(ui, scene, &draft, queue);
     heading(ui, scene, &draft);
     match draft.subject() {
         Subject::Plan => summary(ui, scene),
@@ -109,6 +110,21 @@ fn part(ui: &mut Ui, scene: &Scene<'_>, draft: Draft, queue: &mut Queue) {
         }
         _ => {}
     }
+}
+
+/// Of the branch that is selected, before its fork.
+fn branch(ui: &mut Ui, scene: &Scene<'_>, draft: &Draft, queue: &mut Queue) {
+    let Some(BranchId { fork, branch }) = scene.selected_branch() else { return };
+    let label = scene.document.plan().branch_label(&fork, &branch);
+    ui.horizontal(|ui| {
+        ui.add(egui::Label::new(RichText::new(label).size(15.0).strong()).truncate());
+        let of = format!("branch of {}", scene.document.label(&fork));
+        ui.add(egui::Label::new(RichText::new(of).color(theme::of(ui).weak)).truncate());
+    });
+    if let Some(mut page) = Page::of(scene, std::slice::from_ref(draft), queue) {
+        list::alone(ui, &mut page, "branch", &branch);
+    }
+    ui.separator();
 }
 
 fn form(ui: &mut Ui, scene: &Scene<'_>, drafts: &[Draft], queue: &mut Queue) {

@@ -3,6 +3,7 @@
 use super::drawing::choose;
 use super::pasting::taken;
 use super::{SQUARE, Window};
+use egui::accesskit::Role;
 use egui::{Key, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_plan::Id;
@@ -61,6 +62,44 @@ fn with_a_fork_selected_legs_are_drawn_into_the_branch_that_is_chosen() {
     window.click_at(at + vec2(40.0, 90.0));
     assert_eq!(ways(&window), ["side1", "fork1 on>leg1 skip>side3", "leg1", "side2", "side3", "side4"]);
     assert!(window.shows("Draw legs: ") || window.shows("Next leg"), "the next click goes on from there");
+}
+
+/// What a close look after the scan needs; the branch is called after what is drawn into it.
+#[test]
+fn a_fork_is_put_behind_a_leg_and_its_other_way_is_named_by_what_is_drawn() {
+    let mut window = window();
+    window.row_menu(("TF side2", 0), "Fork behind it");
+    window.steps(2);
+    assert_eq!(ways(&window)[..4], ["side1", "side2", "fork1 on>side3 way2>side3", "side3"]);
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+    window.select_row(("▸ Way 2", 0));
+    window.press(Key::O);
+    let at = window.centre("Map") + vec2(60.0, 120.0);
+    window.click_at(at);
+    window.click_at(at + vec2(50.0, 0.0));
+    let look = window.selected();
+    window.press(Key::V);
+    assert_eq!(ways(&window)[2], format!("fork1 on>side3 way2>{look}"));
+    assert_eq!(window.plan().branch_label(&Id::new("fork1"), &Id::new("way2")), look);
+    window.until_analysed();
+    assert_eq!(window.errors(), Vec::<String>::new());
+}
+
+#[test]
+fn a_branch_that_is_selected_has_its_own_fields_first() {
+    let mut window = with_drawn_way(800.0);
+    window.select_row(("▸ Way 2", 0));
+    window.steps(2);
+    let own = window.harness.get_by_role_and_label(Role::TextInput, "Selected branch: Label").rect();
+    let of_fork = window.harness.query_all_by_role_and_label(Role::TextInput, "Name").next().unwrap().rect();
+    assert!(own.bottom() < of_fork.top(), "{own} {of_fork}");
+    assert!(own.top() < 800.0 && window.shows("branch of fork1"));
+    window.fill_in(Role::TextInput, "Selected branch: Label", "Close look");
+    assert_eq!(window.plan().branch_label(&Id::new("fork1"), &Id::new("way2")), "Close look");
+    window.select_row(("FORK fork1", 0));
+    window.steps(2);
+    assert!(!window.shows("Selected branch: Label"));
 }
 
 /// The square with a second way from side2, over two legs that were drawn, in a window of this height.

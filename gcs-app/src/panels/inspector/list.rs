@@ -6,6 +6,7 @@ use crate::panels::field;
 use crate::theme;
 use egui::{CollapsingHeader, RichText, Ui};
 use flight_plan::describe::{Change, Children, Description, Kind, Row};
+use flight_plan::{Element, Id};
 
 /// A list of more than this is closed at first.
 const LONG: usize = 8;
@@ -18,6 +19,20 @@ pub fn show(ui: &mut Ui, page: &mut Page<'_, '_>, children: &'static Children) {
     match (children.most, indices[..].first()) {
         (1, Some(only)) => one(ui, page, children, *only),
         _ => many(ui, page, children, &indices),
+    }
+}
+
+/// What the element of this name and identifier says, apart from the others.
+pub fn alone(ui: &mut Ui, page: &mut Page<'_, '_>, element: &str, id: &Id) {
+    let is_it = |child: &Element| child.name == element && child.attribute("id") == Some(id.as_str());
+    let index = page.element().children.iter().position(is_it);
+    let lists = page.draft().description().rows().filter_map(|row| match row {
+        Row::Children(children) => Some(children),
+        _ => None,
+    });
+    let what = lists.flat_map(|children| children.of).find(|what| what.element == element);
+    if let (Some(what), Some(index)) = (what, index) {
+        ui.push_id("alone", |ui| inside(ui, page, what, index, &format!("Selected {element}: ")));
     }
 }
 

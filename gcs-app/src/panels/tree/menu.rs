@@ -24,6 +24,7 @@ pub struct Entry {
 
 const NO_NEIGHBOUR: &str = "It has no neighbour there";
 const GONE: &str = "It is no longer in the plan";
+const IS_FORK: &str = "It is a fork: draw a new way from it (W)";
 const NOT_ONE_LIST: &str = "They are in several stages or loops: select legs of one";
 const NOT_IN_A_ROW: &str = "They do not follow each other in one list: select legs that do";
 
@@ -251,6 +252,7 @@ fn of_leg(plan: &FlightPlan, leg: &Id) -> Vec<Entry> {
         Entry::shifting("Move down", "Ctrl+Down", create::shift(plan, leg, 1)),
         made("Put into a loop", create::loop_around(plan, one), Selection::Leg),
         made("Fork before it", create::fork_around(plan, one), Selection::Leg),
+        Entry::making("Fork behind it", create::fork_behind(plan, leg), Selection::Leg, IS_FORK),
         made("Make a procedure of it", create::procedure_of(plan, one), Selection::Leg),
     ];
     if is_loop {

@@ -1,6 +1,6 @@
 //! Legs that are there, arranged anew: copied, moved, put into a loop, a fork or a procedure.
 
-use super::branch::merge;
+use super::branch::{SKIP, SKIP_ID, merge, other_way};
 use super::gather::{Gathered, gather};
 use super::kind::LegChoice;
 use super::leg::{Drawn, leg};
@@ -87,15 +87,35 @@ pub fn fork_around(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     let mut made = leg(plan, &Profile::default(), LegChoice::Intersection, &Drawn::Nothing, None, None)?;
     if let LegKind::Intersection { branches, .. } = &mut made.kind {
         let label = match legs.len() {
-            1 => format!("Skip {}", plan.label(first)),
-            _ => format!("Skip {} to {}", plan.label(first), plan.label(last)),
+            1 => format!("{SKIP}{}", plan.label(first)),
+            _ => format!("{SKIP}{} to {}", plan.label(first), plan.label(last)),
         };
-        branches.push(Branch { id: Id::new("skip"), label, next: Some(past), when: None });
+        branches.push(Branch { id: Id::new(SKIP_ID), label, next: Some(past), when: None });
     }
     let id = made.id.clone();
     let fork = Edit::InsertLeg { leg: Box::new(made), at: Spot::Before(first.clone()) };
     let merge = merge.map(|merge| Edit::InsertLeg { leg: Box::new(merge), at: Spot::After(last.clone()) });
     Some((id, Edit::All(std::iter::once(fork).chain(merge).collect())))
+}
+
+/// A fork behind a leg: on as before, which is the default, or another way, which leads there too until something is drawn into it.
+/// Where nothing follows, the ways meet in a merge. `None`: it is a fork itself.
+pub fn fork_behind(plan: &FlightPlan, id: &Id) -> Option<(Id, Edit)> {
+    let (list, index) = list_of(plan, id)?;
+    let before = list.get(index).filter(|leg| leg.as_fork().is_none())?;
+    let follower = before.next.clone().or(list.get(index + 1).map(|leg| leg.id.clone()));
+    let on = follower.clone().unwrap_or_else(|| plan.unique_id("merge"));
+    let merge = if follower.is_none() { Some(merge(plan, on.clone())?) } else { None };
+    let mut made = leg(plan, &Profile::default(), LegChoice::Intersection, &Drawn::Nothing, None, None)?;
+    if let LegKind::Intersection { branches, .. } = &mut made.kind {
+        branches.iter_mut().for_each(|branch| branch.next = Some(on.clone()));
+        branches.push(other_way(branches, on));
+    }
+    let made_id = made.id.clone();
+    let freed = before.next.is_some().then(|| replaced(Leg { next: None, ..before.as_ref().clone() }));
+    let fork = Edit::InsertLeg { leg: Box::new(made), at: Spot::After(id.clone()) };
+    let merge = merge.map(|merge| Edit::InsertLeg { leg: Box::new(merge), at: Spot::After(made_id.clone()) });
+    Some((made_id, Edit::All(freed.into_iter().chain([fork]).chain(merge).collect())))
 }
 
 /// A procedure of legs of one list, which is called in their place: the call, and the edit. `None` also where a way leads into
@@ -105,16 +125,18 @@ pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     let id = plan.fresh_id("call");
     let Gathered { legs: moved, next, led } = gather(plan, &legs, &id)?;
     let first = moved.first()?.clone();
+    let reference = moved.iter().find_map(|leg| place_of(plan, leg));
     let procedure = Procedure {
         id: plan.fresh_id("procedure"),
         name: String::new(),
         parameters: Vec::new(),
-        reference: moved.iter().find_map(|leg| place_of(plan, leg)),
+        reference,
         bearing_deg: 0.0,
         legs: moved,
     };
-    let call =
-        Call { procedure: procedure.id.clone(), arguments: Vec::new(), anchor: None, bearing_deg: None };
+    // where it is: what has an anchor can be dragged elsewhere
+    let anchor = reference.map(|at| Place::Position(Value::Constant(at)));
+    let call = Call { procedure: procedure.id.clone(), arguments: Vec::new(), anchor, bearing_deg: None };
     let caller = Leg {
         id: id.clone(),
         name: String::new(),

@@ -5,8 +5,14 @@ use super::kind::LegChoice;
 use super::leave::Leaving;
 use super::leg::{Drawn, leg as new_leg};
 use super::rearrange::lead_to;
+use super::ways::ways;
 use crate::{Branch, Edit, FlightPlan, Id, Leg, LegKind, Spot};
 use aircraft::Profile;
+use std::sync::Arc;
+
+/// What the name of a branch begins with that leads past legs, and its identifier.
+pub(super) const SKIP: &str = "Skip ";
+pub(super) const SKIP_ID: &str = "skip";
 
 /// Which way on from a fork.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -71,7 +77,8 @@ pub fn begin_way(plan: &FlightPlan, from: &Id, way: &Way, mut leg: Leg) -> Optio
     // where a branch leads that names nothing: ways that end with the list meet in a merge
     let follower = before.next.clone().or(behind.clone()).unwrap_or_else(|| plan.unique_id("merge"));
     let ways = ways_of(&mut fork, &follower)?;
-    let target = turn_to((&mut *ways.0, ways.1), way, &leg.id)?;
+    let is_empty = |branch: &Branch| !has_own_legs(list, index, branch);
+    let target = turn_to((&mut *ways.0, ways.1), way, &leg, is_empty)?;
     let merges = ways.0.iter().any(|branch| branch.next.as_ref() == Some(&follower)) || target == follower;
     let merge =
         (behind.is_none() && before.next.is_none() && merges).then(|| merge(plan, follower)).flatten();
@@ -101,22 +108,55 @@ fn ways_of<'a>(fork: &'a mut Leg, follower: &Id) -> Option<Ways<'a>> {
     Some((branches, default.as_ref()))
 }
 
-/// Lets a way begin with a leg; gives where that leg leads.
-fn turn_to((branches, default): Ways<'_>, way: &Way, leg: &Id) -> Option<Id> {
+/// Lets a way begin with a leg; gives where that leg leads. The first leg of a branch that nobody has named gives it its name.
+fn turn_to(
+    (branches, default): Ways<'_>,
+    way: &Way,
+    leg: &Leg,
+    is_empty: impl Fn(&Branch) -> bool,
+) -> Option<Id> {
     if let Way::Branch(id) = way {
-        return branches.iter_mut().find(|branch| branch.id == *id)?.next.replace(leg.clone());
+        let branch = branches.iter_mut().find(|branch| branch.id == *id)?;
+        if is_unnamed(branch) && is_empty(branch) {
+            branch.label = if leg.name.is_empty() { leg.id.to_string() } else { leg.name.clone() };
+        }
+        return branch.next.replace(leg.id.clone());
     }
     let on = branches.iter().find(|branch| Some(&branch.id) == default).or(branches.first())?;
     let target = on.next.clone();
-    let is_free = |n: &usize| branches.iter().all(|branch| branch.id != way_id(*n));
-    let number = (branches.len() + 1..).find(is_free)?;
-    let (id, label) = (way_id(number), format!("Way {number}"));
-    branches.push(Branch { id, label, next: Some(leg.clone()), when: None });
+    branches.push(other_way(branches, leg.id.clone()));
     target
+}
+
+/// One more way on from a fork, to there.
+pub(super) fn other_way(branches: &[Branch], to: Id) -> Branch {
+    let is_free = |n: &usize| branches.iter().all(|branch| branch.id != way_id(*n));
+    // one more candidate than there are branches: one of them is free
+    let first = branches.len() + 1;
+    let number = (first..=2 * first).find(is_free).unwrap_or(first);
+    Branch { id: way_id(number), label: way_name(number), next: Some(to), when: None }
 }
 
 fn way_id(number: usize) -> Id {
     Id::new(&format!("way{number}"))
+}
+
+fn way_name(number: usize) -> String {
+    format!("Way {number}")
+}
+
+/// It has the name that it was made with.
+fn is_unnamed(branch: &Branch) -> bool {
+    let number = branch.id.as_str().strip_prefix("way").and_then(|number| number.parse().ok());
+    number.is_some_and(|number| branch.label == way_name(number))
+        || (branch.id.as_str() == SKIP_ID && branch.label.starts_with(SKIP))
+}
+
+/// Legs are flown on it alone.
+fn has_own_legs(list: &[Arc<Leg>], fork: usize, branch: &Branch) -> bool {
+    let branches = list.get(fork).and_then(|leg| leg.as_fork()).map_or(&[][..], |fork| fork.branches);
+    let number = branches.iter().position(|other| other.id == branch.id);
+    number.is_some_and(|number| ways(list).contains(&Some((fork, number))))
 }
 
 /// An intersection where ways meet again.
@@ -194,6 +234,51 @@ mod tests {
         assert_eq!(ways(&both), ["a", "b", "fork1 on>o1 way2>n1", "o1>c", "n1", "c"]);
         assert_eq!(errors(&both), Vec::<String>::new());
         assert!(begin_way(&both, &"fork1".into(), &Way::Branch("no".into()), drawn("x1")).is_none());
+    }
+
+    fn label(plan: &FlightPlan, fork: &str, branch: &str) -> String {
+        let branch = Id::new(branch);
+        plan.branch_label(&fork.into(), &branch).to_owned()
+    }
+
+    /// Until somebody names it; what is drawn before its first leg is no reason to call it otherwise.
+    #[test]
+    fn a_branch_is_called_after_the_first_leg_that_is_drawn_into_it() {
+        let plan = plan(ROUTE);
+        let (fork, edit) = super::super::fork_around(&plan, &["b".into()]).unwrap();
+        let forked = edit.apply(&plan).unwrap();
+        assert_eq!(label(&forked, fork.as_str(), "skip"), "Skip b");
+        let skip = Way::Branch("skip".into());
+        let close = Leg { name: "Close look".into(), ..drawn("n1") };
+        let drawn_into = begin_way(&forked, &fork, &skip, close).unwrap().apply(&forked).unwrap();
+        assert_eq!(label(&drawn_into, fork.as_str(), "skip"), "Close look");
+        let more = begin_way(&drawn_into, &fork, &skip, drawn("n2")).unwrap().apply(&drawn_into).unwrap();
+        assert_eq!(label(&more, fork.as_str(), "skip"), "Close look");
+        let named = super::super::rename_branch(&forked, &fork, &"skip".into(), "Past").unwrap();
+        let named = named.apply(&forked).unwrap();
+        let kept = begin_way(&named, &fork, &skip, drawn("n1")).unwrap().apply(&named).unwrap();
+        assert_eq!(label(&kept, fork.as_str(), "skip"), "Past");
+    }
+
+    #[test]
+    fn a_fork_behind_a_leg_leads_on_as_before_until_something_is_drawn_into_its_other_way() {
+        let plan = plan(ROUTE);
+        for (leg, forked, drawn_into) in [
+            ("b", "a b fork1 on>c way2>c c", "a b fork1 on>c way2>n1 n1 c"),
+            ("c", "a b c fork1 on>merge way2>merge merge", "a b c fork1 on>merge way2>n1 n1 merge"),
+        ] {
+            let (fork, edit) = super::super::fork_behind(&plan, &leg.into()).unwrap();
+            let made = edit.apply(&plan).unwrap();
+            assert_eq!(ways(&made).join(" "), forked);
+            assert_eq!(errors(&made), Vec::<String>::new());
+            assert_eq!(label(&made, "fork1", "way2"), "Way 2");
+            let way = Way::Branch("way2".into());
+            let drawn = begin_way(&made, &fork, &way, drawn("n1")).unwrap().apply(&made).unwrap();
+            assert_eq!(ways(&drawn).join(" "), drawn_into);
+            assert_eq!(errors(&drawn), Vec::<String>::new());
+            assert_eq!(label(&drawn, "fork1", "way2"), "n1");
+            assert!(super::super::fork_behind(&made, &fork).is_none(), "it is a fork itself");
+        }
     }
 
     #[test]

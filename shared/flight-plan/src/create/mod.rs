@@ -17,7 +17,7 @@ mod trial;
 mod ways;
 
 pub use arrange::{
-    delete_legs, delete_set, duplicate, fork_around, loop_around, procedure_of, shift, unloop,
+    delete_legs, delete_set, duplicate, fork_around, fork_behind, loop_around, procedure_of, shift, unloop,
 };
 pub use beside::like_beside;
 pub use bind::{Numeric, bind, bound_to, named_variable, put_at, unbind, variable_of_fix, variable_of_leg};
