@@ -178,6 +178,11 @@ impl Document {
         self.names.name(id).unwrap_or(id.as_str())
     }
 
+    /// The procedure that a leg calls; `None`: it is no call.
+    pub fn called(&self, leg: &Id) -> Option<&Id> {
+        self.names.called(leg)
+    }
+
     /// A sentence about the plan, with names in the place of the identifiers that stand in it as `` `id` ``.
     pub fn in_names(&self, sentence: &str) -> String {
         in_names(sentence, |id| self.names.name(id).or_else(|| self.names.name(&self.written(id))))

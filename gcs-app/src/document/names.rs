@@ -1,7 +1,7 @@
 //! What the parts of a plan are called: many names are asked for in each frame.
 
 use super::changed;
-use flight_plan::{FlightPlan, Id, Leg};
+use flight_plan::{FlightPlan, Id, Leg, LegKind};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -11,6 +11,7 @@ pub(super) struct Names {
     of: Option<Arc<FlightPlan>>,
     kinds: HashMap<Id, &'static str>,
     names: HashMap<Id, String>,
+    calls: HashMap<Id, Id>,
 }
 
 impl Names {
@@ -24,20 +25,34 @@ impl Names {
         self.names.get(id).map(String::as_str)
     }
 
+    /// The procedure that a leg calls; `None`: it is no call.
+    pub fn called(&self, leg: &Id) -> Option<&Id> {
+        self.calls.get(leg)
+    }
+
     /// Looks them up anew, unless only numbers and places have changed: those of ten thousand legs are not looked up at each move of
     /// a drag.
     pub fn refresh(&mut self, plan: &Arc<FlightPlan>) {
         if !self.of.as_ref().is_some_and(|before| is_called_the_same(before, plan)) {
             let legs = plan.all_legs();
             self.kinds = legs.iter().map(|c| (c.leg.id.clone(), c.leg.kind_name())).collect();
+            let call = |leg: &Leg| Some((leg.id.clone(), procedure(leg)?.clone()));
+            self.calls = legs.iter().filter_map(|c| call(c.leg)).collect();
             self.names = plan.named().map(|(id, name)| (id.clone(), name.to_owned())).collect();
         }
         self.of = Some(plan.clone());
     }
 }
 
+fn procedure(leg: &Leg) -> Option<&Id> {
+    match &leg.kind {
+        LegKind::Call(call) => Some(&call.procedure),
+        _ => None,
+    }
+}
+
 fn is_called_the_same(before: &FlightPlan, now: &FlightPlan) -> bool {
-    let said = |leg: &Leg| (leg.id.clone(), leg.name.clone(), leg.kind_name());
+    let said = |leg: &Leg| (leg.id.clone(), leg.name.clone(), leg.kind_name(), procedure(leg).cloned());
     let is_leg_called_the_same = |[old, new]: &[&Leg; 2]| said(old) == said(new);
     changed::legs(before, now).is_some_and(|changed| changed.iter().all(is_leg_called_the_same))
         && others(before).eq(others(now))
@@ -82,7 +97,8 @@ mod tests {
             kept.refresh(&edited);
             let mut fresh = Names::default();
             fresh.refresh(&edited);
-            assert_eq!((&kept.kinds, &kept.names), (&fresh.kinds, &fresh.names), "{edit:?}");
+            let all = |names: &Names| (names.kinds.clone(), names.names.clone(), names.calls.clone());
+            assert_eq!(all(&kept), all(&fresh), "{edit:?}");
             plan = edited;
         }
     }

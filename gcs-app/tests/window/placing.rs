@@ -57,6 +57,35 @@ fn a_procedure_is_placed_by_its_anchor_and_its_bearing() {
     assert!(window.plan().leg(&made).is_none(), "one step");
 }
 
+/// The first one, too, which stands where its procedure was drawn: it is dragged to the next pylon.
+#[test]
+fn a_call_says_of_what_it_is_and_is_dragged_by_its_mark() {
+    let mut window = window();
+    window.row_menu(("TF side2", 0), "Make a procedure of it");
+    window.press(Key::Escape);
+    window.until_analysed();
+    let flown = |window: &Window| {
+        let forecast = &window.app().analysis().forecast;
+        forecast
+            .passages
+            .iter()
+            .find(|p| p.leg.as_str() == "call1.side2")
+            .map(|p| forecast.points[p.end - 1].position)
+    };
+    let before = flown(&window).unwrap();
+    assert!(window.paints("call1 of procedure1"), "on the map");
+    assert!(window.paints("of procedure1"), "in its row");
+    let mark = window.centre("Waypoint call1");
+    window.drag(mark, vec2(40.0, 30.0));
+    let plan = window.plan();
+    let LegKind::Call(call) = &plan.leg(&"call1".into()).unwrap().leg.kind else { panic!("no call") };
+    assert!(matches!(call.anchor, Some(Place::Position(Value::Constant(_)))), "{call:?}");
+    assert!(window.centre("Waypoint call1").distance(mark + vec2(40.0, 30.0)) < 3.0);
+    window.click("Undo");
+    window.until_analysed();
+    assert_eq!(flown(&window).map(|at| at.distance_m(before) < 1.0), Some(true), "one step");
+}
+
 #[test]
 fn an_emergency_plan_is_drawn_from_the_runway_outwards() {
     let mut window = window();

@@ -145,7 +145,11 @@ pub fn label(handle: &Handle, at: Pos2, canvas: &Canvas<'_>, first: bool) -> Opt
         }
         _ => return None,
     };
-    let text = canvas.scene.document.label(id).to_owned();
+    let document = canvas.scene.document;
+    let text = match document.called(id) {
+        Some(procedure) => format!("{} of {}", document.label(id), document.label(procedure)),
+        None => document.label(id).to_owned(),
+    };
     Some(Label { rank: rank.or_selected(first), spots, text })
 }
 

@@ -178,7 +178,7 @@ impl Builder<'_> {
             depth,
             tag: leg_tag(&leg.kind),
             text: title(&leg.name, leg.id.as_str()),
-            detail: leg_detail(&leg.kind),
+            detail: called(self.plan, &leg.kind).unwrap_or_else(|| leg_detail(&leg.kind)),
             expressions: expressions(|visit| leg.for_each_expression(visit)),
             selection: Some(Selection::Leg(leg.id.clone())),
             folds: !leg.body().is_empty() || !branches.is_empty(),
@@ -366,11 +366,18 @@ pub fn leg_tag(kind: &LegKind) -> &'static str {
     }
 }
 
+/// What a call calls.
+fn called(plan: &FlightPlan, kind: &LegKind) -> Option<String> {
+    let LegKind::Call(call) = kind else { return None };
+    Some(format!("of {}", plan.label(&call.procedure)))
+}
+
 pub(super) fn leg_detail(kind: &LegKind) -> String {
     use flight_plan::Value;
     let (count, until) = match kind {
         LegKind::Iterative { count, until, .. } => (count.as_ref(), until),
         LegKind::Hm { until, .. } => (None, until),
+        LegKind::Call(call) => return call.procedure.to_string(),
         _ => return String::new(),
     };
     let count = match count {

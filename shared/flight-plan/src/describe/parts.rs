@@ -124,7 +124,7 @@ pub(super) const ANCHOR: Row = Row::OneOf(OneOf {
         Way { label: "a fix", fixed: &[], rows: &[P(FIX)] },
         Way { label: "a position", fixed: &[], rows: &[P(LAT_LON)] },
         Way { label: "a formula", fixed: &[], rows: &[P(AT)] },
-        Way { label: "where the procedure was drawn", fixed: &[], rows: &[] },
+        Way { label: "where it was drawn", fixed: &[], rows: &[] },
     ],
 });
 pub(super) const ABEAM: &[Way] = &[
