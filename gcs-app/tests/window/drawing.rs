@@ -234,6 +234,34 @@ fn the_middle_of_a_leg_is_dragged_to_become_a_leg() {
     assert_eq!(window.plan().stage(&"circuit".into()).unwrap().legs.len(), 4, "one step");
 }
 
+/// As an area is, until a circle is asked for: by its key, or a click, also when its first place is clicked.
+#[test]
+fn four_clicks_around_a_village_are_an_outline_and_the_key_makes_it_a_circle() {
+    let mut window = window();
+    let at = free(&window);
+    let clicks = |window: &mut Window, count: usize| {
+        figure(Shape::Area).iter().take(count).for_each(|by| window.click_at(at + *by));
+    };
+    let shape = |window: &Window| window.plan().zones.last().map(|zone| zone.shape.clone());
+    window.press(Key::Z);
+    assert!(window.shows("Keep-out zone, an outline (Z: a circle): click the corners"));
+    clicks(&mut window, 4);
+    assert!(window.shows("outline") && window.shows("circle"), "the choice stays while it is drawn");
+    clicks(&mut window, 1);
+    assert!(matches!(shape(&window), Some(ZoneShape::Polygon(corners)) if corners.len() == 4));
+    clicks(&mut window, 1);
+    window.press(Key::Z);
+    assert!(
+        window.shows("Keep-out zone, a circle (Z: an outline): click the rim"),
+        "about the place clicked"
+    );
+    window.click_at(at + figure(Shape::Area)[0] + vec2(60.0, 0.0));
+    assert!(matches!(shape(&window), Some(ZoneShape::Circle { .. })));
+    window.press(Key::V);
+    window.press(Key::Z);
+    assert!(window.shows("Keep-out zone, an outline"), "the next one begins as an outline");
+}
+
 #[test]
 fn a_zone_is_selected_by_its_edge() {
     let mut window = window();

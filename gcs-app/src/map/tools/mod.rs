@@ -196,6 +196,9 @@ pub trait Tool: std::fmt::Debug {
     /// A key that it wants was pressed.
     fn key(&mut self, _key: Key, _canvas: &Canvas<'_>, _queue: &mut Queue) {}
 
+    /// It was chosen while it is in use: its other choice, where it has one.
+    fn again(&mut self) {}
+
     /// What it draws next goes there, seen from the selected leg.
     fn aim_at(&mut self, _side: Side) {}
 

@@ -75,10 +75,11 @@ impl Pen {
         self.figure
     }
 
-    /// Draws another figure from now on.
+    /// Draws another figure from now on; a place that was clicked alone begins it.
     pub fn set_figure(&mut self, figure: Figure) {
         if figure != self.figure {
-            *self = Self { is_off_lines: self.is_off_lines, ..Self::new(figure) };
+            let marks = if self.len() == 1 { self.drawn() } else { Vec::new() };
+            *self = Self { marks, is_off_lines: self.is_off_lines, ..Self::new(figure) };
         }
     }
 

@@ -133,8 +133,12 @@ pub struct DrawZone {
 
 impl Default for DrawZone {
     fn default() -> Self {
-        Self { pen: Pen::new(Figure::Ring).off_lines(), kind: ZoneKind::KeepOut, floor: None, ceiling: None }
+        Self { pen: outline(), kind: ZoneKind::KeepOut, floor: None, ceiling: None }
     }
+}
+
+fn outline() -> Pen {
+    Pen::new(Figure::Ring).off_lines()
 }
 
 impl DrawZone {
@@ -192,26 +196,35 @@ impl Tool for DrawZone {
     }
 
     fn status(&self, _scene: &Scene<'_>) -> Option<String> {
-        Some(format!("{}: {}. Esc ends it.", zone_name(self.kind), self.pen.hint()))
+        let (figure, other) = match self.pen.figure() {
+            Figure::Circle => ("a circle", "an outline"),
+            _ => ("an outline", "a circle"),
+        };
+        let (zone, hint) = (zone_name(self.kind), self.pen.hint());
+        Some(format!("{zone}, {figure} (Z: {other}): {hint}. Esc ends it."))
+    }
+
+    fn again(&mut self) {
+        self.pen.set_figure(match self.pen.figure() {
+            Figure::Circle => Figure::Ring,
+            _ => Figure::Circle,
+        });
     }
 
     fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
         let above_ground =
             |metres| Altitude { metres: Value::Constant(metres), reference: AltitudeReference::Agl };
-        limit(ui, "Floor", &mut self.floor, above_ground(0.0), scene);
-        limit(ui, "Ceiling", &mut self.ceiling, above_ground(120.0), scene);
-        if self.pen.len() > 0 {
-            return;
-        }
-        ui.separator();
-        ui.selectable_value(&mut self.kind, ZoneKind::KeepOut, "keep out");
-        ui.selectable_value(&mut self.kind, ZoneKind::KeepIn, "keep in");
-        ui.separator();
         for (figure, name) in [(Figure::Ring, "outline"), (Figure::Circle, "circle")] {
             if ui.selectable_label(self.pen.figure() == figure, name).clicked() {
                 self.pen.set_figure(figure);
             }
         }
+        ui.separator();
+        ui.selectable_value(&mut self.kind, ZoneKind::KeepOut, "keep out");
+        ui.selectable_value(&mut self.kind, ZoneKind::KeepIn, "keep in");
+        ui.separator();
+        limit(ui, "Floor", &mut self.floor, above_ground(0.0), scene);
+        limit(ui, "Ceiling", &mut self.ceiling, above_ground(120.0), scene);
     }
 
     fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
@@ -248,8 +261,9 @@ impl Tool for DrawZone {
         }
     }
 
+    /// The next one begins as an outline, as areas do.
     fn leave(&mut self) {
-        self.pen.clear();
+        self.pen = outline();
     }
 
     fn cursor(&self) -> CursorIcon {

@@ -130,11 +130,11 @@ impl Toolbox {
         }
     }
 
-    /// Puts the tool of this name to use; of none, the first.
+    /// Puts the tool of this name to use; of none, the first. One that is in use is asked for its other choice.
     pub fn choose(&mut self, id: &str) {
         let next = self.tools.iter().position(|tool| tool.card().id == id).unwrap_or(0);
         if next == self.current {
-            return;
+            return self.tools.get_mut(next).into_iter().for_each(|tool| tool.again());
         }
         if let Some(left) = self.tools.get_mut(self.current) {
             left.leave();
