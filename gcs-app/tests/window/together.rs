@@ -35,8 +35,10 @@ fn raising_all_altitudes_is_found_and_reaches_take_off_and_emergency_plans() {
     assert!(window.shows("3 stages and 5 legs"));
     window.harness.event(Event::Text("50".into()));
     window.steps(2);
+    assert!(!window.shows("land, r-land stay as they are"), "they are left alone");
+    window.click("Leave take-off and approaches alone");
     assert!(window.shows("land, r-land stay as they are: they say no altitude."));
-    window.press(Key::Enter);
+    window.fill_in(Role::SpinButton, "Raise by", "50");
     let own = |metres: f64| Some(Value::Constant(metres));
     for (leg, raised) in [("side1", own(150.0)), ("side2", None), ("r1", own(200.0))] {
         assert_eq!(of_leg(&window, leg), raised, "{leg}");
@@ -48,6 +50,35 @@ fn raising_all_altitudes_is_found_and_reaches_take_off_and_emergency_plans() {
     window.click("Undo");
     assert_eq!(window.plan(), before, "one step");
     assert!(!window.shows("raised by"));
+}
+
+/// What leads to and from a runway fits it; and what can't be meant is not where one presses.
+#[test]
+fn take_off_and_approaches_are_left_alone_unless_they_are_meant() {
+    let approach = SQUARE.replacen(
+        r#"<stage id="land" type="land""#,
+        r#"<stage id="final" type="approach"><TF id="ap1" fix="D" altitude="80" altitudeReference="home"/></stage><stage id="land" type="land""#,
+        1,
+    );
+    let mut window = Window::open_with(&approach, vec2(1280.0, 1000.0), None);
+    window.until_analysed();
+    let before = window.plan();
+    window.ask_for("raise or lower");
+    window.press(Key::Enter);
+    let [raise, delete] = ["Raise them", "Delete them"].map(|name| window.harness.get_by_label(name).rect());
+    assert!(delete.top() > raise.bottom() + 30.0, "{raise} {delete}");
+    window.click("Raise them");
+    assert_eq!(of_stage(&window, "circuit"), Some(Value::Constant(180.0)));
+    for stage in ["take-off", "final"] {
+        let legs = |plan: &flight_plan::FlightPlan| plan.stage(&stage.into()).cloned();
+        assert_eq!(legs(&window.plan()), legs(&before), "{stage}");
+    }
+    window.click("Undo");
+    window.select_row(("TF ap1", 0));
+    window.select_row_with(("LND land", 0), Modifiers::COMMAND);
+    assert!(!window.shows("Leave take-off"), "nothing else would be raised");
+    window.click("Raise them");
+    assert_eq!(of_leg(&window, "ap1"), Some(Value::Constant(110.0)));
 }
 
 #[test]

@@ -26,7 +26,12 @@ pub fn focus(ctx: &Context) {
 pub(super) fn show(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue) {
     let id = egui::Id::unique("raise legs by");
     let mut by_m = ui.data(|d| d.get_temp(id)).unwrap_or(USUAL_M);
-    let set: HashSet<&Id> = set.iter().collect();
+    let all: HashSet<&Id> = set.iter().collect();
+    let away = away_from_runways(scene.document.plan(), &all);
+    let leaves = egui::Id::unique("leave take-off and approaches alone");
+    let mut are_left = ui.data(|d| d.get_temp(leaves)).unwrap_or(true);
+    let may_leave = !away.is_empty() && away.len() < all.len();
+    let set = if may_leave && are_left { away } else { all };
     field::row_with_help(ui, "Raise by", "Above what each leg has or inherits.", |ui| {
         if ui.data_mut(|d| d.remove_temp::<bool>(asked_for())).is_some() {
             field::focus_next(ui.ctx());
@@ -42,12 +47,25 @@ pub(super) fn show(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue
         }
     });
     ui.data_mut(|d| d.insert_temp(id, by_m));
+    if may_leave {
+        ui.checkbox(&mut are_left, LEAVE).on_hover_text("Their altitudes lead to and from a runway");
+        ui.data_mut(|d| d.insert_temp(leaves, are_left));
+    }
     let p = theme::of(ui);
     let told = Done::told(ui.ctx(), scene).map(|text| (format!("✔ {text}"), p.good));
     let stays = Raised::of(scene.document.plan(), &set).stays(scene).map(|text| (text, p.weak));
     for (text, colour) in told.into_iter().chain(stays) {
         ui.add(Label::new(RichText::new(text).size(12.0).color(colour)).wrap());
     }
+}
+
+const LEAVE: &str = "Leave take-off and approaches alone";
+
+/// Those of a set that lead neither to nor from a runway.
+fn away_from_runways<'a>(plan: &FlightPlan, set: &HashSet<&'a Id>) -> HashSet<&'a Id> {
+    let near = [StageKind::TakeOff, StageKind::Approach, StageKind::Land];
+    let is_near = |id: &Id| stage_of(plan, id).is_some_and(|stage| near.contains(&stage.kind));
+    set.iter().copied().filter(|id| !is_near(id)).collect()
 }
 
 fn raise(ui: &Ui, scene: &Scene<'_>, set: &HashSet<&Id>, by_m: f64, queue: &mut Queue) {
@@ -99,7 +117,7 @@ fn whole_stages<'a>(plan: &'a FlightPlan, set: &HashSet<&Id>) -> HashSet<&'a Id>
 }
 
 /// A stage, or that of a leg.
-fn stage_of<'a>(plan: &'a FlightPlan, id: &'a Id) -> Option<&'a Stage> {
+fn stage_of<'a>(plan: &'a FlightPlan, id: &Id) -> Option<&'a Stage> {
     plan.stage(id).or_else(|| plan.leg(id).map(|context| context.stage))
 }
 
@@ -214,6 +232,17 @@ mod tests {
         let sides = ["side1", "side2", "side3", "side4"];
         assert_eq!(raised(&plan, &sides), ["circuit", "side1", "side4"]);
         assert_eq!(raised(&plan, &sides[..3]), ["side1", "side2", "side3"], "side4 stays where it is");
+    }
+
+    #[test]
+    fn take_off_and_approaches_are_known_among_others() {
+        let text = String::from_utf8_lossy(PLAN).replace(r#"type="arrival""#, r#"type="approach""#);
+        let plan = flight_plan::read(text.as_bytes()).plan;
+        let ids = ["take-off", "side1", "circuit", "r1", "land"].map(Id::new);
+        let mut away: Vec<&str> =
+            away_from_runways(&plan, &ids.iter().collect()).into_iter().map(Id::as_str).collect();
+        away.sort_unstable();
+        assert_eq!(away, ["circuit", "side1"]);
     }
 
     #[test]

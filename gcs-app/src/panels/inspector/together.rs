@@ -40,6 +40,9 @@ pub fn mixed(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue) {
     if legs + stages > 0 {
         raise::show(ui, scene, set, queue);
     }
+    // away from what is pressed often
+    ui.add_space(10.0);
+    ui.separator();
     if ui.button("Delete them").clicked() {
         queue.edit(create::delete_set(plan, set));
     }
