@@ -93,6 +93,22 @@ fn the_area_of_a_scan_is_bound_beside_its_choice() {
 }
 
 #[test]
+fn a_place_that_is_bound_is_called_by_its_variable() {
+    let mut window = window();
+    let leg = drawn_leg(&mut window);
+    window.press(Key::B);
+    window.harness.event(egui::Event::Text("place fire".into()));
+    window.steps(3);
+    window.press(Key::Enter);
+    window.press(Key::V);
+    window.select_row((&format!("TF {leg}"), 0));
+    window.steps(2);
+    let to = window.harness.get_by_role_and_label(Role::ComboBox, "To");
+    assert_eq!(to.accesskit_node().value().as_deref(), Some("the variable fire"));
+    assert!(window.paints("the variable fire"), "whole");
+}
+
+#[test]
 fn binding_and_a_new_way_have_keys() {
     let mut window = window();
     window.press(Key::B);

@@ -51,8 +51,13 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     if page.elements().any(|element| page.is_several() && one.way(element) != way) {
         return value::mixed(ui, page, one.label, one.help, way.map(|way| Change::Choose(*one, way)));
     }
-    let labels: Vec<&str> = one.ways.iter().map(|way| way.label).collect();
+    let mut labels: Vec<&str> = one.ways.iter().map(|way| way.label).collect();
     let inside = way.and_then(|way| one.ways.get(way)).map_or(&[][..], |way| way.rows);
+    let bound = variable(page, inside).zip(way.and_then(|way| labels.get(way)));
+    let bound = bound.map(|(name, label)| label.replace("a formula", &format!("the variable {name}")));
+    if let (Some(label), Some(bound)) = (way.and_then(|way| labels.get_mut(way)), &bound) {
+        *label = bound;
+    }
     let name = page.name(one.label);
     let binding = bind::place_of(page, one);
     let from = ui.cursor().min;
@@ -85,6 +90,17 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     if let Some(way) = chosen {
         page.change(&Change::Choose(*one, way));
     }
+}
+
+/// What a formula is that is nothing but a variable of the plan.
+fn variable(page: &Page<'_, '_>, inside: &[Row]) -> Option<String> {
+    let property = inside.iter().find_map(|row| match row {
+        Row::Property(property) if matches!(property.kind, Kind::Formula(_)) => Some(property),
+        _ => None,
+    })?;
+    let written = page.element().attribute(property.attribute)?;
+    let formula = written.trim().trim_start_matches('=').trim();
+    page.plan().variable(&formula.into()).map(|variable| variable.name.to_string())
 }
 
 /// A number with its formula and variable has room beside its way; every other value makes do with what there is.
