@@ -63,6 +63,22 @@ fn what_the_vehicle_finds_is_told_in_words_and_names() {
     assert!(!window.shows("too-steep"));
 }
 
+/// As many sentences from aboard as here, but one here is an error: whoever commits is told.
+#[test]
+fn an_error_that_is_found_here_is_said_beside_as_many_warnings_from_aboard() {
+    let mut window = Window::open(&SQUARE.replacen("<mainPlan", super::problems::ZONE, 1));
+    window.until_analysed();
+    assert!(!window.errors().is_empty());
+    window.connect();
+    let (hash, found) = (window.app().analysis().hash.clone(), window.app().analysis().problems.len());
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    let problems = vec!["warning [low-clearance] side2: fly higher".to_owned(); found];
+    let report = ProposalReport { problems, ..report(&hash, true) };
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report))));
+    assert!(window.shows("⚠ Checked here: it can't be flown, "));
+}
+
 /// The button stays under the pointer whatever is said beside it.
 #[test]
 fn the_push_button_has_one_place() {
