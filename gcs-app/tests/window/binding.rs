@@ -3,7 +3,7 @@
 use super::{SQUARE, Window};
 use egui::Key;
 use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use flight_plan::{Place, Value, VariableValue, create};
 
 /// A square with a position and a number.
