@@ -4,7 +4,7 @@
 use super::super::Scene;
 use crate::command::Queue;
 use crate::theme;
-use egui::{Pos2, Response, RichText, Ui};
+use egui::{Button, Pos2, Response, RichText, Ui};
 use flight_plan::{Edit, FlightPlan, Problem, diff};
 
 /// So many changes of a remedy are told before it is made.
@@ -34,7 +34,7 @@ impl Remedies {
     /// Where the pointer is in this frame.
     pub fn follow(&mut self, ui: &Ui) {
         let at = ui.input(|i| i.pointer.latest_pos());
-        self.under.take_if(|under| at.is_none_or(|at| at.distance(under.at) > REST));
+        self.under.take_if(|under| at.is_some_and(|at| at.distance(under.at) > REST));
     }
 
     /// Draws the remedies of a problem, and gives the one that is asked for.
@@ -47,12 +47,13 @@ impl Remedies {
         queue: &mut Queue,
     ) {
         let Some(fix) = problem.fix.as_deref() else { return };
-        ui.horizontal_wrapped(|ui| {
+        ui.horizontal(|ui| {
             ui.add_space(20.0);
-            self.button(ui, scene, "Fix", (message, 0), fix, queue);
+            self.button(ui, scene, ("Fix", ""), (message, 0), fix, queue);
             if let Some(there) = &problem.at_source {
-                let text = format!("Fix “{}” ({} legs)", scene.document.label(&there.of), there.legs);
-                self.button(ui, scene, &text, (message, 1), &there.edit, queue);
+                let text = format!("Fix “{}”", scene.document.label(&there.of));
+                let about = format!("For all {} legs that inherit from there.", there.legs);
+                self.button(ui, scene, (&text, &about), (message, 1), &there.edit, queue);
             }
         });
     }
@@ -61,16 +62,19 @@ impl Remedies {
         &mut self,
         ui: &mut Ui,
         scene: &Scene<'_>,
-        text: &str,
+        (text, about): (&str, &str),
         what: (&str, usize),
         fix: &Edit,
         queue: &mut Queue,
     ) {
         let is_read = self.is_read(ui, what);
         let colour = if is_read { ui.visuals().text_color() } else { theme::of(ui).weak };
-        let button = ui.small_button(RichText::new(text).color(colour));
+        let button = ui.add(Button::new(RichText::new(text).color(colour)).small().truncate());
         self.rest_on(ui, &button, what);
-        let button = button.on_hover_ui(|ui| told(ui, scene.document.plan(), fix));
+        let button = button.on_hover_ui(|ui| {
+            about.lines().for_each(|about| drop(ui.label(about)));
+            told(ui, scene.document.plan(), fix);
+        });
         // a second press before the first one is looked into is none
         let is_known = scene.analysis.version == scene.document.version();
         let again = button.double_clicked() || button.triple_clicked();
