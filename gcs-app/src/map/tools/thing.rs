@@ -197,8 +197,8 @@ impl Tool for DrawZone {
 
     fn status(&self, _scene: &Scene<'_>) -> Option<String> {
         let (figure, other) = match self.pen.figure() {
-            Figure::Circle => ("a circle", "an outline"),
-            _ => ("an outline", "a circle"),
+            Figure::Circle => ("circle", "outline"),
+            _ => ("outline", "circle"),
         };
         let (zone, hint) = (zone_name(self.kind), self.pen.hint());
         Some(format!("{zone}, {figure} (Z: {other}): {hint}. Esc ends it."))
