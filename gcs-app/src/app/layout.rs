@@ -80,7 +80,7 @@ impl App {
             decision_card(ui, floor.with_max_y(whole.bottom()), &scene, queue);
             if let Some(found) = scene.left_behind.filter(|_| !scene.view.recovers_later) {
                 let keys = (!scene.is_asking(), scene.vehicles.flying().next().is_none());
-                let ask = |ui: &mut Ui| recover::show(ui, found, scene.utc, keys, queue);
+                let ask = |ui: &mut Ui| recover::show(ui, found, (floor.height(), scene.utc), keys, queue);
                 floating(ui, "recover", floor, Align2::CENTER_CENTER, ask);
             }
             notice(ui, floor, &scene, queue);

@@ -9,15 +9,18 @@ use jiff::Timestamp;
 
 /// Where there is room for it, screen points.
 const WIDTH: f32 = 380.0;
-/// Of the list of plans, screen points.
+/// Of the list of plans, at most and at least, screen points.
 const LIST_HEIGHT: f32 = 190.0;
+const LEAST_LIST: f32 = 60.0;
+/// Of all that stands around the list, screen points.
+const AROUND: f32 = 230.0;
 
 /// Draws it. It hides nothing that a flight is led with: a window may have crashed in the middle of one.
-/// `may_close`: Escape is for it. `is_calm`: no vehicle flies, and Return may be for it.
+/// `room`: so high it may be, screen points. `may_close`: Escape is for it. `is_calm`: no vehicle flies, and Return may be for it.
 pub fn show(
     ui: &mut Ui,
     found: &LeftBehind,
-    utc: Timestamp,
+    (room, utc): (f32, Timestamp),
     (may_close, is_calm): (bool, bool),
     queue: &mut Queue,
 ) {
@@ -26,7 +29,8 @@ pub fn show(
     let several = found.documents.len() > 1;
     ui.strong("The last window ended without saving");
     ui.label("It had changes of");
-    ScrollArea::vertical().id_salt("left behind").max_height(LIST_HEIGHT).show(ui, |ui| {
+    let height = (room - AROUND).clamp(LEAST_LIST, LIST_HEIGHT);
+    ScrollArea::vertical().id_salt("left behind").max_height(height).show(ui, |ui| {
         for (number, document) in found.documents.iter().enumerate() {
             ui.add(Label::new(format!("• {}", which(document))).truncate());
             ui.add(Label::new(RichText::new(format!("   {}", when(document, utc))).color(p.weak)).truncate());
@@ -36,9 +40,7 @@ pub fn show(
         }
     });
     let opens = match several {
-        true => {
-            "Recover all opens the first one; Undo (Ctrl+Z) leads to the others, and each is saved in its own file. "
-        }
+        true => "Recover all opens the first one; Undo leads to the others. Each is saved in its own file. ",
         false => "",
     };
     let text = format!("{opens}You may go on meanwhile: they are kept until you decide.");

@@ -85,6 +85,16 @@ fn each_of_several_plans_is_recovered_or_deleted_by_itself() {
     let mut window = window_in(folder.path(), "");
     assert!(window.shows("• “Square circuit”") && window.shows("• “Ridge”"));
     assert!(window.shows("13:12 UTC, 1:01:05 ago") && window.shows("Recover all opens the first one"));
+    // whole in the least window, too
+    window.harness.set_size(egui::vec2(960.0, 600.0));
+    window.steps(3);
+    let map = window.harness.get_by_label("Map").rect();
+    for part in ["The last window ended without saving", "Recover all", "Delete all (hold)", "Later"] {
+        let rect = window.harness.get_by_label(part).rect();
+        assert!(map.contains_rect(rect), "{part}: {rect} in {map}");
+    }
+    window.harness.set_size(egui::vec2(1280.0, 800.0));
+    window.steps(3);
     let second = |window: &Window, name: &str| {
         let mut found: Vec<_> = window.harness.query_all_by_label(name).map(|b| b.rect().center()).collect();
         found.sort_by(|a, b| a.y.total_cmp(&b.y));
