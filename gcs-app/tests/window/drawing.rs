@@ -249,6 +249,8 @@ fn four_clicks_around_a_village_are_an_outline_and_the_key_makes_it_a_circle() {
     assert!(window.shows("outline") && window.shows("circle"), "the choice stays while it is drawn");
     clicks(&mut window, 1);
     assert!(matches!(shape(&window), Some(ZoneShape::Polygon(corners)) if corners.len() == 4));
+    // no double click
+    window.steps(30);
     clicks(&mut window, 1);
     window.press(Key::Z);
     assert!(window.shows("Keep-out zone, circle (Z: outline): click the rim"), "about the place clicked");
