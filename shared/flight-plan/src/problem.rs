@@ -68,9 +68,17 @@ impl std::fmt::Display for Verdict {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct Location {
     /// Line.
-    pub line: usize,
+    pub line: u32,
     /// Column, characters.
-    pub column: usize,
+    pub column: u32,
+}
+
+impl Location {
+    /// What does not fit is the last one that does.
+    pub fn new(line: usize, column: usize) -> Self {
+        let fitting = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+        Self { line: fitting(line), column: fitting(column) }
+    }
 }
 
 impl std::fmt::Display for Location {

@@ -119,7 +119,7 @@ fn a_spacing_said_twice_is_told_as_that() {
     let [problem] = &read(&document).problems[..] else { panic!("one problem was expected") };
     assert!(problem.message.contains("exactly one way"), "{problem}");
     let column = document.find("spacing").unwrap() + 1;
-    assert_eq!(problem.location.unwrap().column, column);
+    assert_eq!(problem.location.unwrap().column as usize, column);
 }
 
 #[test]

@@ -272,7 +272,7 @@ impl Place<'_> {
         // continuation bytes are part of the character before
         self.column += last_line.iter().filter(|b| !matches!(b, 0x80..=0xbf)).count();
         self.offset = self.offset.max(offset);
-        Location { line: self.line, column: self.column }
+        Location::new(self.line, self.column)
     }
 
     /// The place of a slice of the document that lies further on.

@@ -119,10 +119,8 @@ fn character_problem(text: &str) -> Option<Problem> {
 /// The place just behind a text.
 fn location_of(before: &str) -> Location {
     let line_start = before.rfind('\n').map_or(0, |i| i + 1);
-    Location {
-        line: before.matches('\n').count() + 1,
-        column: before.get(line_start..).map_or(0, |l| l.chars().count()) + 1,
-    }
+    let column = before.get(line_start..).map_or(0, |l| l.chars().count()) + 1;
+    Location::new(before.matches('\n').count() + 1, column)
 }
 
 /// A document being read.
