@@ -4,7 +4,7 @@
 //! starts and watches the rest, `judge` says whether the mission was really flown as planned.
 
 mod by_hand;
-mod components;
+pub mod components;
 mod flight;
 mod judge;
 mod mission;

@@ -19,6 +19,7 @@ mod emergency;
 mod filing;
 mod finding;
 mod fleet;
+mod flown;
 mod flying;
 mod focusing;
 mod following;
@@ -115,7 +116,18 @@ impl Window {
         ground: Arc<dyn terrain::Terrain>,
         step_s: f32,
     ) -> Self {
-        let (links, far) = Links::pair();
+        Self::open_linked(text, size, storage, ground, step_s, Links::pair())
+    }
+
+    /// The same over these links.
+    fn open_linked(
+        text: &str,
+        size: Vec2,
+        storage: Option<&'static dyn eframe::Storage>,
+        ground: Arc<dyn terrain::Terrain>,
+        step_s: f32,
+        (links, far): (Links, Endpoint),
+    ) -> Self {
         let document = Document::read(text.as_bytes(), None);
         let builder = Harness::builder().with_size(size).with_step_dt(step_s);
         let harness = builder.renderer(Raster::default()).build_eframe(move |creation| {
