@@ -237,4 +237,43 @@ mod tests {
             assert_eq!(Scale::most_in(vec2(width, height)), most, "{width} by {height}");
         }
     }
+
+    /// Of WCAG 2, from 1 to 21.
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let luminance = |colour: Color32| {
+            let [r, g, b, _] = colour
+                .to_array()
+                .map(|part| f64::from(part) / 255.0)
+                .map(|part| if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) });
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn contrast_is_that_of_the_standard() {
+        assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);
+        assert!((contrast(rgb(0x767676), Color32::WHITE) - 4.54).abs() < 0.01);
+    }
+
+    /// 4.5 is what the standard asks of texts of this size.
+    #[test]
+    fn every_text_can_be_read_on_its_ground() {
+        for (start, p) in [(Visuals::dark(), &DARK), (Visuals::light(), &LIGHT)] {
+            let v = visuals(start, p);
+            let said = [p.text, p.weak, p.accent, p.good, p.caution, p.warning, p.contingency, p.active];
+            let grounds = [v.panel_fill, v.window_fill, v.extreme_bg_color];
+            let on_ground = said.into_iter().flat_map(|text| grounds.map(|ground| (text, ground)));
+            let w = &v.widgets;
+            let buttons = [&w.noninteractive, &w.inactive, &w.hovered, &w.active, &w.open];
+            let on_button = buttons.map(|state| (state.fg_stroke.color, state.weak_bg_fill));
+            // a row that is selected, in a panel or a card
+            let on_row = grounds.map(|ground| (p.text, ground.blend(v.selection.bg_fill)));
+            for (text, ground) in on_ground.chain(on_button).chain(on_row).chain([(p.on_accent, p.accent)]) {
+                let contrast = contrast(text, ground);
+                assert!(contrast >= 4.5, "{text:?} on {ground:?}: {contrast:.2}");
+            }
+        }
+    }
 }
