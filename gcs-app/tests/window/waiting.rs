@@ -302,7 +302,7 @@ fn frames_go_on_while_a_server_of_tiles_does_not_answer() {
     window.until("a reader of tiles", is_ready);
     window.steps(20);
     // it was asked, and has all of its time to answer
-    let _asked = silent.accept().unwrap();
+    let asked = silent.accept().unwrap();
     window.steps(20);
     let layer = window.app().layers().iter().next().unwrap();
     assert_eq!(
@@ -310,6 +310,11 @@ fn frames_go_on_while_a_server_of_tiles_does_not_answer() {
         (silent.local_addr().unwrap().to_string(), 0)
     );
     assert!(window.app().view().notice.is_none());
+    assert!(window.paints("Somebody") && !window.paints("(offline)"), "the map names them");
+    // it goes away
+    drop((asked, silent));
+    window.until("it is offline", |app| app.layers().attributions().any(|whom| whom == "Somebody (offline)"));
+    assert!(window.paints("Somebody (offline)"));
 }
 
 #[test]
