@@ -222,6 +222,23 @@ fn a_file_that_is_no_map_gives_one_clear_message() {
 }
 
 #[test]
+fn elevations_that_are_none_give_one_clear_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bad.tif");
+    // the first directory would be behind the end
+    std::fs::write(&path, b"II\x2a\0\xff\xff\0\0").unwrap();
+    let mut window = window();
+    drop_file(&mut window, &path);
+    window.until("a message", |app| app.view().notice.is_some());
+    let text = window.app().view().notice.clone().unwrap();
+    assert!(
+        text.contains("bad.tif is not used: ") && text.len() > "bad.tif is not used: ".len() + 10,
+        "{text}"
+    );
+    assert_eq!(window.errors(), Vec::<String>::new());
+}
+
+#[test]
 fn the_pointer_says_where_it_is_and_how_high_the_ground_is() {
     let mut window = window();
     window.harness.hover_at(window.centre("Fix A"));
