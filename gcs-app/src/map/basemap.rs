@@ -105,3 +105,34 @@ fn countries(sheet: &Sheet<'_>, map: &Basemap, placed: &mut Labels) -> Vec<Shape
     }
     shapes
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::vec2;
+    use walkers::{MapMemory, MercatorProjection, Projector, lat_lon};
+
+    const LAND: Color32 = Color32::GREEN;
+    const LINE: Color32 = Color32::RED;
+
+    /// Coasts are whole lines, borders broken ones: that of Egypt and the Sudan is the 22nd parallel.
+    #[test]
+    fn countries_have_their_borders() {
+        let mut memory = MapMemory::default();
+        memory.set_zoom(5.0).unwrap();
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(800.0, 600.0));
+        let view = View::of(&Projector::new(rect, &MercatorProjection, &memory, lat_lon(23.0, 28.0)));
+        let shapes = world(assets::basemap().unwrap(), &view, [LAND, LINE]);
+        let dashes = shapes.iter().filter_map(|shape| match shape {
+            Shape::LineSegment { points, stroke } if stroke.color == LINE => Some(points[0]),
+            _ => None,
+        });
+        let dashes: Vec<Pos2> = dashes.collect();
+        let is_broken_line = |lat: f64, lon: f64| {
+            let at = view.place(LatLon::new(lat, lon));
+            dashes.iter().any(|dash| dash.distance(at) < 12.0)
+        };
+        assert!(is_broken_line(22.0, 27.0) && is_broken_line(22.0, 29.0), "the border");
+        assert!(!is_broken_line(24.0, 28.0) && !is_broken_line(20.5, 28.0), "beside it");
+    }
+}
