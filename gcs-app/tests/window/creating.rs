@@ -1,6 +1,7 @@
 //! From an empty document to a plan that flies, and nothing lost on the way.
 
 use super::Window;
+use super::small::tool;
 use egui::accesskit::Role;
 use egui::{Key, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -55,6 +56,24 @@ fn each_template_gives_a_plan_that_can_be_flown_and_undone() {
         window.click("Redo");
         window.until_analysed();
         assert!(window.app().analysis().forecast.length_m() > 5000.0);
+    }
+}
+
+/// Nothing that is drawn begins by itself.
+#[test]
+fn no_tool_is_armed_by_itself() {
+    for key in [Key::A, Key::R, Key::E] {
+        let mut window = begun(SIZE);
+        window.click("✏ Draw the runway");
+        window.click("Create");
+        assert_eq!(tool(&window), "select", "after Create");
+        window.press(key);
+        assert!(tool(&window) != "select");
+        window.press_ctrl(Key::N);
+        window.click("Discard the changes");
+        window.click("Among the example's hills");
+        window.click("Create");
+        assert_eq!(tool(&window), "select", "in the next plan");
     }
 }
 

@@ -181,7 +181,7 @@ fn the_cursors_words_stay_on_the_plot_of_the_profile() {
 }
 
 /// The tool in use.
-fn tool(window: &Window) -> &'static str {
+pub fn tool(window: &Window) -> &'static str {
     window.app().map().tool_cards().into_iter().find(|(_, in_use)| *in_use).unwrap().0.id
 }
 
