@@ -80,6 +80,7 @@ pub fn add(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property) {
     let (response, _) = button.ui(ui, |ui| adding(ui, page, property, range, &mut by));
     let name = format!("Add to {}", property.label);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    response.on_hover_text("So much more or less for each of them");
     ui.data_mut(|d| d.insert_temp(id, by));
 }
 
