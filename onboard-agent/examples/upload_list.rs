@@ -44,7 +44,10 @@ async fn upload(address: &Address, list: Vec<MISSION_ITEM_INT_DATA>) -> anyhow::
         link.send_all(0, &outbox);
         link.flush();
         match courier.outcome() {
-            Some(Ok(())) => return Ok(println!("verified")),
+            Some(Ok(())) => {
+                println!("verified");
+                return Ok(());
+            }
             Some(Err(why)) => bail!("{why}"),
             None => {}
         }
