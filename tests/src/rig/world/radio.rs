@@ -1,5 +1,5 @@
-//! A radio between somebody else's autopilot and the agent, which loses, doubles and swaps frames as our simulator's does, or is as narrow; and beside
-//! it the voice that tells the autopilot's simulation what goes wrong. Time is the machine's.
+//! A radio between somebody else's autopilot and the agent, which loses, doubles and swaps frames as our simulator's does, or is as
+//! narrow; and beside it the voice that tells the autopilot's simulation what goes wrong. Time is the machine's.
 
 use super::told::Wish;
 use super::voice::Voice;
