@@ -130,8 +130,8 @@ impl fmt::Display for FaultRequest {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{0:?} is no fault; write one of packet-loss=SHARE, duplicate=SHARE, reorder=SHARE (shares from 0 to 1), \
-     bandwidth=BITS-PER-SECOND, gps-loss, engine-out, low-battery, silence, no-rpm, no-stream=MESSAGE-NUMBER, ice, crash, reboot, then @SECOND and +SECONDS if it has \
-     its time, as in silence@120+10"
+     bandwidth=BITS-PER-SECOND, gps-loss, engine-out, low-battery, silence, no-rpm, no-stream=MESSAGE-NUMBER, ice, crash, reboot, \
+     then @SECOND and +SECONDS if it has its time, as in silence@120+10"
 )]
 pub struct FaultSyntax(String);
 
