@@ -18,6 +18,8 @@ pub struct ForcedEnd {
     pub is_wanted: bool,
     /// When, seconds since 1970, if that was known.
     pub unix_s: Option<i64>,
+    /// When this gateway was asked for it.
+    asked_at: Option<Time>,
     order: Option<OrderId>,
     /// When that is ordered again.
     again_at: Option<Time>,
@@ -51,12 +53,14 @@ impl Gateway {
             return Err("There is no flight to end.".into());
         }
         let unix_s = self.telemetry.unix_s(self.now);
-        self.forced_end = ForcedEnd { order: self.forced_end.order, ..ForcedEnd::restored(true, unix_s) };
+        let (order, asked_at) = (self.forced_end.order, Some(self.now));
+        self.forced_end = ForcedEnd { order, asked_at, ..ForcedEnd::restored(true, unix_s) };
         if is_known {
             self.end_by_force("by command", out);
         } else {
-            // the order may be heard though nothing comes back; what comes of it is seen when that is heard
-            self.order_end(out);
+            // nothing is sent to what may be switched on by hands beside it
+            self.cause =
+                "the flight is ended by force when the autopilot is heard in the air or armed".into();
             out.push(Output::Save);
         }
         Ok(())
@@ -112,11 +116,11 @@ impl Gateway {
 
     /// That was so long ago that the aircraft has come down: it is another flight.
     fn was_another_flight(&self, now: Time) -> bool {
-        let passed_s = self
-            .telemetry
-            .unix_s(now)
-            .zip(self.forced_end.unix_s)
-            .map(|(now_s, then_s)| now_s.saturating_sub(then_s));
-        passed_s.and_then(|s| u64::try_from(s).ok()).is_some_and(|s| s >= COME_DOWN_AFTER.as_secs())
+        let ForcedEnd { unix_s, asked_at, .. } = self.forced_end;
+        let by_its_clock =
+            self.telemetry.unix_s(now).zip(unix_s).map(|(now_s, then_s)| now_s.saturating_sub(then_s));
+        let by_its_clock = by_its_clock.and_then(|s| u64::try_from(s).ok()).map(Duration::from_secs);
+        let by_ours = asked_at.map(|at| now.saturating_sub(at));
+        by_ours.or(by_its_clock).is_some_and(|passed| passed >= COME_DOWN_AFTER)
     }
 }

@@ -69,23 +69,41 @@ fn what_flies_on_for_an_hour_is_ended_all_the_same() {
     assert!(core.raised("not-terminated") && core.gateway.snapshot().terminated);
 }
 
+fn end_it() -> Input {
+    Input::Request(4, GatewayRequest::Terminate { confirm: "test".into() })
+}
+
+/// Asked for before anything was heard.
+fn ended_unheard() -> Core {
+    let mut core = Core::new();
+    assert_eq!(core.answer(end_it()), Answer::Request(Ok(())));
+    assert!(core.gateway.cause.contains("when the autopilot is heard"), "{}", core.gateway.cause);
+    assert!(core.gateway.snapshot().terminated && orders_to_end(&core).is_empty());
+    core
+}
+
 #[test]
 fn what_is_not_heard_is_ended_by_force_if_it_may_fly_and_when_it_is_heard() {
-    let end = || Input::Request(4, GatewayRequest::Terminate { confirm: "test".into() });
-    let mut core = Core::new();
-    assert_eq!(core.answer(end()), Answer::Request(Ok(())));
-    assert_eq!(
-        (core.gateway.state(), orders_to_end(&core).len()),
-        (GatewayState::Off, 1),
-        "it may hear that"
-    );
-    core.done();
+    let mut core = ended_unheard();
     core.run(15, &flying(25.0, 25.0));
     assert_eq!((core.gateway.state(), orders_to_end(&core).len()), (GatewayState::Terminate, 1));
 
     let mut stands = Core::in_stop_with_a_plan();
-    assert!(matches!(stands.answer(end()), Answer::Request(Err(why)) if why.contains("no flight")));
+    assert!(matches!(stands.answer(end_it()), Answer::Request(Err(why)) if why.contains("no flight")));
     stands.run(15, &[]);
     assert_eq!(stands.gateway.state(), GatewayState::Off);
-    assert!(matches!(stands.answer(end()), Answer::Request(Err(_))), "it stood when it was heard last");
+    assert!(matches!(stands.answer(end_it()), Answer::Request(Err(_))), "it stood when it was heard last");
+}
+
+/// On the bench, with people beside it; or hours later, in another flight.
+#[test]
+fn what_is_switched_on_after_an_end_that_nobody_heard_is_not_ended() {
+    let mut bench = ended_unheard();
+    bench.run(5, &[beat(Mode::Hold, false), Report::OnGround(true), fix(0.0)]);
+    assert!(orders_to_end(&bench).is_empty() && !bench.gateway.snapshot().terminated);
+
+    let mut later = ended_unheard();
+    later.now += COME_DOWN_AFTER;
+    later.run(5, &flying(25.0, 25.0));
+    assert!(orders_to_end(&later).is_empty() && !later.gateway.snapshot().terminated);
 }

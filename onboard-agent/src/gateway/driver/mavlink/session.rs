@@ -151,8 +151,12 @@ impl Session {
         }
     }
 
-    /// Gives a command, in its turn.
+    /// Gives a command, in its turn. None waits for an autopilot that was not heard: it was not meant for whatever is switched on next.
     pub fn command(&mut self, now: Time, client: Client, command: Command, events: &mut Vec<SessionEvent>) {
+        if self.peer.is_none() {
+            let refused = Err(Refusal::from("no autopilot was heard yet".to_owned()));
+            return events.push(SessionEvent::Command(client, refused));
+        }
         let refused = self.commands.give(client, command);
         events.extend(refused.map(|(client, result)| SessionEvent::Command(client, result)));
         self.tick(now, events);

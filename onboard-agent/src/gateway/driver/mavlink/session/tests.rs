@@ -70,6 +70,17 @@ fn it_binds_to_the_first_autopilot_and_to_nothing_else() {
     assert_eq!((talk.session.peer(), talk.session.others), (Some(AUTOPILOT), 3));
 }
 
+/// It may stand on the bench, with people beside it.
+#[test]
+fn what_is_ordered_before_an_autopilot_is_heard_is_not_sent_to_the_next_one() {
+    let mut talk = Talk::new();
+    talk.session.command(talk.now, ORDER, Command::Terminate, &mut talk.events);
+    assert!(matches!(&talk.events[..], [SessionEvent::Command(ORDER, Err(_))]), "{:?}", talk.events);
+    (0..5).for_each(|_| talk.hear(AUTOPILOT, &beat(false)));
+    let ends = |message: &MavMessage| matches!(message, MavMessage::COMMAND_LONG(c) if c.command == MavCmd::MAV_CMD_DO_FLIGHTTERMINATION);
+    assert!(!talk.session.out.iter().any(ends));
+}
+
 #[test]
 fn a_clock_that_asks_is_answered_before_it_has_said_whose_it_is() {
     let mut talk = Talk::new();
