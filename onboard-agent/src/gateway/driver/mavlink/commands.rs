@@ -96,21 +96,61 @@ pub enum Shown {
 struct Given {
     client: Client,
     command: Command,
+    /// How often it was sent, in one copy or two: only what was sent once measures the way there and back.
+    rounds: u32,
+    /// How often that was in vain or may be, since its answer would count: not for ever.
     tries: u32,
+    /// Answers that may still come: one to each copy.
+    owed: u32,
     acked: Option<Time>,
+    /// When it was sent first.
     sent: Time,
-    /// Mode and arming as they were shown before it.
-    before: Option<(u32, bool)>,
     /// When it was sent last.
     sent_last: Time,
+    /// Mode and arming as they were shown before it.
+    before: Option<(u32, bool)>,
     /// The mode before was shown since then.
     is_as_before: bool,
+    /// The opposite of its effect was shown before it, or since: what is shown now came of it, though its answer was not heard.
+    was_otherwise: bool,
 }
 
 impl Given {
     fn new(client: Client, command: Command, before: Option<(u32, bool)>, now: Time) -> Self {
-        let (acked, sent, sent_last) = (None, now, now);
-        Self { client, command, tries: 1, acked, sent, before, sent_last, is_as_before: false }
+        let (rounds, tries, owed, acked, sent, sent_last) = (0, 0, 0, None, now, now);
+        let (is_as_before, was_otherwise) = (false, false);
+        let mut given = Self {
+            client,
+            command,
+            rounds,
+            tries,
+            owed,
+            acked,
+            sent,
+            sent_last,
+            before,
+            is_as_before,
+            was_otherwise,
+        };
+        before.into_iter().for_each(|(mode, armed)| given.notes(Shown::Mode(mode, armed)));
+        given
+    }
+
+    /// Once more. `counts`: its answer would be told from those to other orders.
+    fn send(&mut self, now: Time, peer: Peer, copies: usize, counts: bool, out: &mut Vec<MavMessage>) {
+        let message = encode(self.command, u8::try_from(self.rounds).unwrap_or(u8::MAX), peer);
+        for _ in 0..copies {
+            out.push(message.clone());
+            self.owed += 1;
+        }
+        self.rounds += 1;
+        self.tries += u32::from(counts);
+        (self.sent_last, self.is_as_before) = (now, false);
+    }
+
+    fn notes(&mut self, shown: Shown) {
+        let is_state = matches!(shown, Shown::Mode(..));
+        self.was_otherwise |= is_state && self.is_obeyed(shown) == Some(false);
     }
 
     /// Before that it is not sent again: somebody might be overruled.
@@ -128,24 +168,6 @@ impl Given {
             (Command::Disarm | Command::Terminate | Command::ForceDisarm, Shown::Mode(_, armed)) => !armed,
             _ => return None,
         })
-    }
-
-    /// Something else was shown before: what is shown now came of it, though its answer was not heard.
-    fn has_changed(&self, shown: Shown) -> bool {
-        match (shown, self.before) {
-            (Shown::Mode(mode, armed), Some((mode_before, armed_before))) => match self.command {
-                Command::Arm | Command::Disarm | Command::Terminate | Command::ForceDisarm => {
-                    armed != armed_before
-                }
-                _ => mode != mode_before,
-            },
-            _ => false,
-        }
-    }
-
-    /// Not every autopilot is set up to end a flight; the engine can be stopped on all.
-    fn disarm_by_force(&mut self) {
-        (self.command, self.tries, self.acked) = (Command::ForceDisarm, 0, None);
     }
 
     /// It shows neither the mode before nor the one that was ordered: somebody else has chosen it.
@@ -219,9 +241,17 @@ impl Commands {
 
     /// It is over, and may still be answered.
     fn expect_late(&mut self, given: &Given) {
-        if given.acked.is_none() {
-            self.late.expect(number(given.command), given.sent_last);
+        if given.owed > 0 {
+            self.late.expect(number(given.command), given.sent_last, given.owed);
         }
+    }
+
+    /// Not every autopilot is set up to end a flight; the engine can be stopped on all. That is sent next.
+    fn disarm_by_force(&mut self) -> Option<Ended> {
+        let given = self.flight.take()?;
+        self.expect_late(&given);
+        self.queue.push_front((given.client, Command::ForceDisarm));
+        None
     }
 
     /// How long it is there and back.
@@ -235,8 +265,9 @@ impl Commands {
         if self.flight.is_none()
             && let Some((client, command)) = self.queue.pop_front()
         {
-            self.flight = Some(Given::new(client, command, self.seen, now));
-            out.extend((0..self.rto.copies()).map(|_| encode(command, 0, peer)));
+            let counts = !self.late.may_be(now, number(command));
+            let given = self.flight.insert(Given::new(client, command, self.seen, now));
+            given.send(now, peer, self.rto.copies(), counts, out);
             self.rto.start(now);
         }
         ended
@@ -260,10 +291,8 @@ impl Commands {
             }
             None => {
                 // as long as its answers can't be told from another's, it is not given up for want of one
-                given.tries += u32::from(!self.late.may_be(now, number(given.command)));
-                (given.sent_last, given.is_as_before) = (now, false);
-                let message = encode(given.command, given.tries as u8 - 1, peer);
-                out.extend((0..self.rto.copies()).map(|_| message.clone()));
+                let counts = !self.late.may_be(now, number(given.command));
+                given.send(now, peer, self.rto.copies(), counts, out);
                 None
             }
         }
@@ -277,12 +306,16 @@ impl Commands {
 
     /// The autopilot answers a command.
     pub fn acked(&mut self, now: Time, ack: &COMMAND_ACK_DATA) -> Option<Ended> {
-        let given = self.flight.as_mut()?;
-        let is_its = ack.command == number(given.command) && !self.late.may_be(now, ack.command);
-        if !is_its || given.acked.is_some() {
+        let is_last = ack.result != MavResult::MAV_RESULT_IN_PROGRESS;
+        if self.late.takes(now, ack.command, is_last) {
             return None;
         }
-        if given.tries == 1 {
+        let given = self.flight.as_mut().filter(|given| ack.command == number(given.command))?;
+        given.owed = given.owed.saturating_sub(u32::from(is_last));
+        if given.acked.is_some() {
+            return None;
+        }
+        if given.rounds == 1 {
             self.rto.sample(now.saturating_sub(given.sent));
         }
         match ack.result {
@@ -293,11 +326,9 @@ impl Commands {
             }
             refused if given.command == Command::Terminate => {
                 tracing::warn!(?refused, "flight termination refused, disarming by force");
-                given.disarm_by_force();
-                None
+                self.disarm_by_force()
             }
             refused => {
-                given.acked = Some(now);
                 let why = format!("the autopilot refused {:?}: {refused:?}", given.command);
                 let for_now = refused == MavResult::MAV_RESULT_TEMPORARILY_REJECTED;
                 self.end(Err(Refusal { why, for_now, is_answer: true }))
@@ -316,13 +347,12 @@ impl Commands {
             return self.end(Err(why.into()));
         }
         given.is_as_before |= matches!(shown, Shown::Mode(..));
+        given.notes(shown);
         match (given.is_obeyed(shown)?, given.acked) {
-            (true, Some(_)) => self.end(Ok(())),
-            (true, None) if given.has_changed(shown) => self.end(Ok(())),
+            (true, acked) if acked.is_some() || given.was_otherwise => self.end(Ok(())),
             (false, Some(at)) if now >= at + EFFECT && given.command == Command::Terminate => {
                 tracing::warn!("flight termination accepted and not done, disarming by force");
-                given.disarm_by_force();
-                None
+                self.disarm_by_force()
             }
             (false, Some(at)) if now >= at + EFFECT => {
                 let why = format!("the autopilot accepted {:?} and did not do it", given.command);

@@ -48,7 +48,11 @@ impl Talk {
     }
 
     fn answers(&mut self, result: MavResult) {
-        let ack = COMMAND_ACK_DATA { command: ARMING, result, ..COMMAND_ACK_DATA::DEFAULT };
+        self.answers_to(ARMING, result);
+    }
+
+    fn answers_to(&mut self, command: MavCmd, result: MavResult) {
+        let ack = COMMAND_ACK_DATA { command, result, ..COMMAND_ACK_DATA::DEFAULT };
         let ended = self.commands.acked(self.now, &ack);
         self.ended.extend(ended);
     }
@@ -114,4 +118,67 @@ fn an_order_whose_predecessor_was_answered_is_believed_at_once() {
         talk.shows(armed);
         assert_eq!(talk.ended.pop(), Some((client, Ok(()))));
     }
+}
+
+/// It stopped the program that ends a flight by force.
+#[test]
+fn an_end_that_is_refused_while_an_order_to_arm_may_be_answered_stops_the_engine() {
+    let mut talk = Talk::default();
+    talk.shows(false);
+    assert_eq!(talk.commands.give(FIRST, Command::Arm), None);
+    talk.pass(1);
+    talk.ended.extend(talk.commands.give(SECOND, Command::Terminate));
+    talk.pass(1);
+    talk.answers_to(MavCmd::MAV_CMD_DO_FLIGHTTERMINATION, MavResult::MAV_RESULT_DENIED);
+    talk.sent = 0;
+    talk.pass(1);
+    assert_eq!(talk.sent, 1, "at once");
+    talk.pass(20);
+    assert!(talk.sent > 1, "and again");
+    talk.shows(true);
+    talk.shows(false);
+    assert_eq!(talk.ended.last(), Some(&(SECOND, Ok(()))));
+}
+
+/// All that it was sent since may have been answered.
+#[test]
+fn what_was_sent_more_than_once_measures_no_way_there_and_back() {
+    let mut talk = Talk::stood_down();
+    talk.pass(52);
+    let before = talk.commands.rto.timeout();
+    talk.answers(MavResult::MAV_RESULT_ACCEPTED);
+    assert_eq!(talk.commands.rto.timeout(), before);
+}
+
+/// Whoever arms it next has it.
+#[test]
+fn what_was_seen_to_be_disarmed_is_not_disarmed_again() {
+    let mut talk = Talk::stood_down();
+    for armed in [true, false] {
+        talk.pass(5);
+        talk.shows(armed);
+    }
+    assert_eq!(talk.ended, [(SECOND, Ok(()))]);
+    talk.sent = 0;
+    talk.pass(5);
+    talk.shows(true);
+    talk.pass(60);
+    assert_eq!(talk.sent, 0);
+}
+
+#[test]
+fn the_answer_to_a_second_copy_is_not_the_next_ones() {
+    let mut talk = Talk::default();
+    talk.commands.rto.start(Time::ZERO);
+    assert!(talk.commands.rto.expired(Duration::from_secs(60)) && talk.commands.rto.copies() == 2);
+    talk.now = Duration::from_secs(60);
+    talk.shows(false);
+    for (client, command) in [(FIRST, Command::Arm), (SECOND, Command::Disarm)] {
+        assert_eq!(talk.commands.give(client, command), None);
+        talk.pass(1);
+        talk.answers(MavResult::MAV_RESULT_DENIED);
+    }
+    assert!(matches!(&talk.ended[..], [(FIRST, Err(_))]), "{:?}", talk.ended);
+    talk.answers(MavResult::MAV_RESULT_DENIED);
+    assert!(matches!(&talk.ended[..], [_, (SECOND, Err(_))]), "its own: {:?}", talk.ended);
 }
