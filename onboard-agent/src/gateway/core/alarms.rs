@@ -35,14 +35,14 @@ pub struct AlarmInputs {
     pub disobeys_since: Option<Time>,
     /// It is below the waypoint that it steers to, and sinks: the engine ought to work.
     pub sinks_below_target: bool,
-    /// It sinks below the altitude that it was told to fly at.
-    pub sinks: bool,
+    /// It sinks below the altitude that it was told to fly at; `None`: that is not known.
+    pub sinks: Option<bool>,
     /// It flies far slower than it was told to.
     pub slow: bool,
     /// It flies far faster than it was told to.
     pub fast: bool,
-    /// It is far from the altitude that it was told to fly at, and comes no nearer.
-    pub off_altitude: bool,
+    /// It is far from the altitude that it was told to fly at, and comes no nearer; `None`: that is not known.
+    pub off_altitude: Option<bool>,
     /// It ought to fly, and does not move; `None`: that is not known.
     pub stands_still: Option<bool>,
     /// It flies, and is not armed.
@@ -165,10 +165,10 @@ impl Alarms {
                 let flies = t.armed || t.is_up(now);
                 flies && !t.stopped.is_empty() && age(t.last_received).is_some_and(|a| a < SILENT)
             }
-            Watch::Sinks => inputs.sinks,
+            Watch::Sinks => inputs.sinks.unwrap_or(raised),
             Watch::Slow => inputs.slow,
             Watch::Fast => inputs.fast,
-            Watch::OffAltitude => inputs.off_altitude,
+            Watch::OffAltitude => inputs.off_altitude.unwrap_or(raised),
             Watch::StandsStill => inputs.stands_still.unwrap_or(raised),
             Watch::Disarmed => inputs.disarmed,
             Watch::FliesOn => inputs.flies_on,
@@ -200,7 +200,7 @@ impl Alarms {
             // that it stands is an alarm of its own
             Some(engine) => raised && engine.rpm < STOPPED_RPM && !self.raised.contains(&Watch::EngineOut),
             None if raised => inputs.slow || !self.climb.shows_an_engine(now, t),
-            None => (inputs.sinks || inputs.slow) && t.throttle.is_some_and(full),
+            None => (inputs.sinks == Some(true) || inputs.slow) && t.throttle.is_some_and(full),
         }
     }
 

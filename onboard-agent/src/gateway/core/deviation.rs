@@ -41,32 +41,33 @@ const AT_HOME_M: f64 = 500.0;
 impl Gateway {
     /// It is below the waypoint that it steers to, and sinks: the engine ought to work.
     pub(super) fn sinks_below_target(&self) -> bool {
-        self.flies_waypoints() && self.is_below(MISSING_M, SINKING_MPS)
+        self.flies_waypoints() && self.is_below(MISSING_M, SINKING_MPS) == Some(true)
     }
 
-    /// It sinks although it was told to fly higher, or to circle.
-    pub(super) fn sinks(&self) -> bool {
+    /// It sinks although it was told to fly higher, or to circle. `None`: it is not known where it is, and what was said of it holds.
+    pub(super) fn sinks(&self) -> Option<bool> {
         if !self.is_on_its_way() {
-            return false;
+            return Some(false);
         }
         match self.control.intent {
-            Intent::Hold => self.fix().is_some_and(|fix| fix.down_mps > LEVEL_MPS),
+            Intent::Hold => self.fix().map(|fix| fix.down_mps > LEVEL_MPS),
             Intent::Fly | Intent::Direct => self.is_below(TROUBLE_M, TROUBLE_MPS),
-            Intent::Nothing | Intent::Return => false,
+            Intent::Nothing | Intent::Return => Some(false),
         }
     }
 
-    /// It is far above or below what it was told to fly at, and does not come nearer. Without an engine it can't help it.
-    pub(super) fn is_off_altitude(&self, now: Time) -> bool {
+    /// It is far above or below what it was told to fly at, and does not come nearer. Without an engine it can't help it. `None`: as above.
+    pub(super) fn is_off_altitude(&self, now: Time) -> Option<bool> {
         use GatewayState::{SafeApproach, TakeOff};
-        let Some((fix, wanted_m)) = self.fix().zip(self.commanded_m()) else { return false };
+        let Some(wanted_m) = self.commanded_m() else { return Some(false) };
+        let fix = self.fix()?;
         let is_steered = self.is_on_its_way() || matches!(self.state, TakeOff | SafeApproach);
         let flies = is_steered && self.telemetry.is_up(now) && fix.altitude_home_m > ROLLING_M;
         let missing_m = wanted_m - fix.altitude_amsl_m;
         let closing_mps = -fix.down_mps * missing_m.signum();
         let left_s = self.seconds_to_target().unwrap_or(0.0).max(1.0);
         let asked_mps = (CLOSING_SHARE * missing_m.abs() / left_s).min(CLOSING_MPS);
-        flies && missing_m.abs() > OFF_M && closing_mps < asked_mps && !self.alarms.engine_has_failed()
+        Some(flies && missing_m.abs() > OFF_M && closing_mps < asked_mps && !self.alarms.engine_has_failed())
     }
 
     /// It flies far faster through the air than it was told to, and does not slow down.
@@ -130,9 +131,9 @@ impl Gateway {
     }
 
     /// So far below what it was told to fly at, and sinking so fast.
-    fn is_below(&self, metres: f64, mps: f64) -> bool {
-        let below = |(fix, m): (Fix, f64)| fix.altitude_amsl_m < m - metres && fix.down_mps > mps;
-        self.fix().zip(self.commanded_m()).is_some_and(below)
+    fn is_below(&self, metres: f64, mps: f64) -> Option<bool> {
+        let Some(wanted_m) = self.commanded_m() else { return Some(false) };
+        self.fix().map(|fix| fix.altitude_amsl_m < wanted_m - metres && fix.down_mps > mps)
     }
 
     /// The altitude that it was told to fly at, metres AMSL.

@@ -102,8 +102,8 @@ fn moving(down_mps: f64) -> Report {
 
 #[test]
 fn an_engine_that_says_nothing_is_suspected_at_full_throttle_until_it_climbs() {
-    let sinks = AlarmInputs { sinks: true, ..AlarmInputs::default() };
-    let well = AlarmInputs::default();
+    let sinks = AlarmInputs { sinks: Some(true), ..AlarmInputs::default() };
+    let well = AlarmInputs { sinks: Some(false), ..AlarmInputs::default() };
     let throttle = Report::Throttle;
     let events = story(&[(20, sinks, throttle(0.5)), (100, sinks, throttle(1.0)), (50, well, moving(3.0))]);
     assert_eq!(events, [(50, "+sinks".into()), (70, "+engine-suspected".into()), (120, "-sinks".into())]);
@@ -186,7 +186,7 @@ fn a_propeller_that_the_wind_turns_for_a_moment_does_not_run() {
 
 #[test]
 fn an_engine_that_is_no_longer_told_of_is_suspected_like_one_that_never_was() {
-    let sinks = AlarmInputs { sinks: true, ..AlarmInputs::default() };
+    let sinks = AlarmInputs { sinks: Some(true), ..AlarmInputs::default() };
     let runs = Report::Engine(Engine { rpm: 5000.0, temperature_c: 80.0, throttle: 1.0 });
     let events = story(&[(20, AlarmInputs::default(), runs), (200, sinks, Report::Throttle(1.0))]);
     assert!(events.iter().any(|(_, name)| name == "+engine-suspected"), "{events:?}");

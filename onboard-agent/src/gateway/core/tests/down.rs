@@ -19,8 +19,17 @@ fn where_it_was_long_ago_is_no_deviation_and_takes_none_back() {
     core.step(Input::Report(Report::Fix(low)));
     core.run(7, &[beat(Mode::Waypoints, true), Report::OnGround(false)]);
     assert!(core.raised("sinks"), "{:?}", core.gateway.alarms.raised());
-    core.run(5, &[beat(Mode::Waypoints, true), Report::OnGround(false)]);
-    assert!(!core.raised("sinks") && !core.raised("off-altitude"));
+    core.run(30, &[beat(Mode::Waypoints, true), Report::OnGround(false)]);
+    assert!(core.raised("sinks"), "it may be flown lower than anybody knows");
+    core.run(
+        12,
+        &[beat(Mode::Waypoints, true), Report::OnGround(false), Report::Fix(Fix { down_mps: 0.0, ..low })],
+    );
+    assert!(!core.raised("sinks") && core.raised("off-altitude"));
+    core.run(30, &[beat(Mode::Waypoints, true), Report::OnGround(false)]);
+    assert!(core.raised("off-altitude"));
+    core.run(2, &flying(25.0, 25.0));
+    assert!(!core.raised("off-altitude"));
 
     let mut core = Core::in_nav();
     let down = [beat(Mode::Waypoints, true), Report::OnGround(false), fix(0.0)];
