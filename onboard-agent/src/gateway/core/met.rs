@@ -136,7 +136,7 @@ impl Gateway {
     }
 
     /// What does not belong to a list is known again.
-    fn take_up(&mut self, known: &Snapshot, out: &mut Vec<Output>) {
+    pub(super) fn take_up(&mut self, known: &Snapshot, out: &mut Vec<Output>) {
         if let Some(engine) = &known.engine {
             let mut events = vec![];
             self.alarms.take_up(engine, &mut events);

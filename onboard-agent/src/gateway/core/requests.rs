@@ -110,8 +110,10 @@ impl Gateway {
         if !self.fp_manager.waits_to_join(now, &self.safe) || !self.telemetry.is_airborne() {
             return Err(NO_WAYPOINTS.into());
         }
-        // what an earlier gateway knew of it is not flown any more
-        self.adopting = None;
+        // what an earlier gateway had put aboard is not flown any more; the rest of what it knew holds
+        if let Some(known) = self.adopting.take() {
+            self.take_up(&known, out);
+        }
         self.control.set_intent(Intent::Hold, self.telemetry.mode);
         self.fp_manager.expect(now);
         self.fp_manager.awaited_since = Some(now);

@@ -117,12 +117,17 @@ fn what_is_remembered_of_a_flight_is_kept_until_it_is_known_what_became_of_it() 
 /// Had back from the pilot, it flies what the FP Manager sends: a third gateway would take up what the first one flew.
 #[test]
 fn what_an_earlier_gateway_knew_is_forgotten_when_the_aircraft_is_had_back_without_it() {
-    let mut core = Core::started_anew(Some(Core::in_nav().gateway.snapshot()));
+    let mut known = Core::in_nav().gateway.snapshot();
+    known.engine = Some("engine-suspected".into());
+    let mut core = Core::started_anew(Some(known));
     let mut by_pilot = flying(25.0, 25.0);
     by_pilot[0] = beat(Mode::Other(5), true);
     core.run(3, &by_pilot);
     assert!(core.gateway.state() == GatewayState::Manual && !core.join().accepted);
+    assert!(!core.raised("engine-suspected"));
     assert_eq!(core.answer(Input::Request(4, GatewayRequest::Resume)), Answer::Request(Ok(())));
+    assert!(core.raised("engine-suspected"), "its way goes on without an engine");
+    assert_eq!(core.gateway.highest, Token(10), "what was numbered so far is not numbered again");
     let mut holds = flying(25.0, 25.0);
     holds[0] = beat(Mode::Hold, true);
     core.run(1, &holds);
