@@ -76,7 +76,8 @@ impl Aim {
 /// What a driver is asked to do.
 ///
 /// Those about waypoints (the first four) are not answered: what came of them is seen in [`Report::Course`]. A
-/// driver goes on trying until the autopilot has what was fed. Take-off and landing are waypoints.
+/// driver goes on trying until the autopilot has what was fed. Take-off and landing are waypoints. Nor is
+/// [`Order::TakeBack`] answered, but the order that it takes back.
 /// The others are answered by exactly one [`Report::Done`], [`Report::Failed`], [`Report::Unanswered`],
 /// [`Report::PutOff`] or [`Report::Adopted`].
 #[derive(Debug, Clone, PartialEq)]
@@ -105,6 +106,8 @@ pub enum Order {
     Arm,
     /// A launch is given up, on the ground: take back an order to arm that is under way, and disarm.
     StandDown,
+    /// That order to stand down is not carried out any more: what it would disarm may fly by now, or its pilot has it.
+    TakeBack(OrderId),
     /// Airspeed from now on, m/s.
     Speed(f64),
     /// End the flight by force: stop the engine now.

@@ -61,6 +61,7 @@ impl Gateway {
     /// A launch waits until the list is aboard and the autopilot flies it, armed or not, but not for long, nor for an autopilot that is
     /// gone: whoever mends what is in the way stands before the propeller.
     pub(super) fn wait_for_launch(&mut self, now: Time, out: &mut Vec<Output>) {
+        self.keep_armed(now, out);
         self.disarm_late(now, out);
         let Some(since) = self.control.launch.since else { return };
         let on_ground = matches!(self.state, GatewayState::Stop | GatewayState::Off);
@@ -153,25 +154,48 @@ impl Gateway {
     /// It may arm by an order of ours that was taken back. What flies by now did so, and has an owner like any other: it is not disarmed
     /// up there.
     pub(super) fn may_arm_late(&self, now: Time) -> bool {
-        let is_lately = self.control.launch.given_up_at.is_some_and(|at| now.saturating_sub(at) < ARMS_LATE);
-        is_lately && !self.telemetry.flies(now)
+        self.was_given_up_lately(now) && !self.telemetry.flies(now)
+    }
+
+    /// A launch was, whose order to arm may have been carried out since.
+    pub(super) fn was_given_up_lately(&self, now: Time) -> bool {
+        self.control.launch.given_up_at.is_some_and(|at| now.saturating_sub(at) < ARMS_LATE)
+    }
+
+    /// It has left the ground by its position, though its autopilot may not have said so yet. `None`: where it is now is not known.
+    fn is_seen_up(&self, now: Time) -> Option<bool> {
+        let (_, fix) = self.telemetry.fix.filter(|(at, _)| now.saturating_sub(*at) < FRESH)?;
+        let flies_mps = self.settings.profile.min_airspeed_mps;
+        Some(fix.altitude_home_m >= LEFT_GROUND_M || fix.north_mps.hypot(fix.east_mps) >= flies_mps)
     }
 
     /// It may have left the ground though its autopilot has not said so yet: behind a silence the heartbeat comes first.
-    fn may_be_up(&self, now: Time) -> bool {
-        let fresh = self.telemetry.fix.filter(|(at, _)| now.saturating_sub(*at) < FRESH);
-        let flies_mps = self.settings.profile.min_airspeed_mps;
-        fresh.is_none_or(|(_, fix)| {
-            fix.altitude_home_m >= LEFT_GROUND_M || fix.north_mps.hypot(fix.east_mps) >= flies_mps
-        })
+    pub(super) fn may_be_up(&self, now: Time) -> bool {
+        self.is_seen_up(now).unwrap_or(true)
+    }
+
+    /// In a mode of his own somebody else has it.
+    fn is_his(&self) -> bool {
+        let mode = self.telemetry.mode;
+        matches!(mode, Some(Mode::Other(_))) && mode != self.control.mode_before
+    }
+
+    /// An order to disarm is sent again for many seconds: not to what may have left the ground meanwhile, nor to who has it by now.
+    fn keep_armed(&mut self, now: Time, out: &mut Vec<Output>) {
+        let t = &self.telemetry;
+        let is_silent = t.last_received.is_none_or(|at| now.saturating_sub(at) >= FRESH);
+        let may_fly = t.flies(now) || self.is_seen_up(now).unwrap_or(is_silent);
+        if (may_fly || self.is_his())
+            && let Some(id) = self.control.launch.stand_down.take()
+        {
+            self.order(Order::TakeBack(id), out);
+        }
     }
 
     fn disarm_late(&mut self, now: Time, out: &mut Vec<Output>) {
         let is_idle = self.state == GatewayState::Stop && self.control.intent == Intent::Nothing;
-        // in a mode of his own somebody else has armed it
-        let mode = self.telemetry.mode;
-        let is_his = matches!(mode, Some(Mode::Other(_))) && mode != self.control.mode_before;
-        let is_ours = self.telemetry.armed && self.may_arm_late(now) && !is_his && !self.may_be_up(now);
+        let is_ours =
+            self.telemetry.armed && self.may_arm_late(now) && !self.is_his() && !self.may_be_up(now);
         let is_due =
             self.control.launch.stand_down.is_none() && self.control.retry_at.is_none_or(|at| now >= at);
         if is_idle && is_ours && is_due {

@@ -176,7 +176,7 @@ impl Driver for GliderDriver {
         let request = match order {
             Order::Feed { after, waypoints } => return self.feed(after, &waypoints),
             Order::Adopt(_) => return self.reports.push_back(Report::Adopted(id, None)),
-            Order::Leave(_) | Order::Forget | Order::HandsOff(_) => return,
+            Order::Leave(_) | Order::Forget | Order::HandsOff(_) | Order::TakeBack(_) => return,
             Order::Steer(Aim::Waypoints) => "FLY".into(),
             Order::Steer(Aim::Hold) => "CIRCLE".into(),
             Order::Arm => "ARM".into(),

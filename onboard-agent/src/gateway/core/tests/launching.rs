@@ -183,6 +183,37 @@ fn what_has_taken_off_by_an_order_that_was_taken_back_is_not_disarmed_and_has_an
     }
 }
 
+fn is_left_armed(core: &Core) -> bool {
+    core.orders().iter().any(|(_, order)| matches!(order, Order::TakeBack(_)))
+}
+
+/// The order to disarm was given on the ground, and goes on being sent until it is answered.
+#[test]
+fn an_order_to_disarm_that_is_not_answered_is_taken_back_from_what_may_fly_and_from_its_pilot() {
+    let quick = [beat(Mode::Waypoints, true), Report::OnGround(true), fix_at(1.0, 25.0)];
+    let high = [beat(Mode::Waypoints, true), Report::OnGround(true), fix_at(15.0, 5.0)];
+    let says_so = [beat(Mode::Waypoints, true), Report::OnGround(false), fix_at(1.0, 0.0)];
+    let his = on_ground(Mode::Other(5), true);
+    let heard_only = [beat(Mode::Waypoints, true), Report::OnGround(true)];
+    let (silent, stands) = ([], on_ground(Mode::Waypoints, true));
+    let cases: [(&str, &[Report], bool); 7] = [
+        ("quick", &quick, true),
+        ("high", &high, true),
+        ("says so", &says_so, true),
+        ("his", &his, true),
+        ("silent", &silent, true),
+        ("no position", &heard_only, false),
+        ("stands", &stands, false),
+    ];
+    for (what, then, taken_back) in cases {
+        let mut core = launched(true);
+        core.run(60, &ground(false));
+        assert_eq!((stands_down(&core), is_left_armed(&core)), (1, false), "{what}");
+        core.run(3, then);
+        assert_eq!((stands_down(&core), is_left_armed(&core)), (1, taken_back), "{what}");
+    }
+}
+
 /// It was met rolling, and took off while its list was read.
 #[test]
 fn what_an_earlier_gateway_launched_is_not_disarmed_in_the_air_while_it_is_read() {

@@ -43,6 +43,8 @@ pub enum Client {
     List,
     /// Nobody: the driver said again what the autopilot had forgotten.
     Nobody,
+    /// Nobody: it makes what does not take off stand, and is taken back with that.
+    Standing,
 }
 
 /// A command to be given.

@@ -71,6 +71,8 @@ pub struct MavlinkDriver {
     arming: Option<OrderId>,
     /// One was not answered, and may still be carried out.
     may_arm: bool,
+    /// The order to stand down, while it is in flight.
+    standing_down: Option<OrderId>,
     /// What it is being made to do.
     steering: Option<(OrderId, Aim)>,
     /// It was sent to a place, and has not been sent elsewhere since.
@@ -115,6 +117,13 @@ impl MavlinkDriver {
             self.steps.push(Steps { order: id, rest });
         }
         self.session.command(now, Client::Order(id), first, events);
+    }
+
+    /// What is left of an order is not sent any more, and it fails.
+    fn take_back(&mut self, id: OrderId, why: &str) {
+        self.steps.retain(|steps| steps.order != id);
+        self.session.take_back(Client::Order(id));
+        self.reports.push_back(Report::Failed(id, format!("taken back: {why}")));
     }
 
     fn refuse(&mut self, id: OrderId) {
@@ -173,7 +182,7 @@ impl MavlinkDriver {
                 self.list_ended(now, Outcome::Failed(refusal.why));
             }
             SessionEvent::Command(Client::Order(id), result) => self.command_ended(now, id, result, more),
-            SessionEvent::Command(Client::Nobody, _) | SessionEvent::Telemetry(_) => {}
+            SessionEvent::Command(Client::Nobody | Client::Standing, _) | SessionEvent::Telemetry(_) => {}
         }
     }
 
@@ -185,6 +194,7 @@ impl MavlinkDriver {
                 self.stirred = true;
             }
             Report::Fix(fix) => self.list.moved(fix),
+            Report::OnGround(false) => self.keep_armed("it is in the air"),
             Report::Rebooted => {
                 self.list.lost();
                 self.stirred = true;
@@ -232,6 +242,7 @@ impl MavlinkDriver {
         if let Some((_, aim)) = self.steering.take_if(|(of, _)| *of == id) {
             self.steered(aim, result.is_ok());
         }
+        self.standing_down.take_if(|of| *of == id);
         let arming = self.arming.take_if(|of| *of == id).is_some();
         let report = match result {
             Ok(()) => Report::Done(id),
@@ -317,6 +328,10 @@ impl Driver for MavlinkDriver {
             Order::Steer(aim) => self.steer(now, id, aim, &mut events),
             Order::Arm => self.arm(now, id, &mut events),
             Order::StandDown => self.stand_down(now, id, &mut events),
+            Order::TakeBack(of) if self.standing_down == Some(of) => {
+                self.keep_armed("it may fly, or its pilot has it");
+            }
+            Order::TakeBack(_) => {}
             Order::Speed(mps) => {
                 self.speed = speed::Speed::said(mps, self.dialect());
                 self.session.command(now, Client::Order(id), Command::Speed(mps), &mut events);

@@ -121,6 +121,7 @@ impl Autopilot {
                 (self.list, self.stray, self.aboard, self.mixed) = (VecDeque::new(), None, false, 0)
             }
             Order::HandsOff(off) => self.hands_off = off,
+            Order::TakeBack(id) => self.under_way.retain(|(_, of, ..)| *of != id),
             order => {
                 let ticks = if let Fate::Done(ticks) = self.fate { ticks } else { 2 };
                 self.under_way.push((ticks, id, order, self.fate));

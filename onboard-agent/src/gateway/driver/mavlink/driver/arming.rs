@@ -19,25 +19,32 @@ impl MavlinkDriver {
     /// What was sent already may still be carried out: it is disarmed after it.
     pub(super) fn stand_down(&mut self, now: Time, id: OrderId, events: &mut Vec<SessionEvent>) {
         let Some(dialect) = self.dialect() else { return self.refuse(id) };
+        self.keep_armed("ordered again");
         let arming = self.arming.take();
-        if let Some(arming) = arming {
-            self.steps.retain(|steps| steps.order != arming);
-            self.session.take_back(Client::Order(arming));
-            self.reports.push_back(Report::Failed(arming, "taken back".into()));
-        }
+        arming.into_iter().for_each(|arming| self.take_back(arming, "the launch was given up"));
         let is_armed = std::mem::take(&mut self.may_arm) || self.seen.is_some_and(|seen| seen.armed);
         let mode = self.seen.map(|seen| (dialect.meaning)(seen.mode, false));
         let is_pilots = matches!(mode, Some(Mode::Other(_)));
         let would_fly = arming.is_some() || mode == Some(Mode::Waypoints);
         let stands = dialect.stands.filter(|_| would_fly && !is_pilots);
         if arming.is_none() && !is_armed {
+            self.standing_down = stands.map(|_| id);
             return self.give(now, id, stands.into_iter().collect(), events);
         }
+        self.standing_down = Some(id);
         self.give(now, id, vec![Command::Disarm], events);
         // whatever comes of that, and before what is ordered next
         if let Some(stands) = stands {
-            self.session.command(now, Client::Nobody, stands, events);
+            self.session.command(now, Client::Standing, stands, events);
         }
+    }
+
+    /// What was to stand is left as it is.
+    pub(super) fn keep_armed(&mut self, why: &str) {
+        if let Some(id) = self.standing_down.take() {
+            self.take_back(id, why);
+        }
+        self.session.take_back(Client::Standing);
     }
 
     /// It gives its reasons in words of its own. `sent`: the order to arm itself was sent, and not only what comes before it.

@@ -1,7 +1,6 @@
 //! What the autopilot shows of what it does: its mode, and whether it is armed.
 
 use super::{Dialect, MavlinkDriver, Seen};
-use crate::gateway::driver::mavlink::commands::Client;
 use crate::gateway::driver::mavlink::session::{self, SessionEvent};
 use crate::gateway::order::{Aim, Mode, Report, Time};
 use mavlink::dialects::ardupilotmega::HEARTBEAT_DATA;
@@ -48,9 +47,7 @@ impl MavlinkDriver {
     pub(super) fn keep_hands(&mut self, off: bool) {
         self.list.hands_off = off;
         if let Some((id, _)) = self.steering.take_if(|_| off) {
-            self.steps.retain(|steps| steps.order != id);
-            self.session.take_back(Client::Order(id));
-            self.reports.push_back(Report::Failed(id, "taken back: somebody else flies".into()));
+            self.take_back(id, "somebody else flies");
         }
     }
 }

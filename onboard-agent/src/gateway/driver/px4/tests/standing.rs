@@ -59,6 +59,58 @@ fn who_has_it_before_the_order_to_arm_was_sent_is_told_apart_from_an_order_that_
     }
 }
 
+fn land(rig: &mut Rig, on_ground: bool) {
+    let landed_state = match on_ground {
+        true => MavLandedState::MAV_LANDED_STATE_ON_GROUND,
+        false => MavLandedState::MAV_LANDED_STATE_IN_AIR,
+    };
+    rig.hear(&MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA {
+        landed_state,
+        ..EXTENDED_SYS_STATE_DATA::DEFAULT
+    }));
+}
+
+/// The link away from us was gone while it armed and rolled.
+#[test]
+fn an_order_to_disarm_that_waits_is_not_sent_to_what_flies_by_now() {
+    for says_so in [true, false] {
+        let mut rig = Rig::loaded();
+        rig.carry_out(Order::Arm).unwrap();
+        land(&mut rig, true);
+        rig.pass = Box::new(|to, _| to == To::Driver);
+        let stand_down = rig.order(Order::StandDown);
+        rig.run(2);
+        assert_eq!(rig.outcome(stand_down), None, "it is sent again and again");
+        if says_so {
+            land(&mut rig, false);
+        } else {
+            rig.order(Order::TakeBack(OrderId(99)));
+            rig.step();
+            assert_eq!(rig.outcome(stand_down), None, "that is another one");
+            rig.order(Order::TakeBack(stand_down));
+        }
+        rig.pass = Box::new(|_, _| true);
+        rig.run(20);
+        assert!(rig.px4.armed && (rig.px4.main, rig.px4.sub) == (4, 4), "says so: {says_so}");
+        let why = rig.outcome(stand_down).and_then(Result::err).unwrap_or_default();
+        assert!(why.contains("taken back"), "{why}");
+    }
+}
+
+#[test]
+fn a_second_order_to_stand_down_takes_the_place_of_the_first() {
+    let mut rig = Rig::loaded();
+    rig.carry_out(Order::Arm).unwrap();
+    rig.pass = Box::new(|to, _| to == To::Driver);
+    let (first, second) = (rig.order(Order::StandDown), rig.order(Order::StandDown));
+    rig.order(Order::TakeBack(second));
+    rig.step();
+    rig.pass = Box::new(|_, _| true);
+    rig.run(20);
+    assert!([first, second].map(|id| rig.outcome(id)).iter().all(|outcome| matches!(outcome, Some(Err(_)))));
+    assert!(rig.px4.armed);
+}
+
 /// In Mission it would take off when somebody arms it.
 #[test]
 fn one_whose_disarming_is_not_answered_does_not_stay_in_the_mode_in_which_it_takes_off() {
