@@ -73,6 +73,8 @@ pub struct MavlinkDriver {
     may_arm: bool,
     /// The order to stand down, while it is in flight.
     standing_down: Option<OrderId>,
+    /// Until then it may still obey an order to fly its list that was taken back.
+    starts_late_until: Option<Time>,
     /// What it is being made to do.
     steering: Option<(OrderId, Aim)>,
     /// It was sent to a place, and has not been sent elsewhere since.

@@ -1,15 +1,20 @@
 //! Arming for a launch, and what takes that back.
 
-use super::MavlinkDriver;
+use super::{Dialect, MavlinkDriver, Seen};
 use crate::gateway::driver::mavlink::commands::{Client, Command, Refusal};
 use crate::gateway::driver::mavlink::session::SessionEvent;
 use crate::gateway::order::{Mode, OrderId, Report, Time};
+use std::time::Duration;
+
+/// On a bad link a change of mode may be carried out so long after it was taken back.
+const STARTS_LATE: Duration = Duration::from_secs(10);
 
 impl MavlinkDriver {
     pub(super) fn arm(&mut self, now: Time, id: OrderId, events: &mut Vec<SessionEvent>) {
         match self.dialect() {
             Some(dialect) => {
                 self.arming = Some(id);
+                self.starts_late_until = None;
                 self.give(now, id, dialect.arm.to_vec(), events);
             }
             None => self.refuse(id),
@@ -27,6 +32,9 @@ impl MavlinkDriver {
         let is_pilots = matches!(mode, Some(Mode::Other(_)));
         let would_fly = arming.is_some() || mode == Some(Mode::Waypoints);
         let stands = dialect.stands.filter(|_| would_fly && !is_pilots);
+        if arming.is_some() && is_pilots {
+            self.starts_late_until = Some(now + STARTS_LATE);
+        }
         if arming.is_none() && !is_armed {
             self.standing_down = stands.map(|_| id);
             return self.give(now, id, stands.into_iter().collect(), events);
@@ -47,6 +55,19 @@ impl MavlinkDriver {
         self.session.take_back(Client::Standing);
     }
 
+    /// An order to fly its list that was taken back is obeyed after all: whoever arms it by his switch would see it take off.
+    pub(super) fn stand_late(&mut self, now: Time, dialect: &Dialect, events: &mut Vec<SessionEvent>) {
+        let is_late = self.starts_late_until.is_some_and(|until| now < until);
+        let starts = |seen: Seen| !seen.armed && (dialect.meaning)(seen.mode, false) == Mode::Waypoints;
+        if let Some(stands) = dialect.stands
+            && is_late
+            && self.seen.is_some_and(starts)
+        {
+            self.starts_late_until = None;
+            self.session.command(now, Client::Standing, stands, events);
+        }
+    }
+
     /// It gives its reasons in words of its own. `sent`: the order to arm itself was sent, and not only what comes before it.
     pub(super) fn not_armed(&mut self, now: Time, id: OrderId, sent: bool, refusal: Refusal) -> Report {
         let Refusal { why, for_now, is_answer } = refusal;
@@ -54,6 +75,9 @@ impl MavlinkDriver {
             Some(words) => format!("{why} (it says: {words})"),
             None => why,
         };
+        if !is_answer && !sent {
+            self.starts_late_until = Some(now + STARTS_LATE);
+        }
         // what was not sent is not carried out late
         let is_answer = is_answer || !sent;
         self.may_arm = !is_answer;

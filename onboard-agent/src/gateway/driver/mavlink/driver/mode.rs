@@ -31,6 +31,7 @@ impl MavlinkDriver {
             self.sent = false;
         }
         self.report_mode(dialect);
+        self.stand_late(now, dialect, events);
         let changed = before.is_some_and(|before| before.mode != seen.mode);
         self.say_speed_again(now, dialect, changed && dialect.forgets_speed, events);
     }

@@ -111,6 +111,34 @@ fn a_second_order_to_stand_down_takes_the_place_of_the_first() {
     assert!(rig.px4.armed);
 }
 
+/// The order to fly its list waited in the radio while he flipped to his own mode: armed by his switch it would take off.
+#[test]
+fn what_obeys_an_order_to_fly_its_list_late_does_not_stay_in_that_mode() {
+    let mode =
+        |m: &MavMessage| matches!(m, MavMessage::COMMAND_LONG(c) if c.command == MavCmd::MAV_CMD_DO_SET_MODE);
+    for (flips, late, stands_late) in [(true, 3, true), (false, 3, true), (true, 15, false)] {
+        let mut rig = Rig::loaded();
+        if !flips {
+            rig.px4.mode(3, 0);
+            rig.run(2);
+        }
+        rig.pass = Box::new(move |to, m| to == To::Driver || !mode(m));
+        rig.order(Order::Arm);
+        rig.step();
+        if flips {
+            rig.px4.mode(3, 0);
+            rig.run(2);
+        }
+        assert_eq!(rig.carry_out(Order::StandDown), Ok(()));
+        assert_eq!((rig.px4.main, rig.px4.sub), (3, 0), "his mode stays");
+        rig.pass = Box::new(|_, _| true);
+        rig.run(late);
+        rig.px4.mode(4, 4);
+        rig.run(5);
+        assert_eq!(stands(&rig), stands_late, "flips: {flips}, after {late} s");
+    }
+}
+
 /// In Mission it would take off when somebody arms it.
 #[test]
 fn one_whose_disarming_is_not_answered_does_not_stay_in_the_mode_in_which_it_takes_off() {
