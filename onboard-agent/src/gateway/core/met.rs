@@ -25,11 +25,10 @@ impl Gateway {
             self.control.met_at = None;
             return;
         }
-        // what is armed late took off by an order of ours
-        let is_theirs = self.stood && self.adopting.is_none() && !self.may_arm_late(now);
+        let is_theirs = self.stood && self.adopting.is_none();
         if is_theirs || self.buffer.course().aboard {
             self.control.met_at = None;
-            return self.leave_to_who_took_off(out);
+            return self.leave_to_who_took_off(now, out);
         }
         let is_unread = now.saturating_sub(*self.control.met_at.get_or_insert(now)) >= READ_WITHIN;
         match (self.state, self.telemetry.mode) {
@@ -51,11 +50,15 @@ impl Gateway {
 
     /// Nobody has ordered the launch. What was fed and is aboard is flown as if it had been; a list that the autopilot still has of an
     /// earlier start is his who flies it.
-    fn leave_to_who_took_off(&mut self, out: &mut Vec<Output>) {
+    fn leave_to_who_took_off(&mut self, now: Time, out: &mut Vec<Output>) {
         let on_ground = matches!(self.state, GatewayState::Off | GatewayState::Stop);
         let flies_what_was_fed = self.telemetry.mode == Some(Mode::Waypoints) && self.buffer.course().aboard;
         if on_ground && self.telemetry.mode.is_some() && !flies_what_was_fed {
-            self.change(Trigger::PilotTook, "taken off under a pilot's control", out);
+            let cause = match self.was_given_up_lately(now) {
+                true => "taken off by an order that was taken back",
+                false => "taken off under a pilot's control",
+            };
+            self.change(Trigger::PilotTook, cause, out);
         }
     }
 

@@ -214,6 +214,18 @@ fn an_order_to_disarm_that_is_not_answered_is_taken_back_from_what_may_fly_and_f
     }
 }
 
+/// Nobody has it: its list was forgotten with the plan.
+#[test]
+fn what_takes_off_by_an_order_that_was_taken_back_is_told_for_what_it_is() {
+    let mut core = launched(true);
+    let nothing = Feed { cancel_after: Some(Token(0)), waypoints: vec![] };
+    core.step(Input::Feed(4, nothing, fp_manager()));
+    core.step(Input::Report(Report::Course(Course::default())));
+    core.run(3, &flying(25.0, 25.0));
+    assert_eq!(core.gateway.state(), GatewayState::Manual);
+    assert!(core.gateway.cause.contains("that was taken back"), "{}", core.gateway.cause);
+}
+
 /// It was met rolling, and took off while its list was read.
 #[test]
 fn what_an_earlier_gateway_launched_is_not_disarmed_in_the_air_while_it_is_read() {
