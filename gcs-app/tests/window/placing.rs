@@ -135,35 +135,6 @@ fn a_waypoint_that_is_dragged_onto_a_variable_is_that_variable() {
     assert_eq!(window.plan(), before, "one step");
 }
 
-/// Selected or not: it is no corner of the line's own.
-#[test]
-fn the_first_point_of_a_selected_line_that_a_variable_says_moves_the_variable() {
-    let mut window = with(VARIABLE);
-    window.click("TF side4");
-    window.press(Key::L);
-    let at = window.centre("Map") + vec2(60.0, 40.0);
-    [vec2(0.0, 0.0), vec2(90.0, 0.0)].iter().for_each(|offset| window.click_at(at + *offset));
-    window.press(Key::Enter);
-    window.press(Key::V);
-    let line = window.selected();
-    let first = format!("Waypoint {line}");
-    window.click("TF side4");
-    let from = window.centre(&first);
-    window.drag(from, window.centre("Place of fire") - from + vec2(3.0, 2.0));
-    window.click(&first);
-    assert_eq!(window.selected(), line);
-    let fire = |window: &Window| {
-        window.plan().variables.iter().find(|v| v.name.as_str() == "fire").unwrap().initial.clone()
-    };
-    let (was, at) = (fire(&window), window.centre(&first));
-    window.drag(at, vec2(-30.0, 25.0));
-    assert_ne!(fire(&window), was);
-    assert_eq!(
-        window.plan().leg(&line.as_str().into()).unwrap().leg.place(),
-        Some(&Place::Position(Value::Expression("fire".into())))
-    );
-}
-
 #[test]
 fn a_scan_whose_centre_is_dragged_onto_a_variable_is_about_that_variable() {
     let mut window = with(VARIABLE);
