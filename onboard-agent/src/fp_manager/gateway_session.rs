@@ -274,7 +274,9 @@ impl GatewaySession {
         if self.is_pilots() {
             return self.unwant(GatewayRequest::Hold);
         }
-        let led_away = matches!(self.state, Some(GatewayState::Hold | GatewayState::Directed));
+        // in the climb of a take-off it may have been told to hold once it is clear of the ground
+        let led_away =
+            matches!(self.state, Some(GatewayState::Hold | GatewayState::Directed | GatewayState::TakeOff));
         if led_away || self.wanted() == Some(&GatewayRequest::Hold) {
             self.want(GatewayRequest::Resume);
         }

@@ -1,6 +1,7 @@
 //! From what is wanted to orders for the driver, one at a time in each lane.
 
 use super::Gateway;
+use super::climb_out::ClimbOut;
 use super::io::{Intent, Output};
 use super::launch::Launch;
 use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Time};
@@ -59,6 +60,8 @@ pub struct Control {
     confirmed_at: Option<Time>,
     /// The launch that waits, and the one that was given up.
     pub launch: Launch,
+    /// What waits for the end of the climb.
+    pub climb_out: ClimbOut,
     speed: Option<(OrderId, f64)>,
     /// The order to read what it has aboard.
     pub adopt: Option<OrderId>,
@@ -94,6 +97,7 @@ impl Control {
         self.confirmed_at = None;
         self.disobeys_since = None;
         self.launch.put_off_since = None;
+        self.climb_out.asked = None;
         self.retry_at = None;
     }
 

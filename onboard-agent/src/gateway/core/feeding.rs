@@ -201,7 +201,8 @@ impl Gateway {
         }
         let last = feed.waypoints.last().map(|w| w.token);
         self.highest = self.highest.max(last.unwrap_or(Token(0)));
-        self.feed_driver(feed.cancel_after, feed.waypoints, out);
+        let cancel_after = self.cancels(&feed);
+        self.feed_driver(cancel_after, feed.waypoints, out);
         self.ended = false;
         self.finished = false;
         self.low_reported = false;

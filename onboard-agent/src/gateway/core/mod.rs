@@ -8,6 +8,7 @@ mod airspeed;
 mod alarms;
 mod batch;
 mod buffer;
+mod climb_out;
 mod control;
 mod deviation;
 mod feeding;
@@ -153,6 +154,7 @@ impl Gateway {
         self.watch(now, out);
         self.keep_ended(now, out);
         self.observe(now, out);
+        self.climb_out(out);
         self.supervise(now, out);
         self.steer(now, out);
         self.report_progress(out);

@@ -5,6 +5,7 @@ use super::io::{Intent, Output};
 use super::safe::{choose, is_usable};
 use super::states::is_flying;
 use crate::gateway::order::Time;
+use geometry::LatLon;
 use usal::contract::{GatewayRequest, GatewayState, SafeParameters, SafeRunway};
 
 /// A direct command goes to a place so far ahead, metres.
@@ -25,11 +26,8 @@ impl Gateway {
         self.is_real()?;
         match asked {
             GatewayRequest::Launch => self.launch(out),
-            GatewayRequest::Hold => self.hold(out),
             GatewayRequest::Resume => self.resume(now, out),
-            GatewayRequest::Direct { heading_deg, altitude_amsl_m, airspeed_mps } => {
-                self.direct(heading_deg, altitude_amsl_m, airspeed_mps, out)
-            }
+            GatewayRequest::Hold | GatewayRequest::Direct { .. } => self.lead_away(asked, out),
             GatewayRequest::Safe => self.safe_by_command(now, out),
             GatewayRequest::Recover => self.recover_by_command(now, out),
             GatewayRequest::SetRunways { runways } => self.set_runways(runways, out),
@@ -68,7 +66,7 @@ impl Gateway {
     }
 
     /// The states in which people and the FP Manager may redirect the aircraft.
-    fn is_free(&self) -> Result<(), String> {
+    pub(super) fn is_free(&self) -> Result<(), String> {
         match self.state {
             GatewayState::TakeOff
             | GatewayState::Nav
@@ -80,13 +78,24 @@ impl Gateway {
         }
     }
 
-    fn hold(&mut self, out: &mut Vec<Output>) -> Result<(), String> {
-        self.is_free()?;
+    /// Hold, or a direct command, at once.
+    pub(super) fn lead(&mut self, asked: &GatewayRequest, out: &mut Vec<Output>) -> Result<(), String> {
+        if let GatewayRequest::Direct { heading_deg, altitude_amsl_m, airspeed_mps } = *asked {
+            self.control.direct = Some(self.direct_to(heading_deg, altitude_amsl_m, airspeed_mps)?);
+            self.control.direct_due = true;
+            self.control.set_intent(Intent::Direct, self.telemetry.mode);
+            self.order_speed(airspeed_mps, out);
+        } else {
+            self.hold();
+        }
+        out.push(Output::Save);
+        Ok(())
+    }
+
+    fn hold(&mut self) {
         // a hold that was asked for is not ended by waypoints
         self.fp_manager.awaited_since = None;
         self.control.set_intent(Intent::Hold, self.telemetry.mode);
-        out.push(Output::Save);
-        Ok(())
     }
 
     fn resume(&mut self, now: Time, out: &mut Vec<Output>) -> Result<(), String> {
@@ -98,6 +107,9 @@ impl Gateway {
         }
         if self.buffer.is_empty() {
             return Err(NO_WAYPOINTS.into());
+        }
+        if self.control.climb_out.asked.is_some() {
+            self.cause = "the plan is flown on: what was asked for in the climb is not done".to_owned();
         }
         self.control.set_intent(Intent::Fly, self.telemetry.mode);
         out.push(Output::Save);
@@ -121,14 +133,13 @@ impl Gateway {
         Ok(())
     }
 
-    fn direct(
-        &mut self,
+    /// Where a direct command leads from here: a place far ahead, and its altitude.
+    pub(super) fn direct_to(
+        &self,
         heading_deg: f64,
         altitude_amsl_m: f64,
         airspeed_mps: f64,
-        out: &mut Vec<Output>,
-    ) -> Result<(), String> {
-        self.is_free()?;
+    ) -> Result<(LatLon, f64), String> {
         let place = self.place_now().ok_or("The position is not known: try again when it is.")?;
         let profile = &self.settings.profile;
         let speeds = profile.min_airspeed_mps..=profile.max_airspeed_mps;
@@ -143,12 +154,7 @@ impl Gateway {
                 profile.ceiling_amsl_m
             ));
         }
-        self.control.direct = Some((place.destination(heading_deg, DIRECT_M), altitude_amsl_m));
-        self.control.direct_due = true;
-        self.control.set_intent(Intent::Direct, self.telemetry.mode);
-        self.order_speed(airspeed_mps, out);
-        out.push(Output::Save);
-        Ok(())
+        Ok((place.destination(heading_deg, DIRECT_M), altitude_amsl_m))
     }
 
     fn safe_by_command(&mut self, now: Time, out: &mut Vec<Output>) -> Result<(), String> {

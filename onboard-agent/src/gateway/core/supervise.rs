@@ -186,7 +186,7 @@ impl Gateway {
     }
 
     /// High enough to turn: a take-off is not interrupted before, unless it circles already, and no higher.
-    fn is_clear_of_ground(&self) -> bool {
+    pub(super) fn is_clear_of_ground(&self) -> bool {
         let climbs = self.telemetry.fix.is_none_or(|(_, f)| f.down_mps < -CLIMBING_MPS);
         let takes_off = self.took_off.is_some() || self.state == GatewayState::TakeOff;
         !takes_off || self.telemetry.is_above_home(CLEAR_M) || (self.is_dry() && !climbs)

@@ -1,6 +1,7 @@
 //! The core alone: what it says and orders upon what is reported to it.
 
 mod by_hand;
+mod climb_out;
 mod disarmed;
 mod down;
 mod ended;

@@ -377,6 +377,7 @@ pub fn landing() -> Vec<Waypoint> {
 }
 
 mod by_hand;
+mod climb_out;
 mod corners;
 mod disarmed;
 mod ended;

@@ -2,12 +2,13 @@
 //!
 //! With each new list PX4 drops the line along which it flies, and goes straight from where it is to what it steers to. On
 //! the line that is the same. Behind a turn it is not: it would never come onto the leg. So what is not needed soon waits
-//! until the aircraft is on its line.
+//! until the aircraft is on its line. With a new list it also drops a take-off in the air, and turns: that one waits until it is over,
+//! or is to be left.
 
 use super::Window;
-use crate::gateway::order::Fix;
+use crate::gateway::order::{Fed, Fix};
 use geometry::{LatLon, LocalFrame, Vec2};
-use usal::contract::Waypoint;
+use usal::contract::{Action, Waypoint};
 
 /// On the line: not farther from it than this, metres …
 const ON_LINE_M: f64 = 10.0;
@@ -19,6 +20,11 @@ const LEAST_S: f64 = 30.0;
 impl Window {
     /// What is new from a position on may go up later, when the aircraft is on its line.
     pub(super) fn may_wait(&self, new_from: u64) -> bool {
+        let takes_off = |fed: &Fed| matches!(fed.waypoint.action, Action::TakeOff { .. });
+        self.chain.active().is_some_and(takes_off) || self.may_wait_for_its_line(new_from)
+    }
+
+    fn may_wait_for_its_line(&self, new_from: u64) -> bool {
         let first = self.chain.first();
         let (Some(fix), Some(from), Some(to)) = (self.fix, self.chain.before(first), self.chain.active())
         else {
