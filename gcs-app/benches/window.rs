@@ -44,11 +44,14 @@ const TRACKS: usize = 400;
 /// Spirals of a flight.
 const SPIRALS: usize = 16;
 
+/// Measures something, and judges it.
+type Part = fn(&mut Verdicts);
+
 fn main() {
     let heads = ["mean", "longest", "promised", "in all"];
     let [mean, longest, promised, in_all] = heads.map(|head| format!("{head:>9}"));
     println!("{:<40} {mean} {longest} {promised} {:>12} {in_all}", "processor time of a frame", "naive/ours");
-    let parts: [(&str, fn(&mut Verdicts)); 6] = [
+    let parts: [(&str, Part); 6] = [
         ("legs", |verdicts| plan_of(500, 500, 100_000, [8.0, 4.0, 4.0], verdicts)),
         ("many", |verdicts| plan_of(LEGS, 0, LEGS, [16.0; 3], verdicts)),
         ("million", million_points),

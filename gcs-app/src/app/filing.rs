@@ -209,13 +209,15 @@ impl App {
         self.map.fit();
     }
 
-    /// What was selected in the document that was shown, said of it, and tried with it.
+    /// What was selected in the document that was shown, said of it, drawn and tried with it.
     pub(super) fn forget_the_last(&mut self) {
         self.view.select(None);
         (self.view.notice, self.view.changed_outside) = (None, None);
         (self.view.cursor_s, self.view.playing, self.view.alarm) = (None, false, None);
         self.view.what_if = WhatIf::default();
         self.map.close_menu();
+        // nothing is drawn until it is asked for
+        self.map.choose_tool("");
     }
 
     /// Has the document's file looked at, as long as nobody is asked about it and it is not being written.

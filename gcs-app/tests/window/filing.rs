@@ -379,7 +379,7 @@ fn every_document_survives_a_crash() {
     next.harness.state_mut().keep_copies(copies.path());
     next.steps(3);
     assert!(next.shows("second.xml") && next.shows("first.xml"));
-    next.click("Recover the changes");
+    next.click("Recover all");
     assert!(next.shows("Recovered, too: “Square circuit” (first.xml). Undo (Ctrl+Z) leads there."));
     for name in ["second.xml", "first.xml"] {
         assert_eq!(next.app().document().path(), Some(folder.path().join(name).as_path()));

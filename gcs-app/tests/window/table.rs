@@ -393,7 +393,7 @@ fn a_leg_of_a_procedure_has_the_altitude_that_its_call_says() {
     let procedure = r#"<procedures><procedure id="look" reference="36.3 -84.19"><TF id="up" lat="36.3" lon="-84.19"/></procedure></procedures>"#;
     let calls = r#"<call id="west" name="West" procedure="look" altitude="150" altitudeReference="home"/><TF id="side2" "#;
     let text = SQUARE.replacen("<mainPlan", &format!("{procedure}<mainPlan"), 1);
-    let mut window = opened(&text.replacen(r#"<TF id="side2" "#, calls, 1));
+    let window = opened(&text.replacen(r#"<TF id="side2" "#, calls, 1));
     assert_eq!(window.errors(), Vec::<String>::new());
     assert!(window.shows("150 m above home, West"));
     let own = window.harness.query_all_by_label_contains("AMSL, the leg before").count();

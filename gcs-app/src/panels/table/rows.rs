@@ -7,7 +7,9 @@ use crate::panels::Scene;
 use crate::panels::inspector::inherited::{self, Inherited};
 use crate::panels::tree::title;
 use crate::units;
-use flight_plan::{Altitude, AltitudeReference, FlightPlan, Id, LegContext, Problem, Section, Value, instantiate};
+use flight_plan::{
+    Altitude, AltitudeReference, FlightPlan, Id, LegContext, Problem, Section, Value, instantiate,
+};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
