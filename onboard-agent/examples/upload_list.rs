@@ -3,7 +3,7 @@
 
 use anyhow::{Context, bail, ensure};
 use autopilot_link::{Address, Event, Link, Outbox};
-use mavlink::dialects::ardupilotmega::{MISSION_ITEM_INT_DATA, MavCmd, MavFrame};
+use geometry::LatLon;
 use onboard_agent::gateway::driver::{Courier, FromLink, Setup};
 use std::time::{Duration, Instant};
 
@@ -19,7 +19,7 @@ async fn main() -> anyhow::Result<()> {
     upload(&address.parse()?, list).await
 }
 
-async fn upload(address: &Address, list: Vec<MISSION_ITEM_INT_DATA>) -> anyhow::Result<()> {
+async fn upload(address: &Address, list: Vec<(LatLon, f64)>) -> anyhow::Result<()> {
     let mut link = Link::open(address).await?;
     let mut courier = Courier::new(&Setup { links: vec![address.to_string()], ..Setup::default() });
     let (began, mut beat) = (Instant::now(), tokio::time::interval(BEAT));
@@ -37,7 +37,7 @@ async fn upload(address: &Address, list: Vec<MISSION_ITEM_INT_DATA>) -> anyhow::
             && began.elapsed() > SETTLED
             && let Some(list) = list.take()
         {
-            ensure!(courier.carry(began.elapsed(), list), "nobody to carry it to");
+            ensure!(courier.carry(began.elapsed(), &list), "nobody to carry it to");
         }
         outbox.clear();
         courier.send(&mut outbox);
@@ -55,27 +55,15 @@ async fn upload(address: &Address, list: Vec<MISSION_ITEM_INT_DATA>) -> anyhow::
 }
 
 /// Number, current, frame, command, four parameters, latitude, longitude, altitude, and whether it goes on by itself.
-fn read(text: &str) -> anyhow::Result<Vec<MISSION_ITEM_INT_DATA>> {
+fn read(text: &str) -> anyhow::Result<Vec<(LatLon, f64)>> {
     let mut lines = text.lines();
     ensure!(lines.next() == Some("QGC WPL 110"), "no list of waypoints");
-    lines
-        .zip(0..)
-        .map(|(line, seq)| entry(line, seq).with_context(|| format!("no waypoint: {line}")))
-        .collect()
+    lines.map(|line| place(line).with_context(|| format!("no waypoint: {line}"))).collect()
 }
 
-fn entry(line: &str, seq: u16) -> anyhow::Result<MISSION_ITEM_INT_DATA> {
+fn place(line: &str) -> anyhow::Result<(LatLon, f64)> {
     let numbers = line.split('\t').map(str::parse).collect::<Result<Vec<f64>, _>>()?;
-    let [_, _, _, command, .., x, y, z, _] = numbers[..] else { bail!("too short") };
+    let [_, _, _, command, .., lat_deg, lon_deg, altitude_m, _] = numbers[..] else { bail!("too short") };
     ensure!(command == 16.0, "only waypoints are carried");
-    Ok(MISSION_ITEM_INT_DATA {
-        seq,
-        x: (x * 1e7).round() as i32,
-        y: (y * 1e7).round() as i32,
-        z: z as f32,
-        command: MavCmd::MAV_CMD_NAV_WAYPOINT,
-        frame: MavFrame::MAV_FRAME_GLOBAL,
-        autocontinue: 1,
-        ..MISSION_ITEM_INT_DATA::DEFAULT
-    })
+    Ok((LatLon { lat_deg, lon_deg }, altitude_m))
 }

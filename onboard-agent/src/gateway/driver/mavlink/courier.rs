@@ -2,11 +2,14 @@
 //! programs do. A flight's waypoints go by the driver.
 
 use super::super::{DIALECTS, FromLink, Setup};
+use super::Peer;
 use super::dialect::Dialect;
 use super::mission::{Entry, Outcome};
 use super::session::{Session, SessionEvent};
 use crate::gateway::order::Time;
 use autopilot_link::Outbox;
+use geometry::LatLon;
+use mavlink::dialects::ardupilotmega::{MavCmd, MavFrame};
 
 /// A conversation with an autopilot that is about its list alone.
 #[derive(Default)]
@@ -27,12 +30,11 @@ impl Courier {
         self.dialect.is_some()
     }
 
-    /// Begins to replace the autopilot's list by this one. False: none was heard yet.
-    pub fn carry(&mut self, now: Time, mut list: Vec<Entry>) -> bool {
+    /// Begins to replace the autopilot's list by one of these places, each with its altitude, metres AMSL. False: no autopilot was heard
+    /// yet.
+    pub fn carry(&mut self, now: Time, places: &[(LatLon, f64)]) -> bool {
         let (Some(dialect), Some(peer)) = (self.dialect, self.session.peer()) else { return false };
-        for entry in &mut list {
-            (entry.target_system, entry.target_component) = (peer.system, peer.component);
-        }
+        let list = places.iter().zip(0..).map(|(place, seq)| entry(*place, seq, peer)).collect();
         let (mission, out) = self.session.mission();
         mission.upload(now, list, dialect.rules, peer, out);
         true
@@ -75,5 +77,20 @@ impl Courier {
                 _ => {}
             }
         }
+    }
+}
+
+fn entry((at, altitude_amsl_m): (LatLon, f64), seq: u16, peer: Peer) -> Entry {
+    Entry {
+        seq,
+        target_system: peer.system,
+        target_component: peer.component,
+        x: (at.lat_deg * 1e7).round() as i32,
+        y: (at.lon_deg * 1e7).round() as i32,
+        z: altitude_amsl_m as f32,
+        command: MavCmd::MAV_CMD_NAV_WAYPOINT,
+        frame: MavFrame::MAV_FRAME_GLOBAL,
+        autocontinue: 1,
+        ..Entry::DEFAULT
     }
 }
