@@ -66,7 +66,8 @@ pub struct Transfer {
     restarts: u32,
     /// The link has lost something.
     careful: bool,
-    /// Items in flight now: half as many each time that it goes back, one more for each that is taken.
+    /// Items in flight now: half as many each time that nothing is answered in time, one more for each that is taken. What is only lost
+    /// on the way is no sign of a narrow link.
     window: usize,
     went_back: Time,
     /// When it asked for something new.

@@ -92,11 +92,11 @@ impl Transfer {
         if let Phase::Sending { acked, sent, .. } = &mut self.phase {
             *sent = *acked;
         }
-        self.narrow_window();
         self.send_window(out);
         self.rto.start(now);
     }
 
+    /// Nothing was answered in time.
     pub(super) fn narrow_window(&mut self) {
         self.window = (self.window / 2).max(LEAST_WINDOW);
     }

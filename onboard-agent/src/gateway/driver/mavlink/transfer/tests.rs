@@ -128,7 +128,7 @@ fn not_receiving_any_more_is_asked_what_it_has() {
 
 /// More would only wait before a narrow link, for longer than an answer is waited for.
 #[test]
-fn less_is_sent_at_once_each_time_that_it_goes_back_and_more_again_for_what_is_taken() {
+fn less_is_sent_at_once_each_time_that_nothing_is_answered_and_more_again_for_what_is_taken() {
     let mut talk = Talk::upload(100, &RULES);
     talk.request(1);
     assert_eq!(
