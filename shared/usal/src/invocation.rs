@@ -301,15 +301,20 @@ impl Replier {
     fn answer<A: Serialize>(&mut self, answer: &Result<A, Refusal>) {
         self.answered = true;
         let reply = Reply::new(answer, self.format);
-        send(&self.query, &reply, &self.serving);
-        self.tell(&reply);
-        if let Some(name) = &self.name {
-            let passing = matches!(answer, Err(refusal) if [BUSY, EXPIRED].contains(&&*refusal.code));
-            let mut memory = self.serving.memory.lock().unwrap_or_else(PoisonError::into_inner);
-            for waiting in if passing { memory.forget(name) } else { memory.finish(name, &reply) } {
-                send(&waiting, &reply, &self.serving);
-            }
+        let passing = matches!(answer, Err(refusal) if [BUSY, EXPIRED].contains(&&*refusal.code));
+        // before anybody hears the answer: who asks again at once is not answered from what was
+        let waiting = self.remember(&reply, passing);
+        for query in std::iter::once(&self.query).chain(&waiting) {
+            send(query, &reply, &self.serving);
         }
+        self.tell(&reply);
+    }
+
+    /// Keeps the answer, or forgets the request if the answer is about the moment. Returns the repetitions that wait for it.
+    fn remember(&self, reply: &Reply, passing: bool) -> Vec<Query> {
+        let Some(name) = &self.name else { return Vec::new() };
+        let mut memory = self.serving.memory.lock().unwrap_or_else(PoisonError::into_inner);
+        if passing { memory.forget(name) } else { memory.finish(name, reply) }
     }
 }
 

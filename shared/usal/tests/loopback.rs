@@ -558,7 +558,8 @@ async fn what_is_published_and_asked_says_which_session_it_is_of() {
     let mut events = b.listen(gateway::EVENTS, Start::Remembered).unwrap();
     let publisher = a.publish(gateway::AIR).unwrap();
     publisher.set(0.0, 1.0, &air(5.0));
-    a.emitter(gateway::EVENTS).unwrap().emit(&low(1));
+    let emitter = a.emitter(gateway::EVENTS).unwrap();
+    emitter.emit(&low(1));
     let value = within(air_of.changed()).await.unwrap();
     assert_eq!(value.from, Some(a.instance()));
     let Some(Occurrence::Event { from, .. }) = within(events.recv()).await else { panic!("an event") };
