@@ -35,6 +35,8 @@ const QUERY_TIMEOUT: Duration = Duration::from_secs(2);
 /// How often it asks again, and the pause before, if it reached nobody.
 const QUERY_ATTEMPTS: u32 = 40;
 const QUERY_PAUSE: Duration = Duration::from_millis(50);
+/// Answer of a publisher that has published nothing so far: what it does publish comes by itself.
+const NO_VALUE: &str = "no value yet";
 
 type Last = Arc<Mutex<Option<(ZBytes, SourceInfo)>>>;
 
@@ -274,7 +276,7 @@ fn answer_last(query: &Query, last: &Last) {
             let reply = query.reply(query.key_expr().clone(), bytes).source_info(source);
             reply.encoding(Format::Cbor.encoding()).wait()
         }
-        None => query.reply_err("no value yet").wait(),
+        None => query.reply_err(NO_VALUE).wait(),
     };
     if let Err(e) = sent {
         tracing::debug!("answering with the last value: {e}");
@@ -300,11 +302,16 @@ where
     let answered = Arc::new(AtomicBool::new(false));
     let callback = {
         let (inner, cell, answered) = (inner.clone(), cell.clone(), answered.clone());
-        move |reply: Reply| {
-            answered.store(true, Ordering::Relaxed);
-            if let Ok(sample) = reply.result() {
+        // Zenoh itself replies with an error once the time is up: nobody was reached then
+        move |reply: Reply| match reply.result() {
+            Ok(sample) => {
+                answered.store(true, Ordering::Relaxed);
                 accept(&inner, &cell, sample, Some(asked));
             }
+            Err(error) if *error.payload().to_bytes() == *NO_VALUE.as_bytes() => {
+                answered.store(true, Ordering::Relaxed);
+            }
+            Err(_) => {}
         }
     };
     let drop = {

@@ -48,6 +48,26 @@ async fn late_joiner_gets_the_last_value() {
     assert!(received.age() < DEADLINE);
 }
 
+/// A publisher that is so slow, or a machine, that the network gives up on the first question.
+#[tokio::test(flavor = "multi_thread")]
+async fn last_value_that_was_not_told_in_time_is_asked_for_again() {
+    let net = Net::open().await;
+    let slow = outside_client(&net.endpoint).await;
+    let key = "legwork/uav1/gateway/variable/air";
+    let queries = slow.declare_queryable(key).await.unwrap();
+    let _token =
+        slow.liveliness().declare_token("legwork/uav1/gateway/liveliness/variable.air").await.unwrap();
+    let mut subscriber = net.client().await.follow(gateway::AIR).unwrap();
+    let unanswered = within(queries.recv_async()).await.unwrap();
+    let second = within(queries.recv_async()).await.unwrap();
+    let json = br#"{"time_s": 1, "validity_s": 1, "value": {"airspeed_mps": 21, "wind_east_mps": 0, "wind_north_mps": 0,
+        "pressure_hpa": 1000, "temperature_c": 15}}"#;
+    second.reply(key, json.as_slice()).encoding(Encoding::APPLICATION_JSON).await.unwrap();
+    drop(second);
+    assert_eq!(within(subscriber.changed()).await.unwrap().stamped.value, air(21.0));
+    drop(unanswered);
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn variables_pass_from_client_to_client_through_the_hub() {
     let net = Net::open().await;
