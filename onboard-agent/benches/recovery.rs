@@ -104,6 +104,7 @@ impl Hub {
             state: GatewayState::Stop,
             cause: "bench".into(),
             armed: false,
+            autopilot: None,
             autopilot_mode: "AUTO".into(),
             autopilot_age_s: 0.0,
             fp_manager: None,

@@ -79,6 +79,7 @@ impl App {
             version,
             plan: self.document.plan().clone(),
             what_if: self.view.what_if.clone(),
+            autopilot: self.vehicles.shown().autopilot(),
             alarm: self.view.alarm_at_cursor(),
             coverage: self.view.coverage,
         });
@@ -161,7 +162,7 @@ impl App {
         self.aboard.receive();
         let vehicle = self.vehicles.shown();
         if let (Some(aboard), true) = (&vehicle.aboard, vehicle.proposal.is_some()) {
-            self.aboard.ask(aboard);
+            self.aboard.ask(aboard, vehicle.autopilot());
         }
     }
 }

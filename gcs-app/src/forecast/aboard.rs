@@ -3,7 +3,7 @@
 use super::preview::Forecaster;
 use super::{Forecast, Shared};
 use crate::state::ActivePlan;
-use aircraft::Profile;
+use aircraft::{Autopilot, Profile};
 use flight_exec::rehearse::WhatIf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -12,9 +12,9 @@ use terrain::Terrain;
 /// The window's end of the thread. Dropping it ends the thread.
 #[derive(Debug)]
 pub struct Aboard {
-    questions: Sender<ActivePlan>,
+    questions: Sender<(ActivePlan, Option<Autopilot>)>,
     answers: Receiver<(Arc<str>, Shared)>,
-    asked: Option<Arc<str>>,
+    asked: Option<(Arc<str>, Option<Autopilot>)>,
     known: Option<(Arc<str>, Shared)>,
 }
 
@@ -24,15 +24,16 @@ impl Aboard {
     /// # Errors
     /// There is no thread.
     pub fn spawn(terrain: Arc<dyn Terrain>, wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
-        let (questions, inbox) = channel::<ActivePlan>();
+        let (questions, inbox) = channel::<(ActivePlan, Option<Autopilot>)>();
         let (outbox, answers) = channel();
         let work = move || {
             while let Ok(first) = inbox.recv() {
-                let ActivePlan { hash, plan } = inbox.try_iter().last().unwrap_or(first);
+                let (ActivePlan { hash, plan }, autopilot) = inbox.try_iter().last().unwrap_or(first);
                 let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
                 let program = flight_plan::compile(plan.as_ref().clone(), &profile, terrain.as_ref());
+                let world = WhatIf { autopilot, ..WhatIf::default() };
                 let flown = program.ok().and_then(|program| {
-                    Forecaster::new(profile, terrain.clone()).fly(&Arc::new(program), &WhatIf::default()).ok()
+                    Forecaster::new(profile, terrain.clone()).fly(&Arc::new(program), &world).ok()
                 });
                 if outbox.send((hash, flown.unwrap_or_default())).is_err() {
                     return;
@@ -44,12 +45,13 @@ impl Aboard {
         Ok(Self { questions, answers, asked: None, known: None })
     }
 
-    /// Asks for the path of a plan, unless that was the last thing asked.
-    pub fn ask(&mut self, plan: &ActivePlan) {
-        if self.asked.as_ref() != Some(&plan.hash) {
-            self.asked = Some(plan.hash.clone());
+    /// Asks for the path of a plan, flown by the vehicle's autopilot, unless that was the last thing asked.
+    pub fn ask(&mut self, plan: &ActivePlan, autopilot: Option<Autopilot>) {
+        let asked = Some((plan.hash.clone(), autopilot));
+        if self.asked != asked {
+            self.asked = asked;
             // without the thread there is nothing to compare with
-            let _ = self.questions.send(plan.clone());
+            let _ = self.questions.send((plan.clone(), autopilot));
         }
     }
 

@@ -7,7 +7,7 @@ use super::preview::Forecaster;
 use super::reviewer::{Path, Trial};
 use super::worker::{Analysis, Found, Outbox, Question};
 use super::{Alarm, Coverage, Flown, Forecast, Shared, beginning};
-use aircraft::Profile;
+use aircraft::{Autopilot, Profile};
 use flight_exec::rehearse::WhatIf;
 use flight_exec::review::Conditions;
 use flight_plan::{FlightPlan, IncrementalCache, Problem, Program};
@@ -53,6 +53,7 @@ pub(super) struct Bench {
     /// What was flown, with its values, and in which world.
     flown: Option<Arc<Program>>,
     what_if: WhatIf,
+    autopilot: Option<Autopilot>,
     diverted: Option<(u64, Alarm)>,
     hashed: bool,
     reviewed: bool,
@@ -75,6 +76,7 @@ impl Bench {
             program: None,
             flown: None,
             what_if: WhatIf::default(),
+            autopilot: None,
             diverted: None,
             hashed: true,
             reviewed: true,
@@ -122,7 +124,7 @@ impl Bench {
         let covered = self.coverage.as_ref().is_some_and(|(of, c)| *of == here && c.is_complete());
         match () {
             () if self.analysed != Some((question.document, question.version)) => Some(Step::Analyse),
-            () if self.what_if != question.what_if => Some(Step::Fly),
+            () if self.what_if != question.what_if || self.autopilot != question.autopilot => Some(Step::Fly),
             () if alarm.is_some() => alarm.map(Step::Divert),
             () if !self.hashed => Some(Step::Hash),
             () if !self.reviewed => Some(Step::Review),
@@ -197,6 +199,7 @@ impl Bench {
 
     fn fly(&mut self, question: &Question) -> Flown {
         self.what_if = question.what_if.clone();
+        self.autopilot = question.autopilot;
         self.reviewed = false;
         self.forecast_version += 1;
         let no_forecast = match self.flight(question) {
@@ -225,7 +228,8 @@ impl Bench {
             return None;
         }
         let program = Arc::new(beginning::of(&question.plan, &mut self.trials)?);
-        let forecast = self.forecaster.fly(&program, &question.what_if.for_plan(&question.plan)).ok()?;
+        let what_if = question.what_if.for_plan(&question.plan).flown_by(question.autopilot);
+        let forecast = self.forecaster.fly(&program, &what_if).ok()?;
         Some(Arc::new(Forecast { is_beginning: true, ..forecast.as_ref().clone() }))
     }
 
@@ -242,7 +246,7 @@ impl Bench {
             }
         };
         self.flown = Some(program.clone());
-        self.forecaster.fly(&program, &what_if)
+        self.forecaster.fly(&program, &what_if.flown_by(question.autopilot))
     }
 
     /// To be reviewed.

@@ -1,7 +1,7 @@
 //! From a plan to its forecast, by flying it with the code that flies it aboard; from plan to plan only what has changed.
 
 use super::{Alarm, Forecast, Outline, Passage, Point, Shared, left_out};
-use aircraft::{Profile, Wind, Winds};
+use aircraft::{Autopilot, Profile, Winds};
 use flight_exec::rehearse::{
     Diversion, Kept, Options, Preview, PreviewError, Reach, Rehearsal, Start, WhatIf,
 };
@@ -33,6 +33,7 @@ struct World {
     winds: Winds,
     energy_share: f64,
     decisions: BTreeMap<Id, Id>,
+    autopilot: Option<Autopilot>,
 }
 
 impl World {
@@ -41,6 +42,7 @@ impl World {
             winds: what_if.winds(plan),
             energy_share: what_if.energy_share,
             decisions: what_if.decisions.clone(),
+            autopilot: what_if.autopilot,
         }
     }
 }
@@ -48,7 +50,7 @@ impl World {
 impl Forecaster {
     /// For an aircraft, over a ground.
     pub fn new(profile: Profile, terrain: Arc<dyn Terrain>) -> Self {
-        let world = World { winds: Wind::CALM.into(), energy_share: 1.0, decisions: BTreeMap::new() };
+        let world = World::of(&WhatIf::default(), &FlightPlan::default());
         let rehearsal = Rehearsal::new(profile.clone(), terrain.clone(), world.winds, options());
         Self { rehearsal, profile, world, terrain, last: Shared::default(), former: Vec::new() }
     }

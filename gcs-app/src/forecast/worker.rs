@@ -7,6 +7,7 @@
 use super::bench::Bench;
 use super::reviewer::Reviewer;
 use super::{Alarm, Coverage, Flown, Shared};
+use aircraft::Autopilot;
 use flight_exec::rehearse::{Diversion, WhatIf};
 use flight_exec::review::put_remedies;
 use flight_plan::{FlightPlan, Problem};
@@ -27,6 +28,8 @@ pub struct Question {
     pub plan: Arc<FlightPlan>,
     /// The world that it is flown in.
     pub what_if: WhatIf,
+    /// Which autopilot the vehicle has, if its habits are known.
+    pub autopilot: Option<Autopilot>,
     /// What would happen then?
     pub alarm: Option<Alarm>,
     /// How would alarms all along the path end?
@@ -36,7 +39,7 @@ pub struct Question {
 impl Question {
     /// The same question, without looking into the plan.
     fn is(&self, other: &Self) -> bool {
-        let what = |q: &Self| (q.document, q.version, q.alarm, q.coverage);
+        let what = |q: &Self| (q.document, q.version, q.autopilot, q.alarm, q.coverage);
         what(self) == what(other) && self.what_if == other.what_if
     }
 }

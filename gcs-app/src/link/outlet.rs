@@ -116,6 +116,7 @@ mod tests {
             state: GatewayState::Nav,
             cause: "waypoints".into(),
             armed: true,
+            autopilot: None,
             autopilot_mode: "AUTO".into(),
             autopilot_age_s: 0.1,
             fp_manager: fp_manager.map(Into::into),

@@ -1,6 +1,7 @@
 //! What if: the world that the preview is flown in, and what happens after an alarm at its cursor. Nothing here changes the plan
 //! unless that is asked for.
 
+mod autopilot;
 mod here;
 mod variables;
 mod wind;

@@ -8,6 +8,7 @@ use super::{
 use crate::link::{
     LinkEvent, LinkId, LinkState, Loss, Numbered, PlainEvent, PlainValue, Reply, Rows, Telemetry,
 };
+use aircraft::Autopilot;
 use flight_exec::{Event, Phase, ProposalReport, Status};
 use flight_plan::{Cause, FlightPlan, Id};
 use geometry::LatLon;
@@ -208,6 +209,11 @@ impl Vehicle {
     /// The link over which it can be asked, if there is one.
     pub fn open_link(&self) -> Option<LinkId> {
         self.link_id.filter(|_| self.link != LinkState::Off)
+    }
+
+    /// Its autopilot, if it said what it is and its habits are known.
+    pub fn autopilot(&self) -> Option<Autopilot> {
+        self.gateway.as_ref()?.value.autopilot.as_ref()?.habits.as_ref()?.parse().ok()
     }
 
     fn take(&mut self, telemetry: Telemetry, now_s: f64) {

@@ -5,7 +5,7 @@ use flight_exec::{BranchOption, DecisionRequest, Phase, PlacePointer, Status};
 use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Reply, Telemetry};
 use gcs_app::state::Ticket;
 use geometry::LatLon;
-use usal::contract::{Attitude, GatewayState, GatewayStatus, Position, Stamped};
+use usal::contract::{Attitude, AutopilotKind, GatewayState, GatewayStatus, Position, Stamped};
 
 pub fn status(phase: Phase) -> Status {
     Status {
@@ -118,6 +118,13 @@ impl Window {
         self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
     }
 
+    /// A gateway that says which autopilot it has.
+    pub fn receive_autopilot(&mut self, name: &str, habits: &str) {
+        let autopilot = Some(AutopilotKind { name: name.into(), habits: Some(habits.into()) });
+        let value = GatewayStatus { autopilot, ..gateway_status(GatewayState::Stop) };
+        self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+    }
+
     /// The next question that was asked, if there is one.
     pub fn asked(&mut self) -> Option<(Ticket, Call)> {
         match self.far.orders.try_recv() {
@@ -138,6 +145,7 @@ fn gateway_status(state: GatewayState) -> GatewayStatus {
         state,
         cause: "for the test".into(),
         armed: state != GatewayState::Stop,
+        autopilot: None,
         autopilot_mode: "AUTO".into(),
         autopilot_age_s: 0.1,
         fp_manager: None,

@@ -398,3 +398,33 @@ fn the_timeline_has_the_stages_one_after_the_other() {
     let least_s = (a.distance_m(b) + b.distance_m(c) + c.distance_m(d)) / cruise_mps;
     assert!((least_s * 0.9..least_s * 1.6).contains(&circuit_s), "{circuit_s} s for {least_s}");
 }
+
+#[test]
+fn it_is_flown_by_the_vehicles_autopilot_unless_another_is_chosen() {
+    let mut window = opened(SQUARE);
+    let as_reviewed = window.app().analysis().forecast.clone();
+    window.connect();
+    window.receive_autopilot("PX4 fixed wing", "px4");
+    window.until("the vehicle's way", |app| !Arc::ptr_eq(&app.analysis().forecast, &as_reviewed));
+    let by_vehicle = window.app().analysis().forecast.points.clone();
+    assert_ne!(by_vehicle, as_reviewed.points);
+    let mut choose_autopilot = |shown: &str, other: &str| {
+        let list = format!("Autopilot: {shown}");
+        window.harness.get_by_role_and_label(Role::ComboBox, &list).scroll_to_me();
+        window.steps(5);
+        window.harness.get_by_role_and_label(Role::ComboBox, &list).click();
+        window.steps(3);
+        window.harness.get_by_label(other).click();
+        window.steps(3);
+        window.until("the other world", |app| app.analysis().what_if == app.view().what_if);
+        window.app().analysis().forecast.points.clone()
+    };
+    assert_ne!(choose_autopilot("the vehicle's (PX4)", "ArduPlane"), by_vehicle);
+    assert_eq!(choose_autopilot("ArduPlane", "PX4"), by_vehicle, "the same habits");
+    assert!(window.shows("What if: flown by PX4"));
+    choose(&mut window, "↺ Reset");
+    assert!(window.app().view().what_if.is_nothing());
+    // one whose habits nobody knows
+    window.receive_autopilot("Glider", "thermals");
+    window.until("as reviewed", |app| app.analysis().forecast.points == as_reviewed.points);
+}

@@ -180,7 +180,16 @@ pub enum Report {
     /// The aircraft whose list was just read circles behind its end because it always does so there: nobody has chosen that mode.
     HoldsByItself,
     /// What kind of autopilot it is, and why it can't be flown if it can't.
-    Capability(Result<&'static str, String>),
+    Capability(Result<Kind, String>),
+}
+
+/// A kind of autopilot that can be flown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Kind {
+    /// What people call it.
+    pub name: &'static str,
+    /// Under which name its habits in flight are known ([`aircraft::Autopilot`]); `None`: they are not.
+    pub habits: Option<&'static str>,
 }
 
 /// How far the autopilot is with the waypoints that were fed.

@@ -130,7 +130,7 @@ fn log(report: &Report) {
         Report::Unanswered(id, why) => tracing::warn!(?id, why, "order not answered"),
         Report::PutOff(id, why) => tracing::warn!(?id, why, "order put off"),
         Report::Rebooted => tracing::warn!("the autopilot started anew"),
-        Report::Capability(Ok(kind)) => tracing::info!(kind, "autopilot"),
+        Report::Capability(Ok(kind)) => tracing::info!(kind = kind.name, "autopilot"),
         Report::Capability(Err(why)) => tracing::error!(why, "autopilot"),
         _ => {}
     }

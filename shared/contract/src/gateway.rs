@@ -48,6 +48,9 @@ pub struct GatewayStatus {
     pub cause: String,
     /// The autopilot is armed.
     pub armed: bool,
+    /// What kind of autopilot it is; `None`: it has not said so yet, or can't be flown.
+    #[serde(default)]
+    pub autopilot: Option<AutopilotKind>,
     /// The autopilot's own mode, as text.
     pub autopilot_mode: String,
     /// Seconds since the autopilot was last heard.
@@ -61,6 +64,16 @@ pub struct GatewayStatus {
     pub safe_return_in_s: Option<f64>,
     /// Alarms that are raised now.
     pub alarms: Vec<Alarm>,
+}
+
+/// A kind of autopilot.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct AutopilotKind {
+    /// What people call it.
+    pub name: String,
+    /// Under which name a preview knows its habits in flight, as `legwork preview --autopilot` takes it; `None`: they are not known.
+    #[serde(default)]
+    pub habits: Option<String>,
 }
 
 /// Gateway variable `navigation`.

@@ -1,5 +1,6 @@
 //! What is otherwise, and what would happen, in words.
 
+use super::autopilot;
 use super::here::{cause_name, reach_name};
 use crate::forecast::Alarm;
 use crate::units::{self, Units};
@@ -42,6 +43,9 @@ pub fn world(what_if: &WhatIf, plan: &FlightPlan, units: Units) -> String {
     }
     if what_if.energy_share < 1.0 {
         parts.push(format!("{:.0} % energy at the start", what_if.energy_share * 100.0));
+    }
+    if let Some(autopilot) = what_if.autopilot {
+        parts.push(format!("flown by {}", autopilot::name(autopilot)));
     }
     for (name, value) in &what_if.variables {
         let unit = plan.variable(name).map_or("", |variable| variable.unit.as_str());

@@ -1,6 +1,6 @@
 //! Wind, energy and start time; values and branches.
 
-use super::{remark, reset_button, variables, wind};
+use super::{autopilot, remark, reset_button, variables, wind};
 use crate::command::{PreviewCommand, Queue};
 use crate::panels::problems::told;
 use crate::panels::{Scene, field, group_title};
@@ -25,6 +25,7 @@ pub fn air(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         chosen.energy_share = percent / 100.0;
     }
     start_time(ui, scene, &mut chosen);
+    autopilot::show(ui, scene, &mut chosen);
     send(scene, chosen, queue);
     ui.horizontal(|ui| reset_button(ui, scene, queue));
     problems(ui, scene);

@@ -4,7 +4,7 @@ use super::Gateway;
 use super::climb_out::ClimbOut;
 use super::io::{Intent, Output};
 use super::launch::Launch;
-use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Time};
+use crate::gateway::order::{Aim, Fed, Kind, Mode, Order, OrderId, Time};
 use geometry::LatLon;
 use std::time::Duration;
 use usal::contract::{Action, GatewayState};
@@ -44,7 +44,7 @@ pub struct Control {
     /// When a way home was last looked for from where the aircraft was known to be, and whether for a glide.
     pub looked_for: Option<(Time, bool)>,
     /// What the driver said of this autopilot.
-    pub capability: Option<Result<(), String>>,
+    pub capability: Option<Result<Kind, String>>,
     /// Place and height of a direct command.
     pub direct: Option<(LatLon, f64)>,
     /// It has not been carried out yet.

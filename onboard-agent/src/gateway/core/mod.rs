@@ -205,7 +205,7 @@ impl Gateway {
             Report::HoldsByItself => self.control.holds_by_itself = true,
             Report::ListReplaced => self.list_replaced(out),
             Report::Rebooted => self.rebooted(out),
-            Report::Capability(result) => self.control.capability = Some(result.map(|_| ())),
+            Report::Capability(result) => self.control.capability = Some(result),
             _ => {}
         }
     }

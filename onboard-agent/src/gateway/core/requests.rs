@@ -51,7 +51,7 @@ impl Gateway {
             s => return Err(format!("Launch is for the ground; the state is {s:?}.")),
         }
         match &self.control.capability {
-            Some(Ok(())) => {}
+            Some(Ok(_)) => {}
             Some(Err(why)) => return Err(why.clone()),
             None => return Err("The autopilot has not said yet what it is; try again.".into()),
         }

@@ -16,9 +16,12 @@ mod returning;
 mod taken;
 
 use super::*;
-use crate::gateway::order::{Fix, Target};
+use crate::gateway::order::{Fix, Kind, Target};
 use crate::gateway::tests::fp_manager;
 use usal::contract::{Air, Feed, FeedAnswer, GatewayRequest, Gps, Join, JoinAnswer};
+
+/// What is flown here.
+const PLANE: Kind = Kind { name: "a plane", habits: None };
 
 /// A core, and what came out of it.
 struct Core {
@@ -98,7 +101,7 @@ impl Core {
         let mut core = Self::new();
         let gps = Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: None };
         let ground = [beat(Mode::Hold, false), Report::OnGround(true), fix(0.0), Report::Gps(gps)];
-        core.step(Input::Report(Report::Capability(Ok("a plane"))));
+        core.step(Input::Report(Report::Capability(Ok(PLANE))));
         core.run(1, &ground);
         let join = Join { plan: Some("plan".into()), earlier: vec![], last_token: Token(0) };
         core.step(Input::Join(1, join, fp_manager()));

@@ -6,7 +6,7 @@ use super::{Gateway, seconds};
 use crate::gateway::order::Time;
 use geometry::{LatLon, LocalFrame};
 use usal::Instance;
-use usal::contract::{GatewayState, GatewayStatus, Navigation, Token};
+use usal::contract::{AutopilotKind, GatewayState, GatewayStatus, Navigation, Token};
 
 /// Low-water mark of the buffer.
 pub const LOW_WAYPOINTS: usize = 3;
@@ -45,6 +45,7 @@ impl Gateway {
             state: self.state,
             cause: self.cause.clone(),
             armed: self.telemetry.armed,
+            autopilot: self.kind(),
             autopilot_mode: self.telemetry.mode_name.clone().into_owned(),
             autopilot_age_s: age(self.telemetry.last_received).unwrap_or(f64::MAX),
             fp_manager: self.fp_manager.heard(now, &self.safe).map(|session| session.to_string()),
@@ -52,6 +53,11 @@ impl Gateway {
             safe_return_in_s: left.map(|l| l.as_secs_f64()),
             alarms: self.alarms.raised(),
         }
+    }
+
+    fn kind(&self) -> Option<AutopilotKind> {
+        let kind = self.control.capability.as_ref()?.as_ref().ok()?;
+        Some(AutopilotKind { name: kind.name.to_owned(), habits: kind.habits.map(str::to_owned) })
     }
 
     /// The variable `navigation`.

@@ -6,7 +6,9 @@ use super::fp_manager;
 use crate::gateway::Station;
 use crate::gateway::core::{Answer, Input};
 use crate::gateway::driver::{Driver, FromLink, Registration, Setup};
-use crate::gateway::order::{Aim, Course, Fed, Fix, Mode, Order, OrderId, Report, Serial, Target, Time};
+use crate::gateway::order::{
+    Aim, Course, Fed, Fix, Kind, Mode, Order, OrderId, Report, Serial, Target, Time,
+};
 use autopilot_link::Outbox;
 use std::collections::VecDeque;
 use std::str::SplitWhitespace;
@@ -99,7 +101,7 @@ impl GliderDriver {
     fn receive_line(&mut self, line: &str) {
         let mut words = line.split_whitespace();
         let report = match words.next() {
-            Some("GLIDER") => Report::Capability(Ok("Glider")),
+            Some("GLIDER") => Report::Capability(Ok(Kind { name: "Glider", habits: None })),
             Some("AT") => self.at(&mut words),
             Some("MODE") => {
                 let name = words.next().unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use super::{Act, Options, Scenario, Trigger, When};
 use crate::api::Command;
-use aircraft::{Wind, Winds};
+use aircraft::{Autopilot, Wind, Winds};
 use flight_plan::{Edit, FlightPlan, Id, LegKind, VariableValue};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,6 +23,8 @@ pub struct WhatIf {
     pub variables: BTreeMap<Id, VariableValue>,
     /// By intersection: the branch that is taken when it is reached for the first time.
     pub decisions: BTreeMap<Id, Id>,
+    /// The autopilot whose habits it is flown with; `None`: that of the vehicle, or as reviews fly.
+    pub autopilot: Option<Autopilot>,
 }
 
 impl Default for WhatIf {
@@ -34,6 +36,7 @@ impl Default for WhatIf {
             energy_share: 1.0,
             variables: BTreeMap::new(),
             decisions: BTreeMap::new(),
+            autopilot: None,
         }
     }
 }
@@ -63,9 +66,15 @@ impl WhatIf {
         Scenario { triggers: Some(trigger).filter(|t| !t.then.is_empty()).into_iter().collect() }
     }
 
-    /// The options of a preview, with the energy at the start.
+    /// Flown by the vehicle's autopilot, unless another was chosen.
+    #[must_use]
+    pub fn flown_by(self, vehicles: Option<Autopilot>) -> Self {
+        Self { autopilot: self.autopilot.or(vehicles), ..self }
+    }
+
+    /// The options of a preview, with the energy at the start, and the autopilot.
     pub fn options(&self, options: Options) -> Options {
-        Options { energy_share: self.energy_share, ..options }
+        Options { energy_share: self.energy_share, autopilot: self.autopilot, ..options }
     }
 
     /// Without what a plan does not have, or does not accept.

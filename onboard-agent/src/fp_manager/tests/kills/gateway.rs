@@ -238,6 +238,7 @@ impl Gateway {
             state: self.state,
             cause: "test".into(),
             armed: self.state != GatewayState::Stop,
+            autopilot: None,
             autopilot_mode: "AUTO".into(),
             autopilot_age_s: 0.0,
             fp_manager: None,

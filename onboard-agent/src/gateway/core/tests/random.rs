@@ -87,7 +87,7 @@ impl World {
             wrong_since: [None; 3],
             heard_since: Time::ZERO,
         };
-        world.step(Input::Report(Report::Capability(Ok("a plane"))));
+        world.step(Input::Report(Report::Capability(Ok(PLANE))));
         world.ticks(3);
         world.join("plan", 0);
         world.feed(None, 6);
@@ -308,7 +308,7 @@ impl World {
         }
         (self.state, self.last_order, self.is_had_back, self.is_taken) = (GatewayState::Off, 0, false, false);
         (self.wrong_since, self.heard_since) = ([None; 3], now);
-        self.step(Input::Report(Report::Capability(Ok("a plane"))));
+        self.step(Input::Report(Report::Capability(Ok(PLANE))));
     }
 
     fn say(&mut self, how: u8) {

@@ -82,7 +82,7 @@ fn nothing_is_launched_that_can_not_fly() {
     is_refused(&mut core, launch(), "has not said yet what it is");
     core.step(Input::Report(Report::Capability(Err("a helicopter can't be flown".into()))));
     is_refused(&mut core, launch(), "a helicopter");
-    core.step(Input::Report(Report::Capability(Ok("a plane"))));
+    core.step(Input::Report(Report::Capability(Ok(PLANE))));
     is_refused(&mut core, launch(), "nothing to fly");
     let mut core = Core::in_stop_with_a_plan();
     let lost = Gps { fix_3d: false, satellites: 2, hdop: 9.0, unix_s: None };

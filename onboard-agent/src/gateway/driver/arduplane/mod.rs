@@ -13,12 +13,13 @@ use super::mavlink::commands::Command;
 use super::mavlink::dialect::{Dialect, Manner, Summary};
 use super::mavlink::examine::Advice;
 use super::mavlink::mission::Rules;
+use crate::gateway::order::Kind;
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{MavAutopilot, MavType, WIND_DATA};
 
 /// ArduPlane, a fixed wing.
 pub const DIALECT: Dialect = Dialect {
-    name: "ArduPlane",
+    kind: Kind { name: "ArduPlane", habits: Some("arduplane") },
     is: |beat| {
         beat.autopilot == MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA
             && beat.mavtype == MavType::MAV_TYPE_FIXED_WING

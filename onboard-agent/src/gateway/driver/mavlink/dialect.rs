@@ -8,7 +8,7 @@ use super::item::Item;
 use super::list::Feeding;
 use super::mission::{Entry, Rules};
 use super::parameters::Need;
-use crate::gateway::order::{Aim, Mode};
+use crate::gateway::order::{Aim, Kind, Mode};
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavType, WIND_DATA};
 use std::borrow::Cow;
@@ -16,8 +16,8 @@ use std::borrow::Cow;
 /// A kind of autopilot.
 #[derive(Debug)]
 pub struct Dialect {
-    /// What people call it.
-    pub name: &'static str,
+    /// What kind it is.
+    pub kind: Kind,
     /// This is one.
     pub is: fn(&HEARTBEAT_DATA) -> bool,
     /// How its list is kept.

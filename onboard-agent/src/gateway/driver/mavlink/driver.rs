@@ -19,7 +19,7 @@ use super::list::{Change, List, Step};
 use super::mission::Outcome;
 use super::parameters::Needed;
 use super::session::{self, Session, SessionEvent};
-use crate::gateway::order::{Aim, Mode, Order, OrderId, Report, Time};
+use crate::gateway::order::{Aim, Kind, Mode, Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
 use mavlink::dialects::ardupilotmega::{MavAutopilot, MavType};
 use std::collections::VecDeque;
@@ -63,7 +63,7 @@ pub struct MavlinkDriver {
     known: Option<Known>,
     needed: Needed,
     /// What was last said of whether it can be flown.
-    told: Option<Result<&'static str, String>>,
+    told: Option<Result<Kind, String>>,
     seen: Option<Seen>,
     /// Orders in flight that take several commands.
     steps: Vec<Steps>,

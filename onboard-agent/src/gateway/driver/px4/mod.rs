@@ -16,13 +16,14 @@ use super::mavlink::examine::Advice;
 use super::mavlink::item::{self, Item};
 use super::mavlink::mission::{Entry, Rules};
 use super::mavlink::parameters::Need;
+use crate::gateway::order::Kind;
 use items::TakeOff;
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType, WIND_COV_DATA};
 
 /// PX4 on a fixed wing.
 pub const FIXED_WING: Dialect = Dialect {
-    name: "PX4 fixed wing",
+    kind: Kind { name: "PX4 fixed wing", habits: Some("px4") },
     is: |beat| is_px4(beat) && beat.mavtype == MavType::MAV_TYPE_FIXED_WING,
     feeding: |chain| Box::new(window::Window::new(chain)),
     rules: &RULES,
@@ -50,7 +51,7 @@ pub const FIXED_WING: Dialect = Dialect {
 
 /// PX4 on a VTOL: it rises, and then flies as a wing.
 pub const VTOL: Dialect = Dialect {
-    name: "PX4 VTOL, flown as a wing",
+    kind: Kind { name: "PX4 VTOL, flown as a wing", habits: Some("px4") },
     is: |beat| is_px4(beat) && VTOLS.contains(&beat.mavtype),
     entries: |start, list, peer| entries(start, list, peer, TakeOff::Vertical),
     ..FIXED_WING

@@ -125,7 +125,7 @@ impl<E: End, R: Radio> Rig<E, R> {
 /// How an autopilot that behaves so is flown.
 fn dialect_of(personality: Personality) -> &'static Dialect {
     let name = if personality == Personality::ArduPlane { "ArduPlane" } else { "PX4 fixed wing" };
-    DIALECTS.iter().copied().find(|dialect| dialect.name == name).unwrap()
+    DIALECTS.iter().copied().find(|dialect| dialect.kind.name == name).unwrap()
 }
 
 /// So many of them in a debug build, so many in a release; `LEGWORK_SEEDS` says another number.

@@ -2,7 +2,7 @@
 
 use super::super::super::DIALECTS;
 use super::{Known, MavlinkDriver};
-use crate::gateway::order::{Report, Time};
+use crate::gateway::order::{Kind, Report, Time};
 use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
 
 impl MavlinkDriver {
@@ -50,11 +50,11 @@ impl MavlinkDriver {
         };
         let verdict = dialect.need.map_or(Some(Ok(())), |need| self.needed.verdict(need));
         if let Some(verdict) = verdict {
-            self.tell(verdict.map(|()| dialect.name));
+            self.tell(verdict.map(|()| dialect.kind));
         }
     }
 
-    fn tell(&mut self, capability: Result<&'static str, String>) {
+    fn tell(&mut self, capability: Result<Kind, String>) {
         if self.told.as_ref() != Some(&capability) {
             self.told = Some(capability.clone());
             self.reports.push_back(Report::Capability(capability));
@@ -71,6 +71,6 @@ fn people((autopilot, kind): (MavAutopilot, MavType)) -> String {
 
 /// Why such an autopilot is not flown, and what would be.
 pub fn unsupported(kind: (MavAutopilot, MavType)) -> String {
-    let known = DIALECTS.iter().map(|dialect| dialect.name).collect::<Vec<_>>().join(", ");
+    let known = DIALECTS.iter().map(|dialect| dialect.kind.name).collect::<Vec<_>>().join(", ");
     format!("{} is not supported. Connect one of: {known}.", people(kind))
 }

@@ -20,7 +20,7 @@ pub fn findings(looked: &Looked, now: Time) -> Vec<Finding> {
     let Some(dialect) = looked.dialect else {
         return vec![to_do("autopilot", unsupported((beat.autopilot, beat.mavtype)))];
     };
-    let mut all = vec![ok("autopilot", format!("{}, system {}", dialect.name, system(looked)))];
+    let mut all = vec![ok("autopilot", format!("{}, system {}", dialect.kind.name, system(looked)))];
     all.push(version(looked.version, dialect.flown));
     all.push(place(beat));
     all.extend(needed(looked));

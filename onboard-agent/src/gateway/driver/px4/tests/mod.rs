@@ -7,8 +7,9 @@ mod pilot;
 mod standing;
 mod summary;
 
+use super::FIXED_WING;
 use crate::gateway::driver::{DEFAULT, Driver, FromLink, Setup};
-use crate::gateway::order::{Aim, Fed, Mode, Order, OrderId, Report, Serial, Target, Time};
+use crate::gateway::order::{Aim, Fed, Kind, Mode, Order, OrderId, Report, Serial, Target, Time};
 use autopilot_link::Outbox;
 use autopilot_link::frame::{Decoder, encode};
 use fake::{Px4, SENDER};
@@ -167,7 +168,7 @@ impl Rig {
         })
     }
 
-    fn capability(&self) -> Option<Result<&'static str, String>> {
+    fn capability(&self) -> Option<Result<Kind, String>> {
         self.reports.iter().rev().find_map(|report| match report {
             Report::Capability(capability) => Some(capability.clone()),
             _ => None,
@@ -211,13 +212,13 @@ fn the_autopilot_says_which_it_is_and_what_cannot_be_flown_is_refused_in_plain_w
         rig.hear(&message);
         (rig.px4.kind, rig.driver_only) = (mavtype, autopilot != MavAutopilot::MAV_AUTOPILOT_PX4);
         rig.until("a verdict", |rig| rig.capability().is_some());
-        rig.capability().unwrap()
+        rig.capability().unwrap().map(|kind| (kind.name, kind.habits))
     };
     let px4 = MavAutopilot::MAV_AUTOPILOT_PX4;
     let wing = MavType::MAV_TYPE_FIXED_WING;
-    assert_eq!(told(px4, wing), Ok("PX4 fixed wing"));
-    assert_eq!(told(px4, MavType::MAV_TYPE_VTOL_TILTROTOR), Ok("PX4 VTOL, flown as a wing"));
-    assert_eq!(told(MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA, wing), Ok("ArduPlane"));
+    assert_eq!(told(px4, wing), Ok(("PX4 fixed wing", Some("px4"))));
+    assert_eq!(told(px4, MavType::MAV_TYPE_VTOL_TILTROTOR), Ok(("PX4 VTOL, flown as a wing", Some("px4"))));
+    assert_eq!(told(MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA, wing), Ok(("ArduPlane", Some("arduplane"))));
     let why = told(px4, MavType::MAV_TYPE_QUADROTOR).unwrap_err();
     assert!(why.starts_with("px4 on quadrotor is not supported") && why.contains("ArduPlane"), "{why}");
 }
@@ -253,7 +254,7 @@ fn a_parameter_that_forbids_our_lists_is_named_with_the_remedy_and_asked_for_aga
     assert!(why.contains("MIS_TKO_LAND_REQ is 2") && why.contains("Set it to 0"), "{why}");
     rig.px4.required = 0;
     rig.run(5);
-    assert_eq!(rig.capability(), Some(Ok("PX4 fixed wing")));
+    assert_eq!(rig.capability(), Some(Ok(FIXED_WING.kind)));
 }
 
 #[test]
@@ -263,7 +264,7 @@ fn firmware_without_the_parameter_is_flown() {
     rig.run(5);
     assert_eq!(rig.capability(), None);
     rig.run(20);
-    assert_eq!(rig.capability(), Some(Ok("PX4 fixed wing")));
+    assert_eq!(rig.capability(), Some(Ok(FIXED_WING.kind)));
 }
 
 #[test]
