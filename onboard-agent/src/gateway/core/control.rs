@@ -200,7 +200,8 @@ impl Gateway {
         self.yield_to_pilot(now, out);
         self.keep_hands_off(out);
         self.wait_for_launch(now, out);
-        if !self.control.may_retry(now) {
+        // who has just taken it is not told how fast to fly either
+        if self.control.intent == Intent::Nothing || !self.control.may_retry(now) {
             return;
         }
         self.steer_mode(now, out);

@@ -4,15 +4,13 @@ use super::io::{Intent, Output};
 use super::observe::CLEAR_M;
 use super::safe::{self, Situation};
 use super::states::Trigger;
+use super::telemetry::CLIMBING_MPS;
 use super::{Gateway, seconds};
 use crate::gateway::order::Time;
 use geometry::LatLon;
 use std::time::Duration;
 use usal::Instance;
 use usal::contract::{GatewayState, SafeParameters, Token, Waypoint};
-
-/// Faster than this upwards it climbs, m/s.
-const CLIMBING_MPS: f64 = 0.5;
 
 /// A way home that could not be found is looked for again after this: by then it is elsewhere.
 const LOOKS_AGAIN: Duration = Duration::from_secs(10);
@@ -185,8 +183,12 @@ impl Gateway {
         self.ended || self.buffer.last().is_some_and(|w| w.end_of_plan)
     }
 
-    /// High enough to turn: a take-off is not interrupted before, unless it circles already, and no higher.
+    /// High enough to turn: a take-off is not interrupted before, unless it circles already, and no higher. What still stands has no
+    /// need of a way home: it would take off for it.
     pub(super) fn is_clear_of_ground(&self) -> bool {
+        if self.telemetry.on_ground == Some(true) && !self.may_be_up(self.now) {
+            return false;
+        }
         let climbs = self.telemetry.fix.is_none_or(|(_, f)| f.down_mps < -CLIMBING_MPS);
         let takes_off = self.took_off.is_some() || self.state == GatewayState::TakeOff;
         !takes_off || self.telemetry.is_above_home(CLEAR_M) || (self.is_dry() && !climbs)

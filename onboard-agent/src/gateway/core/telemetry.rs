@@ -13,6 +13,9 @@ pub type Timed<T> = Option<(Time, T)>;
 /// Velocities below this have no direction, m/s.
 const STANDING_MPS: f64 = 0.5;
 
+/// Slower than this upwards it does not climb, m/s.
+pub const CLIMBING_MPS: f64 = 0.5;
+
 /// A value that is older says nothing of what happens now.
 pub const FRESH: Duration = Duration::from_secs(2);
 

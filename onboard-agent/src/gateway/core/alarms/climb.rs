@@ -2,13 +2,11 @@
 //!
 //! A gust, a pull-up or a thermal takes a glider up, too: for a while, by what its speed gives, or by little.
 
-use crate::gateway::core::telemetry::{FRESH, Telemetry};
+use crate::gateway::core::telemetry::{CLIMBING_MPS, FRESH, Telemetry};
 use crate::gateway::order::Time;
 use aircraft::GRAVITY_MPS2;
 use std::time::Duration;
 
-/// Slower than this it does not climb, m/s.
-const CLIMBING_MPS: f64 = 0.5;
 /// An engine takes it up for so long, and by so many metres more than its speed gave.
 const LASTS: Duration = Duration::from_secs(10);
 const GAINS_M: f64 = 30.0;

@@ -72,6 +72,24 @@ fn a_take_off_that_is_broken_off_is_told() {
     is_told_once(&core, "broken off");
 }
 
+/// Safe mode flies home from wherever it is: it would take off for that.
+#[test]
+fn what_is_held_before_it_has_left_the_ground_stays_there_without_an_fp_manager() {
+    let mut core = launched(true);
+    core.run(1, &on_ground(Mode::Waypoints, true));
+    core.step(Input::Request(4, GatewayRequest::Hold));
+    core.run(1, &on_ground(Mode::Hold, true));
+    assert_eq!(core.gateway.state(), GatewayState::Hold);
+    core.done();
+    for _ in 0..1000 {
+        core.now += Duration::from_millis(100);
+        on_ground(Mode::Hold, true).into_iter().for_each(|report| core.step(Input::Report(report)));
+        core.step(Input::Tick);
+    }
+    assert_eq!(core.gateway.state(), GatewayState::Hold);
+    assert!(!core.orders().iter().any(|(_, order)| matches!(order, Order::Steer(_) | Order::Feed { .. })));
+}
+
 /// Whoever plugs it in again stands before the propeller.
 #[test]
 fn an_autopilot_that_is_switched_off_does_not_take_off_when_it_is_back() {
