@@ -54,6 +54,13 @@ pub struct Dialect {
     pub manner: Manner,
 }
 
+impl Dialect {
+    /// It is armed in the mode that flies its list, and in no other.
+    pub fn arms_in_waypoints(&self) -> bool {
+        self.stands.is_some()
+    }
+}
+
 /// How an autopilot is spoken to.
 #[derive(Debug, Clone, Copy)]
 pub struct Manner {

@@ -27,13 +27,18 @@ impl MavlinkDriver {
         self.keep_armed("ordered again");
         let arming = self.arming.take();
         arming.into_iter().for_each(|arming| self.take_back(arming, "the launch was given up"));
-        let is_armed = std::mem::take(&mut self.may_arm) || self.seen.is_some_and(|seen| seen.armed);
+        let shows_armed = self.seen.is_some_and(|seen| seen.armed);
+        let is_armed = std::mem::take(&mut self.may_arm) || shows_armed;
         let mode = self.seen.map(|seen| (dialect.meaning)(seen.mode, false));
         let is_pilots = matches!(mode, Some(Mode::Other(_)));
         let would_fly = arming.is_some() || mode == Some(Mode::Waypoints);
         let stands = dialect.stands.filter(|_| would_fly && !is_pilots);
         if arming.is_some() && is_pilots {
             self.starts_late_until = Some(now + STARTS_LATE);
+        }
+        if is_pilots && shows_armed && dialect.arms_in_waypoints() {
+            // by our order it would have armed in that mode
+            return self.reports.push_back(Report::Done(id));
         }
         if arming.is_none() && !is_armed {
             self.standing_down = stands.map(|_| id);

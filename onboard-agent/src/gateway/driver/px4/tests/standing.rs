@@ -139,6 +139,24 @@ fn what_obeys_an_order_to_fly_its_list_late_does_not_stay_in_that_mode() {
     }
 }
 
+/// Our order would have armed it in Mission, whatever mode was shown when the launch was given up.
+#[test]
+fn who_arms_it_in_a_mode_of_his_own_is_left_alone() {
+    let mut rig = Rig::loaded();
+    rig.pass = Box::new(|_, m| !is_arming(m));
+    let arm = rig.order(Order::Arm);
+    rig.run(3);
+    rig.px4.mode(3, 0);
+    rig.run(60);
+    assert!(rig.outcome(arm).is_some_and(|outcome| outcome.is_err()));
+    rig.pass = Box::new(|_, _| true);
+    rig.px4.armed = true;
+    rig.run(15);
+    assert_eq!(rig.carry_out(Order::StandDown), Ok(()));
+    rig.run(15);
+    assert!(rig.px4.armed && (rig.px4.main, rig.px4.sub) == (3, 0), "it is his");
+}
+
 /// In Mission it would take off when somebody arms it.
 #[test]
 fn one_whose_disarming_is_not_answered_does_not_stay_in_the_mode_in_which_it_takes_off() {
