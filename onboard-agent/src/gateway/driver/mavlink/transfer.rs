@@ -31,11 +31,15 @@ const REWRITES: u32 = 5;
 /// Times that a list of which some was taken is sent anew from its first entry before that is given up: each begins with all the
 /// patience there is, for on a bad link every entry is lost as often as before.
 const RESTARTS: u32 = 10;
+/// An autopilot that complains of whatever comes, and asks for nothing new, is given up after this: a radio that is slow and loses a
+/// fifth has brought what it waits for by then, however many round trips that takes.
+const COMPLAINS_FOR: Duration = Duration::from_secs(30);
 /// The list is asked for again after this at most. An autopilot that gives entries in order begins anew with each question for the
 /// list that it gets, also with one that comes late.
 const LIST_WAITS: Duration = Duration::from_secs(4);
-/// Farther than this, an autopilot gives up before what it waits for can be there.
-const FARTHEST: Duration = Duration::from_secs(4);
+/// Farther than this, an autopilot gives up before what it waits for can be there. (Below the longest trip that is reckoned with, so
+/// that it is seen.)
+const TOO_FAR: Duration = Duration::from_secs(4);
 /// More entries than this is no list.
 const MAX_ITEMS: u16 = 2000;
 
@@ -311,6 +315,9 @@ impl Transfer {
     /// Time passed.
     pub fn tick(&mut self, now: Time, peer: Peer, out: &mut Vec<MavMessage>) -> Option<Outcome> {
         if self.is_stuck(now) {
+            if now.saturating_sub(self.moved) > COMPLAINS_FOR {
+                return Some(Outcome::Failed(self.why_given_up()));
+            }
             self.go_back(now, out);
             return None;
         }
@@ -362,8 +369,14 @@ impl Transfer {
 
     fn why_given_up(&self) -> String {
         let trip = self.rto.trip();
-        if trip < FARTHEST {
-            return "the autopilot does not answer".into();
+        if trip < TOO_FAR {
+            let took_some = self.complains || self.restarts > RESTARTS;
+            let why = if took_some {
+                "the link loses too much of the list"
+            } else {
+                "the autopilot does not answer"
+            };
+            return why.into();
         }
         format!(
             "the link takes {:.0} s there and back, and an autopilot gives up before that: use a faster one for the list",

@@ -1,6 +1,7 @@
 //! Failure modes of the mission protocol, each a test by its name: what happens to which message. Twice a list is brought aboard under
 //! it, over a link that loses some more: at every instant what is ready to be flown is what was fed, whole, and in the end it is.
 
+mod complaining;
 mod far;
 
 use super::*;
