@@ -17,7 +17,7 @@ use usal::contract::{SafeParameters, SafeRunway};
 
 /// Height kept above the ground on the way, metres; towards the approach no more than this share of what it still has above that.
 const CLEARANCE_M: f64 = 100.0;
-const CLEAR_SHARE: f64 = 0.5;
+const KEPT_SHARE: f64 = 0.5;
 /// Slopes that differ by less are one, metres.
 const LEVEL_M: f64 = 10.0;
 /// Share of the steepest climb and descent that is told.
@@ -64,7 +64,7 @@ pub(super) fn powered(runway: &SafeRunway, safe: &SafeParameters, s: &Situation)
     let (way_m, course_deg) = distance_and_course(s.position, initial.0);
     let ground_mps = s.wind().ground_speed_mps(s.profile.cruise_airspeed_mps, course_deg)?;
     let ends = Ends { s, initial, heading_deg: runway.heading_deg, transit_m, way_m, ground_mps };
-    let asked_m = |told_m: f64| (CLEAR_SHARE * (told_m - initial.1)).clamp(SPARE_M, CLEARANCE_M - 1.0);
+    let asked_m = |told_m: f64| (KEPT_SHARE * (told_m - initial.1)).clamp(SPARE_M, CLEARANCE_M - 1.0);
     let ups = sides(normalise_180(course_deg - s.track_deg) >= 0.0);
     let downs = sides(normalise_180(runway.heading_deg - course_deg) >= 0.0);
     let ways = combined(ups, downs).into_iter();

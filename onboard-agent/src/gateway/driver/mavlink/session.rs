@@ -33,6 +33,7 @@ const HEARTBEAT: Duration = Duration::from_secs(1);
 const OWN_COMPONENT: u8 = 191;
 /// Until a vehicle is received we speak as system 1, the usual number of a single vehicle.
 const FIRST_SYSTEM: u8 = 1;
+
 /// What a message, or time, brought.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SessionEvent {
