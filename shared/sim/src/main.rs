@@ -48,7 +48,7 @@ struct Options {
     #[arg(long)]
     lockstep: bool,
     /// A fault: packet-loss=SHARE, duplicate=SHARE, reorder=SHARE, bandwidth=BITS-PER-SECOND, gps-loss, engine-out, low-battery, silence, no-rpm,
-    /// no-stream=MESSAGE-NUMBER, ice, crash or reboot, with @SECOND and +SECONDS; may be given often.
+    /// no-stream=MESSAGE-NUMBER, ice, crash, reboot or flies-on, with @SECOND and +SECONDS; may be given often.
     #[arg(long, value_name = "FAULT")]
     fault: Vec<FaultRequest>,
     /// Seed of the faults' dice.

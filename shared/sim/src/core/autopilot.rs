@@ -67,6 +67,8 @@ pub struct Autopilot {
     pub gps_ok: bool,
     /// Full throttle is only enough for the slowest airspeed.
     pub iced: bool,
+    /// It accepts that its flight is ended, and flies on.
+    pub flies_on: bool,
     /// The aircraft lies where it came down, and its autopilot does not know.
     pub is_down: bool,
     /// Its own fence.
@@ -99,6 +101,7 @@ impl Autopilot {
             guided: None,
             gps_ok: true,
             iced: false,
+            flies_on: false,
             is_down: false,
             fence: Fence::default(),
             rules,
@@ -130,7 +133,8 @@ impl Autopilot {
     /// demanded, as a share of that for the best climb.
     pub fn throttle(&self) -> f64 {
         let (s, p, demand) = (self.aircraft.state(), self.aircraft.profile(), &self.demanded);
-        if !self.armed || (s.on_ground && demand.airspeed_mps <= 0.0) {
+        let is_off = !self.armed || self.mode == Mode::Termination;
+        if is_off || (s.on_ground && demand.airspeed_mps <= 0.0) {
             return 0.0;
         }
         if self.iced && !s.on_ground {
@@ -256,7 +260,7 @@ impl Autopilot {
                 let target = self.loiter_here();
                 self.guidance.direct(self.aircraft.state(), target);
             }
-            Mode::Manual | Mode::Circle | Mode::FlyByWireA => {}
+            Mode::Manual | Mode::Circle | Mode::FlyByWireA | Mode::Termination => {}
         }
     }
 
@@ -316,7 +320,7 @@ impl Autopilot {
         self.demanded = demand;
     }
 
-    /// Disarmed in the air it glides to the ground.
+    /// Disarmed in the air, or ended, it glides to the ground.
     fn unarmed_demand(&self) -> Demand {
         let (s, p) = (self.aircraft.state(), self.aircraft.profile());
         if s.on_ground {
@@ -336,6 +340,7 @@ impl Autopilot {
             Mode::ReturnToLaunch if by_list => self.fly_mission(),
             Mode::TakeOff => self.take_off(),
             Mode::Land => self.follow(None).demand,
+            Mode::Termination => self.unarmed_demand(),
             _ if self.aircraft.state().on_ground => Demand::default(),
             Mode::Circle => Demand { bank_rad: 0.35, ..cruise },
             Mode::Manual | Mode::FlyByWireA => cruise,
@@ -363,7 +368,9 @@ impl Autopilot {
     }
 
     fn powerless(&self) -> bool {
-        !self.aircraft.engine().healthy || self.aircraft.battery().energy_left_j <= 0.0
+        self.mode == Mode::Termination
+            || !self.aircraft.engine().healthy
+            || self.aircraft.battery().energy_left_j <= 0.0
     }
 
     /// An altitude over a datum, metres AMSL.

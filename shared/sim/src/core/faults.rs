@@ -42,10 +42,12 @@ pub enum Fault {
     Crash,
     /// Its autopilot starts anew, as after its watchdog: mode, arming and list stay, its clock begins again. That is over at once.
     Reboot,
+    /// It accepts that its flight is ended by force, and flies on.
+    FliesOn,
 }
 
 /// One of each kind.
-const KINDS: [Fault; 13] = [
+const KINDS: [Fault; 14] = [
     Fault::PacketLoss(0.0),
     Fault::Duplicate(0.0),
     Fault::Reorder(0.0),
@@ -59,6 +61,7 @@ const KINDS: [Fault; 13] = [
     Fault::Ice,
     Fault::Crash,
     Fault::Reboot,
+    Fault::FliesOn,
 ];
 
 impl Fault {
@@ -87,6 +90,7 @@ impl Fault {
             Fault::Ice => "ice",
             Fault::Crash => "crash",
             Fault::Reboot => "reboot",
+            Fault::FliesOn => "flies-on",
         }
     }
 }
@@ -131,7 +135,7 @@ impl fmt::Display for FaultRequest {
 #[error(
     "{0:?} is no fault; write one of packet-loss=SHARE, duplicate=SHARE, reorder=SHARE (shares from 0 to 1), \
      bandwidth=BITS-PER-SECOND, gps-loss, engine-out, low-battery, silence, no-rpm, no-stream=MESSAGE-NUMBER, ice, crash, reboot, \
-     then @SECOND and +SECONDS if it has its time, as in silence@120+10"
+     flies-on, then @SECOND and +SECONDS if it has its time, as in silence@120+10"
 )]
 pub struct FaultSyntax(String);
 
@@ -169,6 +173,7 @@ impl FromStr for FaultRequest {
             ("ice", _, None) => Fault::Ice,
             ("crash", _, None) => Fault::Crash,
             ("reboot", _, None) => Fault::Reboot,
+            ("flies-on", _, None) => Fault::FliesOn,
             _ => return Err(bad()),
         };
         Ok(Self { fault, at_s, for_s })
@@ -204,6 +209,8 @@ pub struct Effects {
     pub crash: bool,
     /// It started anew when this began.
     pub reboot: bool,
+    /// It accepts that its flight is ended, and flies on.
+    pub flies_on: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -261,6 +268,7 @@ impl Schedule {
                 Fault::Ice => effects.ice = true,
                 Fault::Crash => effects.crash = true,
                 Fault::Reboot => effects.reboot = true,
+                Fault::FliesOn => effects.flies_on = true,
             }
         }
         effects
@@ -401,6 +409,7 @@ mod tests {
             "no-stream=24@60",
             "crash@60",
             "reboot@60",
+            "flies-on",
         ] {
             let request: FaultRequest = text.parse().unwrap();
             assert_eq!(request.to_string(), text);

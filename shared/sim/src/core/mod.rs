@@ -227,6 +227,7 @@ impl Simulator {
         self.autopilot.gps_ok = !new.gps_lost;
         self.autopilot.aircraft.set_engine_healthy(!new.engine_out);
         self.autopilot.iced = new.ice;
+        self.autopilot.flies_on = new.flies_on;
         self.autopilot.is_down = new.crash;
         if new.reboot && !old.reboot {
             self.booted_ns = self.now_ns;

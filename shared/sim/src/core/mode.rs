@@ -23,6 +23,8 @@ pub enum Mode {
     Guided,
     /// Down, where it is.
     Land,
+    /// Engine and surfaces are off: it comes down as it can, and is still armed.
+    Termination,
 }
 
 /// What a pilot can switch to.

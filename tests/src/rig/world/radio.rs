@@ -316,7 +316,7 @@ fn is_had(fault: Fault) -> bool {
         | Fault::Bandwidth(_)
         | Fault::Silence => true,
         Fault::GpsLoss | Fault::EngineOut | Fault::LowBattery | Fault::NoRpm => true,
-        Fault::NoStream(_) | Fault::Ice | Fault::Crash | Fault::Reboot => false,
+        Fault::NoStream(_) | Fault::Ice | Fault::Crash | Fault::Reboot | Fault::FliesOn => false,
     }
 }
 

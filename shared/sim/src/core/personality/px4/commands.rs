@@ -26,6 +26,7 @@ impl Px4 {
             MavCmd::MAV_CMD_MISSION_START => self.start_mission(a, c, now_ns),
             MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH => self.enter(a, Some(Mode::ReturnToLaunch), now_ns),
             MavCmd::MAV_CMD_NAV_LAND => self.enter(a, Some(Mode::Land), now_ns),
+            MavCmd::MAV_CMD_DO_FLIGHTTERMINATION => terminate(a, c),
             MavCmd::MAV_CMD_NAV_VTOL_TAKEOFF if !self.is_vtol => UNSUPPORTED,
             MavCmd::MAV_CMD_NAV_TAKEOFF | MavCmd::MAV_CMD_NAV_VTOL_TAKEOFF => self.take_off(a, c, now_ns),
             MavCmd::MAV_CMD_DO_REPOSITION => self.reposition(a, c, now_ns),
@@ -47,6 +48,9 @@ impl Px4 {
             Mode::Auto => self.has_mission(a, now_ns),
             mode => !needs_sticks(mode),
         };
+        if a.is_armed() && a.mode() == Mode::Termination {
+            return REJECTED;
+        }
         if a.is_armed() && !possible {
             a.say(Severity::Critical, "That mode is not possible now");
             return REJECTED;
@@ -172,6 +176,19 @@ impl Px4 {
         }
         result
     }
+}
+
+/// param1: more than a half ends the flight. It shows that, and is still armed; one whose parameters keep engine and surfaces from it
+/// accepts it all the same.
+fn terminate(a: &mut Autopilot, c: &Command) -> MavResult {
+    if !a.is_armed() || c.params[0] <= 0.5 {
+        return REJECTED;
+    }
+    if !a.flies_on {
+        a.say(Severity::Critical, "Flight termination active");
+        a.set_mode(Mode::Termination);
+    }
+    ACCEPTED
 }
 
 fn set_current(a: &mut Autopilot, c: &Command) -> MavResult {

@@ -92,7 +92,7 @@ impl Failsafe {
         let is_free = !self.has_acted_on_battery || self.is_active();
         let is_critical = a.battery_pct() <= a.params.setting(Setting::CriticalBattery);
         match () {
-            () if a.mode() == Mode::Land => None,
+            () if matches!(a.mode(), Mode::Land | Mode::Termination) => None,
             () if is_critical && is_free && a.params.value(LOW_BATTERY_ACTION) >= 2.0 => Some(Cause::Battery),
             () if self.is_lost(a, now_ns) && Self::is_needed(a) => Some(Cause::Link),
             () => None,

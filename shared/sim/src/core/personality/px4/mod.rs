@@ -86,7 +86,7 @@ const STREAMS: [Streamed; 19] = [
 ];
 
 /// Modes by its main and sub modes; what it holds in has one, whichever way it was entered.
-const MODES: [(Mode, u8, u8); 7] = [
+const MODES: [(Mode, u8, u8); 8] = [
     (Mode::Manual, 1, 0),
     (Mode::FlyByWireA, 3, 0),
     (Mode::TakeOff, 4, 2),
@@ -94,6 +94,7 @@ const MODES: [(Mode, u8, u8); 7] = [
     (Mode::Auto, 4, 4),
     (Mode::ReturnToLaunch, 4, 5),
     (Mode::Land, 4, 6),
+    (Mode::Termination, 10, 0),
 ];
 
 fn mode_of(main: u8, sub: u8) -> Option<Mode> {

@@ -185,3 +185,23 @@ fn another_item_is_chosen_in_the_air_only() {
     assert_eq!((jump(&mut flying, 3.0), flying.current()), (MavResult::MAV_RESULT_ACCEPTED, 3));
     assert_eq!(jump(&mut flying, 7.0), MavResult::MAV_RESULT_FAILED);
 }
+
+#[test]
+fn a_flight_that_is_ended_shows_it_and_comes_down_armed() {
+    let home = Config::default().home.position;
+    for flies_on in [false, true] {
+        let mut ground = Ground::px4_airborne(&circuit(home));
+        if flies_on {
+            assert!(ground.sim.inject("flies-on".parse().unwrap()));
+            ground.fly_until(0.2, |_| false);
+        }
+        let ended = ground.command(MavCmd::MAV_CMD_DO_FLIGHTTERMINATION, [1., 0., 0., 0., 0., 0., 0.]);
+        assert_eq!(ended, MavResult::MAV_RESULT_ACCEPTED);
+        let shown = if flies_on { Mode::Auto } else { Mode::Termination };
+        assert!(ground.mode_now() == shown && ground.sim.autopilot.is_armed());
+        if !flies_on {
+            assert_eq!(ground.enter(HOLD), MavResult::MAV_RESULT_TEMPORARILY_REJECTED, "that can't be left");
+            assert!(ground.fly_until(300.0, |sim| sim.autopilot.aircraft.state().on_ground));
+        }
+    }
+}
