@@ -165,22 +165,23 @@ impl Autopilot {
         self.unknown = !self.on_ground;
     }
 
-    /// What is to be said of the waypoints, if it has changed.
+    /// What the driver has to say of the waypoints, if it has changed.
     pub fn new_course(&mut self) -> Option<Report> {
         let steered = self.stray.as_ref().or(self.list.front());
-        let course = if self.aboard && !self.unknown {
-            let ready = self.mixed == 0 && self.stray.is_none();
-            let target = steered.map_or(Target::End, |fed| Target::Waypoint(fed.serial));
-            Course { aboard: true, ready, target }
-        } else {
-            Course::default()
+        let is_ours = self.aboard && !self.unknown;
+        let settled = self.mixed == 0 && self.stray.is_none();
+        let (course, token) = match steered {
+            _ if !is_ours => (Course::default(), None),
+            // unheard it is known what is still to be written, and no more of what it steers to
+            _ if self.silent => (Course { ready: self.said.ready && settled, ..self.said }, self.said_token),
+            None => (Course { aboard: true, ready: settled, target: Target::End }, None),
+            Some(fed) => {
+                let target = Target::Waypoint(fed.serial);
+                (Course { aboard: true, ready: settled, target }, Some(fed.waypoint.token))
+            }
         };
-        if self.silent || self.said == course {
-            return None;
-        }
-        self.said = course;
-        self.said_token = self.aboard.then_some(steered).flatten().map(|fed| fed.waypoint.token);
-        Some(Report::Course(course))
+        self.said_token = token;
+        (std::mem::replace(&mut self.said, course) != course).then_some(Report::Course(course))
     }
 
     /// A tick; what is reported.
@@ -193,8 +194,7 @@ impl Autopilot {
             return reports.into_iter().filter(is_driver_s).collect();
         }
         (self.shown, self.shown_on_ground) = (self.mode, self.on_ground);
-        reports.insert(0, self.heartbeat());
-        reports.extend([Report::OnGround(self.on_ground), self.fix()]);
+        reports.extend([self.heartbeat(), Report::OnGround(self.on_ground), self.fix()]);
         self.ticks += 1;
         if !self.ticks.is_multiple_of(5) {
             return reports;
@@ -211,7 +211,7 @@ impl Autopilot {
     }
 
     fn change_list(&mut self) {
-        if self.hands_off {
+        if self.hands_off || self.silent {
             return;
         }
         self.mixed = self.mixed.saturating_sub(1);
