@@ -58,11 +58,14 @@ pub const SCENARIOS: &[Scenario] = &[
 
 /// T1 and 0.2 s, and until that is seen.
 const HELD_WITHIN_S: f64 = 2.5;
+/// That a disk is slow is told within some turns of the FP Manager.
+const TOLD_WITHIN_S: f64 = 0.5;
 /// 2 s, and until that is seen.
 const BACK_WITHIN_S: f64 = 2.5;
 
 async fn fp_manager_killed(rig: &mut Rig) -> anyhow::Result<()> {
     rig.until("second sweep", FLIGHT_S, |_, seen| seen.passes("sweep") == 2).await?;
+    is_recorded(rig).await?;
     rig.fp_manager.kill()?;
     in_state(rig, GatewayState::SafeHold, HELD_WITHIN_S).await?;
     rig.fp_manager_is_there(false).await?;
@@ -79,6 +82,14 @@ async fn fp_manager_frozen(rig: &mut Rig) -> anyhow::Result<()> {
     rig.until("ten seconds", 20.0, |_, seen| seen.time_s > from_s + 10.0).await?;
     rig.thaw_fp_manager().await?;
     in_its_place_again(rig).await
+}
+
+/// What happened so far would survive a kill. On a slow disk it takes effect, and is announced, before it is recorded: what is killed
+/// in that moment announces it again.
+async fn is_recorded(rig: &mut Rig) -> anyhow::Result<()> {
+    let happened_s = rig.seen.time_s;
+    let is_told = |now_s: f64| now_s > happened_s + TOLD_WITHIN_S;
+    rig.until("recorded", FLIGHT_S, |_, seen| is_told(seen.time_s) && seen.is_recorded()).await
 }
 
 /// Nothing of the loop was lost or doubled.
@@ -110,6 +121,7 @@ async fn gateway_killed(rig: &mut Rig) -> anyhow::Result<()> {
 
 async fn agent_restarted(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "sweep").await?;
+    is_recorded(rig).await?;
     rig.gateway.kill()?;
     rig.fp_manager.kill()?;
     rig.restart_gateway()?;

@@ -53,6 +53,16 @@ impl Seen {
         self.gateway.iter().any(|e| matches!(e, GatewayEvent::AlarmCleared { id: of } if of == id))
     }
 
+    /// The FP Manager's journal has all that happened, as far as it says.
+    pub fn is_recorded(&self) -> bool {
+        let last = self.plan.iter().rev().find_map(|event| match event {
+            PlanEvent::Journalled => Some(true),
+            PlanEvent::NotJournalled { .. } => Some(false),
+            _ => None,
+        });
+        last.unwrap_or(true)
+    }
+
     /// So often this leg was entered.
     pub fn passes(&self, leg: &str) -> usize {
         self.legs().iter().filter(|entered| **entered == leg).count()

@@ -20,7 +20,8 @@
 //!
 //! The flight waits for the disk for half a second at most. A disk that is full, fails or is slow is reported as
 //! [`NotJournalled`](flight_exec::Event::NotJournalled) and flown on without; a new state is tried every second, and when it is written
-//! recording goes on ([`Journalled`](flight_exec::Event::Journalled)).
+//! recording goes on ([`Journalled`](flight_exec::Event::Journalled)). What is killed between the two begins where the
+//! record ends, and may announce again what has happened since.
 //!
 //! # Files
 //!
