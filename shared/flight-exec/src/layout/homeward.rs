@@ -12,6 +12,7 @@ use geometry::geodesy::normalise_180;
 pub const ALIGNED_DEG: f64 = 30.0;
 /// Most legs on the way home that are looked at.
 const MAX_HALTS: usize = 200;
+
 /// A part of an emergency plan that can be gone to: a leg of a stage, or a landing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Halt {
