@@ -71,6 +71,7 @@ programme! {
     engine_lost_unreported,
     battery_low,
     gps_lost,
+    ended_by_force,
     fp_manager_killed always,
     fp_manager_frozen,
     fp_manager_gone_for_good,

@@ -3,7 +3,7 @@
 use super::{FLIGHT_S, Scenario, alarmed, land_by_plan, of_field, on_leg};
 use crate::rig::Rig;
 use anyhow::ensure;
-use usal::contract::{Cause, Command, PlanEvent};
+use usal::contract::{Cause, Command, GatewayState, PlanEvent};
 
 pub const SCENARIOS: &[Scenario] = &[
     Scenario {
@@ -62,7 +62,18 @@ pub const SCENARIOS: &[Scenario] = &[
         simulator: &[],
         fly: |rig| Box::pin(gps_lost(rig)),
     },
+    Scenario {
+        name: "ended_by_force",
+        happens: "the flight is ended by force",
+        expected: "the engine is off within seconds, it is down, and nobody claims to fly it",
+        plan: of_field,
+        simulator: &[],
+        fly: |rig| Box::pin(ended_by_force(rig)),
+    },
 ];
+
+/// From the order to an engine that is off, and until that is seen, seconds.
+const OFF_WITHIN_S: f64 = 10.0;
 
 async fn ordered(rig: &mut Rig, on: &str, cause: Cause, direct: &str) -> anyhow::Result<()> {
     on_leg(rig, on).await?;
@@ -101,4 +112,15 @@ async fn gps_lost(rig: &mut Rig) -> anyhow::Result<()> {
     alarmed(rig, "gps-lost", 30.0).await?;
     rig.until("it is over", 120.0, |_, seen| seen.calmed("gps-lost")).await?;
     super::land(rig).await
+}
+
+/// On its own ground, wherever that is: nothing is steered any more.
+async fn ended_by_force(rig: &mut Rig) -> anyhow::Result<()> {
+    on_leg(rig, "far").await?;
+    rig.terminate().await?;
+    super::in_state(rig, GatewayState::Terminate, OFF_WITHIN_S).await?;
+    let is_off = |rig: &Rig| rig.gateway_status().is_some_and(|status| !status.armed);
+    rig.until("its engine off", OFF_WITHIN_S, |rig, _| is_off(rig)).await?;
+    rig.until("down", FLIGHT_S, |rig, _| rig.position().is_some_and(|p| p.on_ground)).await?;
+    super::in_state(rig, GatewayState::Terminate, OFF_WITHIN_S).await
 }

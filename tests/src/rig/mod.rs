@@ -20,10 +20,10 @@ use std::{
 use usal::{
     Occurrence,
     contract::{
-        Attitude, Command, GatewayEvent, GatewayState, GatewayStatus, Navigation, PlanStatus, Position,
-        ProposalReport, Propose, Recording,
+        Attitude, Command, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Navigation, PlanStatus,
+        Position, ProposalReport, Propose, Recording,
     },
-    topics::{self, fp_manager},
+    topics::{self, fp_manager, gateway},
 };
 use world::World;
 
@@ -130,6 +130,13 @@ impl Rig {
     /// Gives the FP Manager a command.
     pub async fn command(&self, command: Command) -> anyhow::Result<()> {
         self.ground()?.session.call(fp_manager::COMMAND, &command, CALL).await?;
+        Ok(())
+    }
+
+    /// Has the flight ended by force.
+    pub async fn terminate(&self) -> anyhow::Result<()> {
+        let request = GatewayRequest::Terminate { confirm: processes::VEHICLE.into() };
+        self.ground()?.session.call(gateway::REQUEST, &request, CALL).await?;
         Ok(())
     }
 
