@@ -4,6 +4,7 @@
 mod changes;
 mod emergencies;
 mod examples;
+mod judgement;
 mod links;
 mod missions;
 mod pilots;
@@ -59,7 +60,8 @@ impl Scenario {
     pub async fn fly(&self, rig: &mut Rig) -> anyhow::Result<()> {
         let flown = async {
             rig.fly(&(self.plan)(rig.field)?).await?;
-            (self.fly)(rig).await
+            (self.fly)(rig).await?;
+            judgement::judge(rig).await
         };
         let flown = flown.await;
         flown
