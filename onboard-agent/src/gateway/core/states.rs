@@ -231,7 +231,7 @@ mod tests {
                 text += &format!("| {from:?} | {} | {to:?} |\n", explained(trigger));
             }
         }
-        text
+        text + &crate::gateway::core::tests::losses::markdown()
     }
 
     #[test]

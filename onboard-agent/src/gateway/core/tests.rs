@@ -7,6 +7,7 @@ mod down;
 mod ended;
 mod launching;
 mod let_loose;
+pub mod losses;
 mod met;
 mod moments;
 mod random;
