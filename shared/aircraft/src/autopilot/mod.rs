@@ -24,7 +24,7 @@ use crate::{Demand, Profile, State};
 use geometry::LatLon;
 pub use habits::{Autopilot, Corners, Habits, wp_radius_m};
 use leg::{Corner, Leg, Place};
-pub use told::{FLY_OVER_M, arc_acceptance_m, turn_acceptance_m};
+pub use told::{FLY_OVER_M, GREATEST_ACCEPTANCE_M, arc_acceptance_m, turn_acceptance_m};
 
 /// What to do at, or on the way to, a target.
 #[derive(Debug, Clone, Copy, PartialEq)]

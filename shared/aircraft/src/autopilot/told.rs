@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 /// ArduPlane takes an acceptance radius of this or less for crossing the point; metres.
 pub const FLY_OVER_M: f64 = 5.0;
 /// The greatest that it keeps: a byte.
-pub(super) const GREATEST_ACCEPTANCE_M: f64 = 255.0;
+pub const GREATEST_ACCEPTANCE_M: f64 = 255.0;
 /// So long before a corner of an arc's polygon ArduPlane is to go on to the next one, seconds: as far as it looks ahead.
 ///
 /// It steers to a point of the present leg's line that is L1 = ζ·T·V/π ahead (`AP_L1_Control`: NAVL1_DAMPING ζ, NAVL1_PERIOD T),

@@ -1,5 +1,6 @@
 //! The waypoints that are still to be flown, by position.
 
+use super::climb_out::{fed_of, with_climb_outs};
 use super::item::Item;
 use crate::gateway::order::{Fed, Serial};
 use std::collections::VecDeque;
@@ -82,7 +83,7 @@ impl Chain {
     /// then can't just vanish.
     pub fn feed(&mut self, after: Serial, waypoints: Vec<Fed>, flying: bool) {
         self.cancel(after, flying);
-        self.entries.extend(waypoints);
+        self.entries.extend(with_climb_outs(waypoints));
     }
 
     fn cancel(&mut self, after: Serial, flying: bool) {
@@ -111,8 +112,12 @@ impl Chain {
         self.left_behind = true;
     }
 
-    /// Leave the waypoint being steered to for the one after it.
+    /// Leave what is steered to for the waypoint after it; a take-off with its climb-out.
     pub fn leave_active(&mut self) {
+        let Some(left) = self.entries.front().map(|fed| fed.serial) else { return };
+        while self.entries.get(1).is_some_and(|fed| fed.serial == left) {
+            self.entries.remove(1);
+        }
         self.left_behind = self.entries.len() > 1;
     }
 
@@ -148,8 +153,9 @@ pub fn known_on_board(
     first: u64,
     most: u64,
     is_at: impl Fn(u64, &Waypoint) -> bool,
-    mut waypoints: Vec<Fed>,
+    waypoints: Vec<Fed>,
 ) -> (usize, Vec<Fed>) {
+    let mut waypoints = with_climb_outs(waypoints);
     let is_there = |(fed, position): (&Fed, u64)| is_at(position, &fed.waypoint);
     let run = |from: usize| {
         let rest = waypoints.get(from..).unwrap_or_default();
@@ -161,7 +167,7 @@ pub fn known_on_board(
     };
     let (from, count) = (0..waypoints.len()).fold((0, 0), longest);
     waypoints.truncate(from + count);
-    (from + count, waypoints.split_off(from))
+    (fed_of(&waypoints), waypoints.split_off(from))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 
 mod aboard;
 pub mod chain;
+pub mod climb_out;
 mod clocks;
 pub mod commands;
 pub mod courier;

@@ -5,6 +5,7 @@ mod complaining;
 mod far;
 
 use super::*;
+use crate::gateway::driver::mavlink::climb_out::with_climb_outs;
 use crate::gateway::driver::{DEFAULT, Driver, FromLink, Setup};
 use crate::gateway::order::{Fed, Order, OrderId, Report, Serial};
 use MavMissionResult as Code;
@@ -215,7 +216,8 @@ impl Fitted {
     /// In the place of all that was fed before.
     fn feed(&mut self, now: Time, waypoints: Vec<Fed>) {
         self.orders += 1;
-        self.wanted = waypoints.iter().map(|fed| fed.waypoint.position).collect();
+        let wanted = with_climb_outs(waypoints.clone());
+        self.wanted = wanted.iter().map(|fed| fed.waypoint.position).collect();
         self.driver.order(now, OrderId(self.orders), Order::Feed { after: Serial(0), waypoints });
         self.listen();
     }

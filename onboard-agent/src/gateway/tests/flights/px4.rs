@@ -193,13 +193,13 @@ fn a_hold_at_a_waypoint_is_the_pilots_whatever_the_gateway_remembers() {
     assert_eq!(places(&flight), list, "it is not written over");
 }
 
-/// The first time that it is told is in the moment in which the take-off ends.
+/// By itself it flies another one behind a take-off.
 #[test]
 fn the_departure_is_flown_at_the_airspeed_of_the_plan() {
     let mut flight = flight(Personality::Px4, 7, &[]);
     let slow = zigzag(0, 6, 900.0).into_iter().map(|w| Waypoint { airspeed_mps: 20.0, ..w });
-    flight.launch(std::iter::once(take_off()).chain(slow).collect());
     assert_ne!(flight.sim.autopilot.airspeed_mps(), 20.0);
+    flight.launch(std::iter::once(take_off()).chain(slow).collect());
     flight.run_until(5.0, "slow", |f| f.sim.autopilot.airspeed_mps() == 20.0);
     assert!(!flight.has_reached(3), "on the first leg");
 }

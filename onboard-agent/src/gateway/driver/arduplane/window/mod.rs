@@ -28,7 +28,7 @@ mod tests;
 use crate::gateway::driver::mavlink::chain::Chain;
 use crate::gateway::driver::mavlink::item::{Item, ItemKind, leads_the_same_way};
 use crate::gateway::driver::mavlink::list::{Change, Feeding};
-use crate::gateway::order::{Fed, Serial, Target};
+use crate::gateway::order::{Fed, Fix, Serial, Target};
 use ring::{LAST_SLOT, RING, Slots, initial_list, slot};
 
 /// Waypoints ahead of the aircraft that are kept on board; the rest of the ring is already passed.
@@ -124,6 +124,12 @@ impl Feeding for Window {
 
     fn bring_back(&mut self) {
         self.loaded = None;
+    }
+
+    fn moved(&mut self, fix: &Fix) {
+        if self.entered {
+            self.chain.leave_climb_out_behind(fix);
+        }
     }
 
     fn next_change(&mut self, may_install: bool, home: Option<Item>) -> Option<Change> {

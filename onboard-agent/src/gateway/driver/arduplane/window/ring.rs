@@ -1,9 +1,10 @@
 //! The ring of slots on board: how positions, slots and list entries go together.
 
 use crate::gateway::driver::mavlink::chain;
+use crate::gateway::driver::mavlink::climb_out::is_climb_out;
 use crate::gateway::driver::mavlink::item::{Item, ItemKind, Pass, leads_the_same_way, matches};
 use crate::gateway::order::Fed;
-use aircraft::autopilot::{arc_acceptance_m, turn_acceptance_m};
+use aircraft::autopilot::{GREATEST_ACCEPTANCE_M, arc_acceptance_m, turn_acceptance_m};
 use geometry::LatLon;
 use usal::contract::{Action, Waypoint};
 
@@ -61,6 +62,10 @@ pub fn item_between(from: Option<&Waypoint>, waypoint: &Waypoint, onward: Option
     let item = item_of(waypoint);
     let early_m = match (item.kind, from.zip(onward)) {
         (ItemKind::Fly(Pass::By), _) if waypoint.on_arc => Some(arc_acceptance_m(waypoint.airspeed_mps)),
+        // as far away as can be told: wherever the take-off ends, it is not turned round for
+        (ItemKind::Fly(Pass::By), _) if from.is_some_and(|from| is_climb_out(from, waypoint)) => {
+            Some(GREATEST_ACCEPTANCE_M)
+        }
         // where a take-off or a circle is left is not known
         (ItemKind::Fly(Pass::By), Some((from, onward))) if from.action == Action::Fly => {
             let airspeed_mps = waypoint.airspeed_mps;

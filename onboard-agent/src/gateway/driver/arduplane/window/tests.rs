@@ -1,5 +1,6 @@
 //! The window against a small model of an autopilot's list.
 
+mod climb_out;
 mod moments;
 
 use super::ring::JUMP_SLOT;

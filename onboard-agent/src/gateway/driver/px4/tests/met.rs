@@ -4,8 +4,8 @@ use super::*;
 
 #[test]
 fn that_it_holds_behind_the_end_of_our_list_is_nobodys_doing() {
-    // twelve waypoints, and the loiter behind them; without a memory nothing is known of them
-    for (entry, known, by_itself) in [(12, 12, true), (5, 12, false), (12, 0, true), (5, 0, false)] {
+    // twelve waypoints, a climb-out, and the loiter behind them; without a memory nothing is known of them
+    for (entry, known, by_itself) in [(13, 12, true), (5, 12, false), (13, 0, true), (5, 0, false)] {
         let mut rig = Rig::flying();
         rig.driver = (DEFAULT.make)(&Setup::default());
         rig.px4.mode(4, 3);

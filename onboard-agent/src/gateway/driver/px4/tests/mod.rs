@@ -331,7 +331,7 @@ fn packets_lost_0_to_30_percent_every_list_is_true() {
 #[test]
 fn a_list_of_which_the_end_never_comes_is_never_claimed_and_the_old_one_stays_in_use() {
     let mut rig = Rig::flying();
-    rig.px4.seq = Some(1);
+    rig.px4.seq = Some(2);
     rig.run(2);
     rig.pass =
         Box::new(|to, m| to == To::Driver || !matches!(m, MavMessage::MISSION_ITEM_INT(i) if i.seq > 30));
@@ -355,7 +355,7 @@ fn what_is_fed_in_the_take_off_goes_up_when_that_is_over_or_is_to_be_left() {
         if leaves {
             rig.order(Order::Leave(Serial(1)));
         } else {
-            rig.px4.seq = Some(1);
+            rig.px4.seq = Some(2);
         }
         rig.until("ready", Rig::ready);
         assert_eq!((rig.px4.uses, rig.target()), (2, Some(Target::Waypoint(Serial(2)))));

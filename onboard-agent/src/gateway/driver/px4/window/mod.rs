@@ -175,6 +175,9 @@ impl Feeding for Window {
 
     fn moved(&mut self, fix: &Fix) {
         self.fix = Some(*fix);
+        if self.entered {
+            self.chain.leave_climb_out_behind(fix);
+        }
     }
 
     fn done(&mut self) {

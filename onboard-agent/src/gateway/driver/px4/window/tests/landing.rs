@@ -12,8 +12,12 @@ fn whole_flight(before: u64) -> Vec<Fed> {
     plan
 }
 
+/// It climbs out.
 fn launched(plan: Vec<Fed>) -> Rig {
-    Rig::flying(plan, place)
+    let mut rig = Rig::flying(plan, place);
+    rig.reach();
+    rig.autopilot.steered.clear();
+    rig
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The window against a small model of PX4's list.
 
+mod climb_out;
 mod installing;
 mod landing;
 mod line;
