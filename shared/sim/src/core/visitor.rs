@@ -1,6 +1,5 @@
 //! Another ground station beside ours, which brings a list of its own aboard.
 
-use super::commands::Command;
 use super::item::degrees_e7;
 use super::personality::Party;
 use super::{Peer, Simulator};
@@ -41,16 +40,10 @@ impl Simulator {
         let party = Party { peer: Peer(u32::MAX), sender: VISITOR };
         let (now_ns, mut out) = (self.now_ns, vec![]);
         let items = items.into_iter().map(MavMessage::MISSION_ITEM_INT);
-        for message in std::iter::once(MavMessage::MISSION_COUNT(count)).chain(items) {
+        let start = MISSION_SET_CURRENT_DATA { seq: first, ..MISSION_SET_CURRENT_DATA::DEFAULT };
+        let start = starts.then_some(MavMessage::MISSION_SET_CURRENT(start));
+        for message in std::iter::once(MavMessage::MISSION_COUNT(count)).chain(items).chain(start) {
             self.behaviour.mission(&mut self.autopilot, party, &message, now_ns, &mut out);
-        }
-        if starts {
-            let start = COMMAND_LONG_DATA {
-                command: MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT,
-                param1: first.into(),
-                ..COMMAND_LONG_DATA::DEFAULT
-            };
-            self.behaviour.command(&mut self.autopilot, &Command::from(&start), now_ns, &mut out);
         }
         self.post(out.into_iter().filter(|(to, _)| to.is_none()).collect());
     }

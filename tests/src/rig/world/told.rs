@@ -136,7 +136,7 @@ fn px4(wish: Wish) -> Option<Vec<Order>> {
         Wish::Fence(Some(radius_m)) => vec![bits("GF_ACTION", 3), real("GF_MAX_HOR_DIST", radius_m)],
         Wish::Fence(None) => vec![real("GF_MAX_HOR_DIST", 0.0)],
         Wish::List(around) => vec![Order::Upload(around, false)],
-        Wish::FlyList => vec![Order::Do(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, [0.0; 3])],
+        Wish::FlyList => vec![Order::Do(MavCmd::MAV_CMD_MISSION_START, [0.0; 3])],
     })
 }
 

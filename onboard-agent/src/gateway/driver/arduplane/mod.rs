@@ -31,6 +31,7 @@ pub const DIALECT: Dialect = Dialect {
     meaning: |number, _| modes::meaning(number),
     mode_name: modes::name,
     steer: modes::steer,
+    select: Command::Current,
     arm: &[Command::Arm],
     stands: None,
     holds_at_end: false,

@@ -52,6 +52,8 @@ pub enum Client {
 pub enum Command {
     /// Steer to an entry of the list.
     Current(u16),
+    /// The same for an autopilot that is told so by a message, and does not answer that.
+    Select(u16),
     /// Change mode.
     Mode(ModeNumber),
     /// Arm.
@@ -143,7 +145,7 @@ impl Given {
         let message = encode(self.command, u8::try_from(self.rounds).unwrap_or(u8::MAX), peer);
         for _ in 0..copies {
             out.push(message.clone());
-            self.owed += 1;
+            self.owed += u32::from(is_answered(self.command));
         }
         self.rounds += 1;
         self.tries += u32::from(counts);
@@ -163,7 +165,7 @@ impl Given {
     /// What is shown is its effect, or is not; `None`: says nothing of it.
     fn is_obeyed(&self, shown: Shown) -> Option<bool> {
         Some(match (self.command, shown) {
-            (Command::Current(wanted), Shown::Current(seq)) => wanted == seq,
+            (Command::Current(wanted) | Command::Select(wanted), Shown::Current(seq)) => wanted == seq,
             (Command::Mode(wanted), Shown::Mode(mode, _)) => wanted.shown == mode,
             (Command::GoTo { shows: Some(wanted), .. }, Shown::Mode(mode, _)) => wanted == mode,
             (Command::Arm, Shown::Mode(_, armed)) => armed,
@@ -351,7 +353,9 @@ impl Commands {
         given.is_as_before |= matches!(shown, Shown::Mode(..));
         given.notes(shown);
         match (given.is_obeyed(shown)?, given.acked) {
-            (true, acked) if acked.is_some() || given.was_otherwise => self.end(Ok(())),
+            (true, acked) if acked.is_some() || given.was_otherwise || !is_answered(given.command) => {
+                self.end(Ok(()))
+            }
             (false, Some(at)) if now >= at + EFFECT && given.command == Command::Terminate => {
                 tracing::warn!("flight termination accepted and not done, disarming by force");
                 self.disarm_by_force()
@@ -374,11 +378,17 @@ fn changes_mode(command: Command) -> bool {
     matches!(command, Command::Mode(_) | Command::GoTo { .. })
 }
 
+/// The autopilot says whether it was taken.
+fn is_answered(command: Command) -> bool {
+    !matches!(command, Command::Select(_))
+}
+
 /// The command has an effect that the autopilot shows.
 fn is_seen(command: Command) -> bool {
     matches!(
         command,
         Command::Current(_)
+            | Command::Select(_)
             | Command::Mode(_)
             | Command::Arm
             | Command::Disarm

@@ -34,6 +34,8 @@ pub struct Dialect {
     pub mode_name: fn(u32) -> Cow<'static, str>,
     /// The commands that make it do something, one after the other; it is in this mode.
     pub steer: fn(mode: Option<u32>, &Aim) -> Vec<Command>,
+    /// The command that makes it steer to an entry of its list.
+    pub select: fn(u16) -> Command,
     /// The commands that arm it.
     pub arm: &'static [Command],
     /// What ends that if no launch follows: the mode in which it was armed may start its list.

@@ -298,7 +298,7 @@ impl MavlinkDriver {
                 mission.overwrite(now, entries, dialect.rules.same, peer, out);
             }
             Step::Change(Change::SetCurrent(seq)) => {
-                self.session.command(now, Client::List, Command::Current(seq), events);
+                self.session.command(now, Client::List, (dialect.select)(seq), events);
             }
         }
     }

@@ -32,6 +32,8 @@ pub const FIXED_WING: Dialect = Dialect {
     meaning: modes::meaning,
     mode_name: modes::name,
     steer: |_, aim| modes::steer(aim),
+    // 1.18 does not know MAV_CMD_DO_SET_MISSION_CURRENT
+    select: Command::Select,
     arm: &modes::ARM,
     stands: Some(Command::Mode(modes::HOLD)),
     holds_at_end: true,

@@ -10,7 +10,8 @@ const FORCE: f32 = 21_196.0;
 /// The number of a command, which is all that its answer names.
 pub(super) fn number(command: Command) -> MavCmd {
     match command {
-        Command::Current(_) => MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT,
+        // the message is answered by nobody
+        Command::Current(_) | Command::Select(_) => MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT,
         Command::Mode(_) => MavCmd::MAV_CMD_DO_SET_MODE,
         Command::Arm | Command::Disarm | Command::ForceDisarm => MavCmd::MAV_CMD_COMPONENT_ARM_DISARM,
         Command::Speed(_) => MavCmd::MAV_CMD_DO_CHANGE_SPEED,
@@ -31,6 +32,7 @@ pub(super) fn encode(command: Command, confirmation: u8, peer: Peer) -> MavMessa
         // 0: airspeed; throttle −1: as it is
         Command::Speed(mps) => (0.0, mps as f32, -1.0),
         Command::GoTo { place, .. } => return reposition(place, peer),
+        Command::Select(seq) => return select(seq, peer),
     };
     MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
         param1,
@@ -45,6 +47,12 @@ pub(super) fn encode(command: Command, confirmation: u8, peer: Peer) -> MavMessa
         target_component: peer.component,
         confirmation,
     })
+}
+
+#[expect(deprecated, reason = "PX4 1.18 knows no command for it")]
+fn select(seq: u16, peer: Peer) -> MavMessage {
+    let (target_system, target_component) = (peer.system, peer.component);
+    MavMessage::MISSION_SET_CURRENT(MISSION_SET_CURRENT_DATA { seq, target_system, target_component })
 }
 
 /// What is not given is "not used": NaN, or the greatest whole number.

@@ -46,6 +46,7 @@ impl Talk {
         let number = |message| match message {
             MavMessage::COMMAND_LONG(data) => data.command,
             MavMessage::COMMAND_INT(data) => data.command,
+            MavMessage::MISSION_SET_CURRENT(_) => MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT,
             other => panic!("{other:?}"),
         };
         self.out.drain(..).map(number).collect()
@@ -83,6 +84,16 @@ fn each_command_is_done_when_its_own_effect_is_shown() {
     talk.accept(LOITER);
     talk.pass(5);
     assert_eq!(talk.show(Shown::Current(3)), None, "that is no mode");
+}
+
+#[test]
+fn what_nobody_answers_is_said_until_its_effect_is_shown_and_not_for_ever() {
+    let mut talk = Talk::giving(Command::Select(7));
+    assert_eq!((talk.show(Shown::Current(6)), talk.pass(4)), (None, None));
+    assert!(!talk.sent().is_empty(), "it is sent again");
+    assert_eq!(talk.show(Shown::Current(7)), Some((ORDER, Ok(()))));
+    let mut talk = Talk::giving(Command::Select(7));
+    assert!(why((0..100).find_map(|_| talk.pass(4))).contains("did not answer"));
 }
 
 #[test]

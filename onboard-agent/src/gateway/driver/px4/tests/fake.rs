@@ -153,6 +153,11 @@ impl Px4 {
             }
             MavMessage::MISSION_COUNT(c) => self.on_count(c.count),
             MavMessage::MISSION_ITEM_INT(item) => self.on_item(item),
+            // on the ground it keeps its own
+            MavMessage::MISSION_SET_CURRENT(select) if self.armed => {
+                self.seq = Some(select.seq);
+                self.current();
+            }
             MavMessage::MISSION_REQUEST_LIST(_) if !matches!(self.transfer, Transfer::Receiving { .. }) => {
                 self.silent = 0;
                 self.transfer = Transfer::Sending { next: 0 };
@@ -257,12 +262,6 @@ impl Px4 {
             },
             MavCmd::MAV_CMD_DO_FLIGHTTERMINATION if self.only_accepts_the_end => {}
             MavCmd::MAV_CMD_DO_CHANGE_SPEED => self.speeds.push(p2),
-            // on the ground it says yes, and keeps its own
-            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT if !self.armed => {}
-            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => {
-                self.seq = Some(p1 as u16);
-                self.current();
-            }
             _ => result = MavResult::MAV_RESULT_UNSUPPORTED,
         }
         self.answer(command, result);

@@ -10,7 +10,7 @@ use crate::core::params::Setting;
 use mavlink::dialects::ardupilotmega::*;
 
 use MavResult::{
-    MAV_RESULT_ACCEPTED as ACCEPTED, MAV_RESULT_DENIED as DENIED, MAV_RESULT_FAILED as FAILED,
+    MAV_RESULT_ACCEPTED as ACCEPTED, MAV_RESULT_DENIED as DENIED,
     MAV_RESULT_TEMPORARILY_REJECTED as REJECTED, MAV_RESULT_UNSUPPORTED as UNSUPPORTED,
 };
 
@@ -36,7 +36,6 @@ impl Px4 {
                 ACCEPTED
             }
             MavCmd::MAV_CMD_DO_LAND_START => self.land_by_mission(a, now_ns),
-            MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => set_current(a, c),
             _ => UNSUPPORTED,
         }
     }
@@ -189,15 +188,6 @@ fn terminate(a: &mut Autopilot, c: &Command) -> MavResult {
         a.set_mode(Mode::Termination);
     }
     ACCEPTED
-}
-
-fn set_current(a: &mut Autopilot, c: &Command) -> MavResult {
-    let [seq, resets, ..] = c.params;
-    if !(-1.0..=65535.0).contains(&seq) || !(resets == 0.0 || resets == 1.0) {
-        return DENIED;
-    }
-    let seq = if seq < 0.0 { a.run.current } else { seq as u16 };
-    if jump(a, seq) { ACCEPTED } else { FAILED }
 }
 
 /// Makes an item the current one; on the ground that is taken and has no effect. False: no such item.

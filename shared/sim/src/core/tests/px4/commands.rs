@@ -178,12 +178,22 @@ fn another_item_is_chosen_in_the_air_only() {
     let mut ground = Ground::px4();
     ground.px4_upload(&items);
     let jump = |ground: &mut Ground, seq| {
-        ground.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, [seq, 0., 0., 0., 0., 0., 0.])
+        ground.select(seq);
+        ground.current()
     };
-    assert_eq!((jump(&mut ground, 3.0), ground.current()), (MavResult::MAV_RESULT_ACCEPTED, 0));
+    assert_eq!(jump(&mut ground, 3), 0);
     let mut flying = Ground::px4_airborne(&items);
-    assert_eq!((jump(&mut flying, 3.0), flying.current()), (MavResult::MAV_RESULT_ACCEPTED, 3));
-    assert_eq!(jump(&mut flying, 7.0), MavResult::MAV_RESULT_FAILED);
+    assert_eq!(jump(&mut flying, 3), 3);
+    assert_eq!(jump(&mut flying, 7), 3, "there is none");
+}
+
+/// 1.18 knows the message only, and answers the command so.
+#[test]
+fn there_is_no_command_for_another_item() {
+    let mut ground = Ground::px4_airborne(&circuit(Config::default().home.position));
+    let current = ground.current();
+    let answer = ground.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, [3., 0., 0., 0., 0., 0., 0.]);
+    assert_eq!((answer, ground.current()), (MavResult::MAV_RESULT_UNSUPPORTED, current));
 }
 
 #[test]

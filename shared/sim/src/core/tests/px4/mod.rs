@@ -43,6 +43,14 @@ impl Ground {
         ground
     }
 
+    /// Tells it which item to go on at, by the message: it knows no command for that.
+    fn select(&mut self, seq: u16) {
+        self.say(MavMessage::MISSION_SET_CURRENT(MISSION_SET_CURRENT_DATA {
+            seq,
+            ..MISSION_SET_CURRENT_DATA::DEFAULT
+        }));
+    }
+
     /// Until it has started up and found out what it was given.
     fn settle(&mut self) {
         self.fly_until(4.5, |_| false);

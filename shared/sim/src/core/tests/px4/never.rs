@@ -79,7 +79,7 @@ proptest! {
                     (aboard, is_fit) = (vec![], false);
                 }
                 Deed::SetCurrent(seq) => {
-                    ground.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, [seq.into(), 0., 0., 0., 0., 0., 0.]);
+                    ground.select(seq);
                 }
                 Deed::Mode(sub) => {
                     ground.enter([4.0, sub.into()]);
