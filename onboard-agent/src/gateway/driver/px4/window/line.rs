@@ -2,8 +2,8 @@
 //!
 //! With each new list PX4 drops the line along which it flies, and goes straight from where it is to what it steers to. On
 //! the line that is the same. Behind a turn it is not: it would never come onto the leg. So what is not needed soon waits
-//! until the aircraft is on its line. With a new list it also drops a take-off in the air, and turns: that one waits until it is over,
-//! or is to be left.
+//! until the aircraft is on its line: as far beside as it is then, it comes nearer only all the way to the leg's end. With a new
+//! list it also drops a take-off in the air, and turns: that one waits until it is over, or is to be left.
 
 use super::Window;
 use crate::gateway::order::{Fed, Fix};
@@ -11,9 +11,11 @@ use geometry::{LatLon, LocalFrame, Vec2};
 use usal::contract::{Action, Waypoint};
 
 /// On the line: not farther from it than this, metres …
-const ON_LINE_M: f64 = 10.0;
+const ON_LINE_M: f64 = 2.0;
+/// … or, on a long one, than this share of its length: no two maps have the same straight lines …
+const ON_LINE_SHARE: f64 = 3e-4;
 /// … and not across it by more than this, degrees.
-const ALONG_LINE_DEG: f64 = 10.0;
+const ALONG_LINE_DEG: f64 = 3.0;
 /// What is on board for less than so many seconds of flight can't wait.
 const LEAST_S: f64 = 30.0;
 
@@ -47,7 +49,7 @@ fn is_along(fix: &Fix, from: LatLon, to: LatLon) -> bool {
     }
     let aside_m = line.cross(frame.to_local(fix.position)) / length_m;
     let along = line.dot(velocity) / (length_m * speed_mps);
-    aside_m.abs() <= ON_LINE_M && along >= ALONG_LINE_DEG.to_radians().cos()
+    aside_m.abs() <= ON_LINE_M.max(ON_LINE_SHARE * length_m) && along >= ALONG_LINE_DEG.to_radians().cos()
 }
 
 /// What is on board, the waypoint steered to first, lasts long enough for the list to wait.

@@ -42,13 +42,17 @@ fn fed_one_more(ahead: u64) -> Rig {
 #[test]
 fn what_is_needed_later_goes_up_when_the_aircraft_is_on_its_line() {
     let mut rig = fed_one_more(3);
-    for in_the_turn in
-        [before(2, 990.0, 0.0, -90.0), before(2, 900.0, -60.0, 0.0), before(2, 900.0, 0.0, 45.0)]
-    {
+    for in_the_turn in [
+        before(2, 990.0, 0.0, -90.0),
+        before(2, 900.0, -60.0, 0.0),
+        before(2, 900.0, 0.0, 45.0),
+        before(2, 700.0, 4.0, 0.0),
+        before(2, 700.0, 0.0, 5.0),
+    ] {
         rig.window.moved(&in_the_turn);
         assert_eq!(rig.begin(), None, "{in_the_turn:?}");
     }
-    rig.window.moved(&before(2, 600.0, 3.0, 2.0));
+    rig.window.moved(&before(2, 600.0, 1.5, 2.0));
     let change = rig.begin().expect("on its line");
     rig.end(&change, Fate::Done);
     assert!(rig.window.ready());
