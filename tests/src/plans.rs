@@ -100,6 +100,55 @@ impl Field {
         )
     }
 
+    /// Each kind of leg as long as it takes to settle on it, without a corner between them: TF and RF forth and back, and a holding.
+    pub fn accuracy(&self) -> String {
+        let (heading, elevation) = (self.heading_deg, self.elevation_m);
+        let centre = |ahead_m: f64, right_m: f64| {
+            let p = self.at(ahead_m, right_m);
+            format!("centreLat=\"{:.7}\" centreLon=\"{:.7}\"", p.lat_deg, p.lon_deg)
+        };
+        format!(
+            r#"<?xml version="1.0" encoding="UTF-8"?>
+<flightPlan xmlns="urn:legwork:flight-plan:1" name="Accuracy" aircraft="trainer">
+  <runways>
+    <runway id="R" {threshold} elevation="{elevation}" heading="{heading}" length="600" priority="1"/>
+  </runways>
+  <variables>
+    <variable name="enough" type="bool" initial="false"/>
+  </variables>
+  <mainPlan emergency="home">
+    <stage id="to" type="take-off" runway="R" altitude="60" altitudeReference="home"/>
+    <stage id="dep" type="departure" altitude="120" altitudeReference="home">
+      <TF id="out" {out}/>
+      <RF id="narrow" {narrow} {narrow_centre} turn="right"/>
+      <TF id="back" {back}/>
+      <RF id="wide" {wide} {wide_centre} turn="left"/>
+      <TF id="forth" {forth}/>
+      <HM id="hold" {forth} course="{heading}" turn="right" length="900" until="enough" maxLaps="2"/>
+    </stage>
+    <stage id="arr" type="arrival" altitude="120" altitudeReference="home">
+      <DF id="turn" {direct}/>
+      <TF id="final" {last} altitude="70" altitudeReference="home"/>
+    </stage>
+    <stage id="ldg" type="land" runway="R"/>
+  </mainPlan>
+  <emergencyPlans>{home}</emergencyPlans>
+</flightPlan>
+"#,
+            threshold = self.place(0.0, 0.0),
+            out = self.place(4000.0, 0.0),
+            narrow = self.place(4000.0, 800.0),
+            narrow_centre = centre(4000.0, 400.0),
+            back = self.place(0.0, 800.0),
+            wide = self.place(0.0, 2000.0),
+            wide_centre = centre(0.0, 1400.0),
+            forth = self.place(4000.0, 2000.0),
+            direct = self.place(-1600.0, -700.0),
+            last = self.place(-1000.0, 0.0),
+            home = self.emergency("home", 700.0),
+        )
+    }
+
     /// Two flights, each around the field and back; behind the landing of the first one the plan waits for a start. `second`: the field
     /// that the second one takes off from, and lands on.
     pub fn two_flights(&self, second: Field) -> String {
@@ -178,6 +227,15 @@ mod tests {
             let problems = flight_plan::compile(reading.plan, &profile, &flat).err();
             assert!(problems.is_none(), "{problems:#?}");
         }
+    }
+
+    #[test]
+    fn the_flight_for_accuracy_can_be_flown() {
+        let reading = flight_plan::read(FIELD.accuracy().as_bytes());
+        assert!(reading.problems.is_empty(), "{:?}", reading.problems);
+        let flat = terrain::Flat(FIELD.elevation_m);
+        let problems = flight_plan::compile(reading.plan, &aircraft::Profile::default(), &flat).err();
+        assert!(problems.is_none(), "{problems:#?}");
     }
 
     #[test]

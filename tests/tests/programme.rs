@@ -52,6 +52,7 @@ programme! {
     nominal always,
     strong_wind,
     bad_radio always,
+    accuracy,
     example_alternates,
     example_coast_patrol,
     example_fire_watch,

@@ -1,6 +1,7 @@
 //! The flight-test programme: what is done to a flight, and what must come of it. The same scenarios are flown on our
 //! simulator's personalities by `cargo test`, and on a real autopilot when one is there.
 
+mod accuracy;
 mod changes;
 mod emergencies;
 mod examples;
@@ -73,6 +74,7 @@ impl Scenario {
 /// All of them, in the order of the table.
 pub const SCENARIOS: &[&[Scenario]] = &[
     missions::SCENARIOS,
+    accuracy::SCENARIOS,
     examples::SCENARIOS,
     changes::SCENARIOS,
     emergencies::SCENARIOS,

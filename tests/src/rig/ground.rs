@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use usal::{
     Config, EventSubscriber, Participant, Presence, Session, Start, VariableSubscriber,
     contract::{
-        Air, Attitude, ClockTick, FpManagerEvent, GatewayStatus, Navigation, PlanStatus, Position, Recording,
-        TimedGatewayEvent,
+        Ahead, Air, Attitude, ClockTick, FpManagerEvent, GatewayStatus, Navigation, PlanStatus, Position,
+        Recording, TimedGatewayEvent,
     },
     topics::{fp_manager, gateway, storage},
 };
@@ -22,6 +22,7 @@ pub struct Ground {
     pub plan_events: EventSubscriber<FpManagerEvent>,
     pub gateway_events: EventSubscriber<TimedGatewayEvent>,
     pub status: VariableSubscriber<PlanStatus>,
+    pub ahead: VariableSubscriber<Ahead>,
     pub state: VariableSubscriber<GatewayStatus>,
     pub position: VariableSubscriber<Position>,
     pub navigation: VariableSubscriber<Navigation>,
@@ -45,6 +46,7 @@ impl Ground {
             plan_events: session.listen(fp_manager::EVENTS, Start::Remembered)?,
             gateway_events: session.listen(gateway::EVENTS, Start::Remembered)?,
             status: session.follow(fp_manager::STATUS)?,
+            ahead: session.follow(fp_manager::AHEAD)?,
             state: session.follow(gateway::STATE)?,
             position: session.follow(gateway::POSITION)?,
             navigation: session.follow(gateway::NAVIGATION)?,

@@ -3,6 +3,7 @@
 mod ground;
 mod processes;
 mod seen;
+mod track;
 mod world;
 
 use crate::binaries::Program;
@@ -17,6 +18,7 @@ use std::{
     path::Path,
     time::{Duration, Instant},
 };
+use track::Track;
 use usal::{
     Occurrence,
     contract::{
@@ -45,6 +47,8 @@ pub struct Rig {
     pub storage: Option<Program>,
     /// What happened.
     pub seen: Seen,
+    /// Where it was flown.
+    pub track: Track,
     /// Where it flies.
     pub field: Field,
     world: World,
@@ -107,6 +111,7 @@ impl Rig {
             fp_manager,
             storage: None,
             seen: Seen::default(),
+            track: Track::default(),
             field: FIELD,
             places,
             ground: Some(ground),
@@ -199,6 +204,13 @@ impl Rig {
             if let Occurrence::Event { event, .. } = occurrence {
                 self.seen.gateway.push(event.value);
             }
+        }
+        if let Some(ahead) = ground.ahead.latest() {
+            self.track.plan(&ahead.stamped.value);
+        }
+        let to = ground.navigation.latest().and_then(|said| said.stamped.value.current);
+        if let Some(position) = ground.position.latest() {
+            self.track.fly(to, position.stamped.value.position);
         }
     }
 
