@@ -1,9 +1,9 @@
 //! When a new list may go up.
 //!
-//! With each new list PX4 drops the line along which it flies, and goes straight from where it is to what it steers to. On
-//! the line that is the same. Behind a turn it is not: it would never come onto the leg. So what is not needed soon waits
-//! until the aircraft is on its line: as far beside as it is then, it comes nearer only all the way to the leg's end. With a new
-//! list it also drops a take-off in the air, and turns: that one waits until it is over, or is to be left.
+//! With each new list PX4 drops the line along which it flies, and goes straight from where it is to what it steers to: on a long leg it
+//! wanders from its line then, by some metres, and behind a turn it would never come onto it. Where the next line begins all is well again.
+//! So what is not needed soon waits for the end of a leg, or for a short one, as those around an arc are. With a new list it also drops a
+//! take-off in the air, and turns: that one waits until it is over, or is to be left.
 
 use super::Window;
 use crate::gateway::order::{Fed, Fix};
@@ -12,15 +12,15 @@ use usal::contract::{Action, Waypoint};
 
 /// On the line: not farther from it than this, metres …
 const ON_LINE_M: f64 = 2.0;
-/// … or, on a long one, than this share of its length: no two maps have the same straight lines …
-const ON_LINE_SHARE: f64 = 3e-4;
 /// … and not across it by more than this, degrees.
 const ALONG_LINE_DEG: f64 = 3.0;
-/// What is on board for less than so many seconds of flight can't wait.
-const LEAST_S: f64 = 30.0;
+/// The next line begins as near as this, metres.
+const NEAR_M: f64 = 300.0;
+/// What is on board for less than so many seconds of flight can't wait: a link is lost for longer than a list takes to go up.
+const LEAST_S: f64 = 90.0;
 
 impl Window {
-    /// What is new from a position on may go up later, when the aircraft is on its line.
+    /// What is new from a position on may go up later, where it does no harm.
     pub(super) fn may_wait(&self, new_from: u64) -> bool {
         let takes_off = |fed: &Fed| matches!(fed.waypoint.action, Action::TakeOff { .. });
         self.chain.active().is_some_and(takes_off) || self.may_wait_for_its_line(new_from)
@@ -33,8 +33,13 @@ impl Window {
             return false;
         };
         let aboard = (first..new_from).map_while(|position| self.chain.at(position));
-        !is_along(&fix, from.position, to.waypoint.position) && lasts(&fix, aboard)
+        !is_near_the_next_line(&fix, from.position, to.waypoint.position) && lasts(&fix, aboard)
     }
+}
+
+/// Little is left of the line from `from` to `to`, and that is flown along it.
+fn is_near_the_next_line(fix: &Fix, from: LatLon, to: LatLon) -> bool {
+    from.distance_m(to) <= NEAR_M || (fix.position.distance_m(to) <= NEAR_M && is_along(fix, from, to))
 }
 
 /// The aircraft flies along the line from `from` to `to`.
@@ -49,7 +54,7 @@ fn is_along(fix: &Fix, from: LatLon, to: LatLon) -> bool {
     }
     let aside_m = line.cross(frame.to_local(fix.position)) / length_m;
     let along = line.dot(velocity) / (length_m * speed_mps);
-    aside_m.abs() <= ON_LINE_M.max(ON_LINE_SHARE * length_m) && along >= ALONG_LINE_DEG.to_radians().cos()
+    aside_m.abs() <= ON_LINE_M && along >= ALONG_LINE_DEG.to_radians().cos()
 }
 
 /// What is on board, the waypoint steered to first, lasts long enough for the list to wait.

@@ -40,19 +40,20 @@ fn fed_one_more(ahead: u64) -> Rig {
 }
 
 #[test]
-fn what_is_needed_later_goes_up_when_the_aircraft_is_on_its_line() {
-    let mut rig = fed_one_more(3);
-    for in_the_turn in [
+fn what_is_needed_later_goes_up_where_the_next_line_is_near() {
+    let mut rig = fed_one_more(4);
+    for with_a_long_way_to_go in [
         before(2, 990.0, 0.0, -90.0),
         before(2, 900.0, -60.0, 0.0),
         before(2, 900.0, 0.0, 45.0),
-        before(2, 700.0, 4.0, 0.0),
-        before(2, 700.0, 0.0, 5.0),
+        before(2, 600.0, 0.0, 0.0),
+        before(2, 250.0, 4.0, 0.0),
+        before(2, 250.0, 0.0, 5.0),
     ] {
-        rig.window.moved(&in_the_turn);
-        assert_eq!(rig.begin(), None, "{in_the_turn:?}");
+        rig.window.moved(&with_a_long_way_to_go);
+        assert_eq!(rig.begin(), None, "{with_a_long_way_to_go:?}");
     }
-    rig.window.moved(&before(2, 600.0, 1.5, 2.0));
+    rig.window.moved(&before(2, 250.0, 1.5, 2.0));
     let change = rig.begin().expect("on its line");
     rig.end(&change, Fate::Done);
     assert!(rig.window.ready());
@@ -90,9 +91,9 @@ fn while_it_is_not_flown_a_list_goes_up_at_once() {
 
 /// There is no course to be on.
 #[test]
-fn what_does_not_move_or_has_no_line_is_on_none() {
-    let mut rig = fed_one_more(3);
-    rig.window.moved(&Fix { north_mps: 0.0, east_mps: 0.0, ..before(2, 990.0, 0.0, 0.0) });
+fn what_does_not_move_is_on_no_line_and_a_line_without_length_is_over() {
+    let mut rig = fed_one_more(4);
+    rig.window.moved(&Fix { north_mps: 0.0, east_mps: 0.0, ..before(2, 250.0, 0.0, 0.0) });
     assert_eq!(rig.begin(), None);
     let twice = |n: u64| corner(n / 2);
     let fed =
@@ -101,5 +102,5 @@ fn what_does_not_move_or_has_no_line_is_on_none() {
     rig.reach();
     rig.window.feed(ALL, vec![fed(10)]);
     rig.window.moved(&before(2, 990.0, 0.0, 0.0));
-    assert_eq!(rig.begin(), None, "from a place to itself");
+    assert!(rig.begin().is_some(), "from a place to itself: the next line begins there");
 }
