@@ -65,6 +65,8 @@ programme! {
     decision_by_default,
     decision_by_operator,
     hold_and_resume,
+    hold_in_climb,
+    emergency_in_climb,
     emergency_at_leg_level,
     emergency_at_stage_level,
     emergency_at_plan_level always,

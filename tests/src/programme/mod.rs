@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod changes;
+mod climb_out;
 mod emergencies;
 mod examples;
 mod judgement;
@@ -77,6 +78,7 @@ pub const SCENARIOS: &[&[Scenario]] = &[
     accuracy::SCENARIOS,
     examples::SCENARIOS,
     changes::SCENARIOS,
+    climb_out::SCENARIOS,
     emergencies::SCENARIOS,
     processes::SCENARIOS,
     links::SCENARIOS,
