@@ -230,7 +230,7 @@ mod tests {
         let event = Event::IterationFinished { leg: "n1".into(), finished: 1, of: Some(2) };
         assert_eq!(plan_event(&event, names).1, "Loop To the ridge: pass 1 of 2 done");
         assert_eq!(plan_event(&event, Names(None)).1, "Loop n1: pass 1 of 2 done");
-        assert_eq!(entered(&"n1".into(), &"home".into(), names), "Leg To the ridge of stage home");
+        assert_eq!(entered(&"n1".into(), &"home".into(), names), "Leg To the ridge of stage Mission");
         assert_eq!(entered(&"n1".into(), &"n1".into(), names), "Stage To the ridge");
         // a branch may be called as a leg is
         for (by, told) in [

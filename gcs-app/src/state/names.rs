@@ -7,13 +7,34 @@ use flight_plan::{FlightPlan, Id};
 pub struct Names<'a>(pub Option<&'a FlightPlan>);
 
 impl Names<'_> {
-    /// Of a leg, a stage, an emergency plan.
+    /// Of a leg, a stage, an emergency plan. A stage without a name is called by its kind.
     pub fn of(self, id: &Id) -> String {
-        self.0.map_or(id.as_str(), |plan| plan.label(id)).to_owned()
+        let name = self.0.and_then(|plan| plan.name_of(id).or_else(|| Some(plan.stage(id)?.kind.name())));
+        name.unwrap_or(id.as_str()).to_owned()
     }
 
     /// Of a branch. Its identifier may be that of a leg, too.
     pub fn of_branch(self, fork: &Id, branch: &Id) -> String {
         self.0.map_or(branch.as_str(), |plan| plan.branch_label(fork, branch)).to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stage_without_a_name_is_called_by_its_kind_and_everything_else_by_its_identifier() {
+        let text = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><mainPlan>
+            <stage id="m" name="Round" type="mission"><TF id="a" name="Out" lat="46" lon="9"/><TF id="b" lat="46.1" lon="9"/></stage>
+            </mainPlan><emergencyPlans><emergencyPlan id="return" runway="R05"><stage id="r-land" type="land"/></emergencyPlan>
+            </emergencyPlans></flightPlan>"#;
+        let plan = flight_plan::read(text.as_bytes()).plan;
+        let called = |id: &str| Names(Some(&plan)).of(&id.into());
+        assert_eq!(
+            ["m", "a", "b", "r-land", "return"].map(called),
+            ["Round", "Out", "b", "Landing", "return"]
+        );
+        assert_eq!(Names(None).of(&"r-land".into()), "r-land");
     }
 }

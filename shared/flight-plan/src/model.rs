@@ -219,6 +219,21 @@ pub enum StageKind {
     Land,
 }
 
+impl StageKind {
+    /// What people call a stage of this kind that has no name of its own.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TakeOff => "Take-off",
+            Self::Departure => "Departure",
+            Self::EnRoute => "En route",
+            Self::Mission => "Mission",
+            Self::Arrival => "Arrival",
+            Self::Approach => "Approach",
+            Self::Land => "Landing",
+        }
+    }
+}
+
 /// A group of legs with one purpose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stage {

@@ -66,19 +66,19 @@ pub fn variable(plan: &FlightPlan, initial: VariableValue) -> Variable {
 
 /// An empty stage; one to take off or land gets the plan's first runway.
 fn stage(plan: &FlightPlan, kind: StageKind) -> Stage {
-    let (stem, name) = match kind {
-        StageKind::TakeOff => ("take-off", "Take-off"),
-        StageKind::Departure => ("departure", "Departure"),
-        StageKind::EnRoute => ("en-route", "En route"),
-        StageKind::Mission => ("mission", "Mission"),
-        StageKind::Arrival => ("arrival", "Arrival"),
-        StageKind::Approach => ("approach", "Approach"),
-        StageKind::Land => ("land", "Landing"),
+    let stem = match kind {
+        StageKind::TakeOff => "take-off",
+        StageKind::Departure => "departure",
+        StageKind::EnRoute => "en-route",
+        StageKind::Mission => "mission",
+        StageKind::Arrival => "arrival",
+        StageKind::Approach => "approach",
+        StageKind::Land => "land",
     };
     let on_runway = matches!(kind, StageKind::TakeOff | StageKind::Land);
     Stage {
         id: plan.unique_id(stem),
-        name: name.into(),
+        name: kind.name().into(),
         kind,
         emergency: EmergencyChoice::default(),
         runway: plan.runways.first().filter(|_| on_runway).map(|runway| runway.id.clone()),
