@@ -1,5 +1,6 @@
 //! Chips at the map's lower right: in which world the path is flown, whether it is up to date, and what its colours mean.
 
+use super::furniture::NARROW;
 use super::marks;
 use crate::command::{PreviewCommand, Queue, ViewCommand};
 use crate::map::{coverage, view::View};
@@ -20,7 +21,7 @@ pub fn show(ui: &Ui, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
     area.constrain_to(view.rect).show(ui.ctx(), |ui| {
         ui.set_max_width(width);
         let p = theme::of(ui);
-        colours(ui, scene);
+        colours(ui, scene, view.rect.width() < NARROW);
         world(ui, scene, queue);
         standing(ui, scene, p, queue);
     });
@@ -75,16 +76,19 @@ fn world(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         if button.on_hover_text("Back to the plan's own world").clicked() {
             queue.preview(PreviewCommand::Reset);
         }
-        let text = format!("What if: {words}");
-        ui.add(egui::Label::new(RichText::new(&text).size(12.0)).truncate()).on_hover_text(&text);
+        // whole: it says what the whole map is about
+        ui.add(egui::Label::new(RichText::new(format!("What if: {words}")).size(12.0)).wrap());
     });
 }
 
-fn colours(ui: &mut Ui, scene: &Scene<'_>) {
+fn colours(ui: &mut Ui, scene: &Scene<'_>, is_narrow: bool) {
     let Some(known) = scene.analysis.coverage().filter(|_| scene.view.coverage) else { return };
     chip(ui, |ui| {
-        let title = format!("Coverage, worst alarm ({:.0} %)", known.progress() * 100.0);
-        ui.label(RichText::new(title).size(11.5));
+        // on a small map the lines say enough
+        if !is_narrow {
+            let title = format!("Coverage, worst alarm ({:.0} %)", known.progress() * 100.0);
+            ui.label(RichText::new(title).size(11.5));
+        }
         coverage::legend(ui, known);
     });
 }

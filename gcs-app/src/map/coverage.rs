@@ -46,9 +46,11 @@ pub fn line(painter: &Painter, path: &[Pos2], (stroke, style): (Stroke, Style)) 
 /// What the looks mean, and on how much of the path.
 pub fn legend(ui: &mut Ui, coverage: &Coverage) {
     let p = theme::of(ui);
+    // nothing there is clicked: rows hardly higher than their text
+    ui.spacing_mut().item_spacing.y = 1.0;
+    ui.spacing_mut().interact_size.y = 14.0;
     for reach in REACHES {
         ui.horizontal(|ui| {
-            ui.set_height(14.0);
             let (rect, _) = ui.allocate_exact_size(vec2(34.0, 12.0), Sense::hover());
             let ends = [rect.left_center(), rect.right_center()];
             line(ui.painter(), &ends, look(Some(reach), p));

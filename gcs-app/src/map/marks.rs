@@ -1,17 +1,17 @@
 //! Marks on the path: where a preview ends early, where a plan is wrong, and the way out after an alarm.
 
-use super::names::{self, Ground, Name, Rank};
+use super::names::{self, Ground, Name, Rank, Spot};
 use super::polyline::Style;
 use super::reveal::place_of;
 use super::sheet::Sheet;
 use super::sketch::{Line, Way};
-use crate::panels::what_if::{cause_name, reach_name};
+use crate::panels::what_if::reach_name;
 use crate::panels::{Scene, problems};
 use crate::theme::Palette;
 use egui::{Pos2, Shape, Stroke, vec2};
 use flight_exec::rehearse::Diversion;
 use flight_exec::review::Margins;
-use flight_plan::{FlightPlan, FlownAt, Id, Problem};
+use flight_plan::{FlownAt, Id, Problem};
 use geometry::LatLon;
 use std::collections::HashSet;
 
@@ -142,8 +142,23 @@ pub fn draw_diversion(sheet: &Sheet<'_>) {
         if !reaches(found) {
             cross(sheet, at);
         }
-        ask_words(sheet, at, label(found, scene.document.plan()));
+        let way: Vec<Pos2> = chosen.iter().map(|at| sheet.place(*at)).collect();
+        let (rank, spots, colour) = (Rank::Fault, spots_beyond(&way, at), sheet.p.text);
+        sheet.ask(Name { rank, spots, text: label(found), size: 11.5, colour, ground: Ground::Plate });
     }
+}
+
+/// A way says where it comes from by its last piece that is so long, screen points.
+const PIECE: f32 = 24.0;
+
+/// Beside the end of a way, where it would go on first: words lie on no way that they tell of.
+fn spots_beyond(way: &[Pos2], end: Pos2) -> [Spot; 4] {
+    let from = way.iter().rev().find(|at| at.distance(end) > PIECE).or(way.first());
+    let course = from.map_or(vec2(0.0, 0.0), |from| end - *from);
+    let mut spots = names::corners(end, vec2(8.0, 9.0));
+    let ahead = |(at, _): &Spot| (*at - end).dot(course);
+    spots.sort_by(|a, b| ahead(b).total_cmp(&ahead(a)));
+    spots
 }
 
 /// As the legend has it: white dashes are a glide.
@@ -158,11 +173,12 @@ fn reaches(found: &Diversion) -> bool {
     found.reach(0.0, 0.0) != flight_exec::rehearse::Reach::Out
 }
 
-fn label(found: &Diversion, flown: &FlightPlan) -> String {
+/// `R05: just reached`; after which alarm is said in the map's corner, all else in the panel.
+fn label(found: &Diversion) -> String {
     let margins = Margins::default();
     let reach = reach_name(found.reach(margins.glide_m, margins.energy_share));
-    let plan = found.plan.as_ref().map_or("no plan", |(plan, _)| flown.label(plan));
-    format!("{}: {plan}, {reach}", cause_name(found.cause))
+    let runway = found.plan.as_ref().map_or("no plan", |(_, runway)| runway.as_str());
+    format!("{runway}: {reach}")
 }
 
 #[cfg(test)]
@@ -192,6 +208,19 @@ mod tests {
             "back to the default's way"
         );
         assert_eq!(found(46.05, 9.05, "another"), None);
+    }
+
+    #[test]
+    fn the_words_of_a_way_out_lie_beyond_its_end() {
+        let end = egui::pos2(100.0, 100.0);
+        for (from, beyond) in [
+            (vec2(-90.0, -80.0), vec2(8.0, 9.0)),
+            (vec2(90.0, -80.0), vec2(-8.0, 9.0)),
+            (vec2(60.0, 90.0), vec2(-8.0, -9.0)),
+        ] {
+            let (at, _) = spots_beyond(&[end + from, end + vec2(1.0, 0.0), end], end)[0];
+            assert_eq!(at, end + beyond, "it comes from {from}");
+        }
     }
 
     #[test]

@@ -39,7 +39,11 @@ impl Panel for Profile {
     }
     fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         if flown::on_preview(scene).is_some() || flown::told(scene).is_some() {
-            ui.checkbox(&mut self.whole, "Whole flight").on_hover_text("Else from now to landing");
+            let text = if timeline::is_narrow(ui) { "All" } else { "Whole flight" };
+            let whole = ui.checkbox(&mut self.whole, text);
+            let on = self.whole;
+            whole.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, on, "Whole flight"));
+            whole.on_hover_text("The whole flight; else from now to landing");
         }
         timeline::show(ui, scene, queue);
     }

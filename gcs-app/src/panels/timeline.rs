@@ -7,7 +7,7 @@ use crate::theme::{self, Palette};
 use crate::units;
 use egui::{Align2, FontId, Key, Painter, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
 
-/// In a row that is narrower, half of a name has to do, screen points.
+/// A row that is narrower has no room for everything in words, screen points.
 const NARROW: f32 = 420.0;
 /// How many times as fast as the flight the cursor may run.
 pub const SPEEDS: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0, 200.0];
@@ -15,34 +15,18 @@ pub const SPEEDS: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 100.0, 200.
 /// Play and pause of the preview, and what it comes to.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let forecast = scene.forecast();
-    let text = if scene.view.playing { "⏸ Pause" } else { "▶ Preview" };
-    if ui.add_enabled(!forecast.points.is_empty(), egui::Button::new(text)).on_hover_text("Space").clicked() {
-        queue.preview(PreviewCommand::Play(!scene.view.playing));
-    }
+    let is_narrow = is_narrow(ui);
+    play(ui, scene, is_narrow, queue);
     speed(ui, scene, queue);
     let hover = "What if: other winds, values and branches, and alarms at the cursor";
-    let is_narrow = ui.max_rect().width() < NARROW;
-    let text = if is_narrow { "If…" } else { "What if" };
-    let opens = ui.button(text);
-    opens.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "What if"));
-    if opens.on_hover_text(hover).clicked() {
+    if ui.button("What if").on_hover_text(hover).clicked() {
         queue.view(ViewCommand::ShowPanel(what_if::ID, true));
     }
     if scene.view.cursor_s.is_some() && ui.button("✖").on_hover_text("Hide the cursor").clicked() {
         queue.preview(PreviewCommand::Scrub(None));
     }
     let p = theme::of(ui);
-    let flights = match forecast.stops {
-        0 => String::new(),
-        stops => format!("{} flights · ", stops + 1),
-    };
-    let sum = format!(
-        "{flights}{} · {} · {} waypoints{}",
-        scene.units().distance().show(forecast.length_m()),
-        units::duration(forecast.duration_s()),
-        forecast.waypoints.len(),
-        forecast.battery_left.map_or_else(String::new, |b| format!(" · {:.0} % energy left", b * 100.0)),
-    );
+    let sum = sum(scene);
     if let (Some(why), false) = (scene.out_of_date(), forecast.points.is_empty()) {
         // what follows is not of the plan that is shown
         let text = if is_narrow { "◌" } else { "◌ Out of date" };
@@ -57,9 +41,44 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.add(egui::Spinner::new().size(14.0));
     }
     if let Some(why) = why_none.or(forecast.cut_short.as_ref()) {
-        ui.add(egui::Label::new(RichText::new(format!("⚠ {why}")).color(p.caution)).truncate())
+        // a sentence that is cut is none
+        let said = match (is_narrow, why_none) {
+            (true, Some(_)) => "no preview",
+            (true, None) => "ends early",
+            (false, _) => why,
+        };
+        ui.add(egui::Label::new(RichText::new(format!("⚠ {said}")).color(p.caution)).truncate())
             .on_hover_text(why);
     }
+}
+
+/// There is no room for everything in words.
+pub fn is_narrow(ui: &Ui) -> bool {
+    ui.max_rect().width() < NARROW
+}
+
+/// Where there is little room the symbol has to do.
+fn play(ui: &mut Ui, scene: &Scene<'_>, is_narrow: bool, queue: &mut Queue) {
+    let (symbol, name) = if scene.view.playing { ("⏸", "Pause") } else { ("▶", "Preview") };
+    let whole = format!("{symbol} {name}");
+    let text = if is_narrow { symbol } else { whole.as_str() };
+    let is_possible = !scene.forecast().points.is_empty();
+    let button = ui.add_enabled(is_possible, egui::Button::new(text));
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, is_possible, &whole));
+    if button.on_hover_text(format!("{name} (Space)")).clicked() {
+        queue.preview(PreviewCommand::Play(!scene.view.playing));
+    }
+}
+
+/// What the flight comes to; what is asked for first stands first, the rest may be cut.
+fn sum(scene: &Scene<'_>) -> String {
+    let forecast = scene.forecast();
+    let flights = (forecast.stops > 0).then(|| format!("{} flights", forecast.stops + 1));
+    let way = scene.units().distance().show(forecast.length_m());
+    let energy = forecast.battery_left.map(|left| format!("{:.0} % energy left", left * 100.0));
+    let waypoints = format!("{} waypoints", forecast.waypoints.len());
+    let parts = flights.into_iter().chain([way, units::duration(forecast.duration_s())]);
+    parts.chain(energy).chain([waypoints]).collect::<Vec<_>>().join(" · ")
 }
 
 fn speed(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {

@@ -134,7 +134,7 @@ fn what_happens_at_a_place_is_asked_on_the_map_and_a_click_on_the_path_moves_it(
     assert_eq!(window.app().view().alarm, Some(Cause::Link));
     assert!((share_of_side3(&window) - 0.3).abs() < 0.05, "{}", share_of_side3(&window));
     window.until("the way out", |app| app.analysis().diversion().is_some());
-    assert!(window.shows("Link lost: return"));
+    assert!(window.shows("Link lost: R05 is"));
     let at = on_path(&window, 0.6);
     window.click_at(at);
     assert!((share_of_side3(&window) - 0.6).abs() < 0.05, "{}", share_of_side3(&window));

@@ -277,7 +277,7 @@ fn what_if_the_engine_fails_here() {
     window.until("the way out", |app| app.analysis().diversion().is_some());
     let analysis = window.app().analysis().clone();
     assert_eq!(Some(analysis.diversion().unwrap().time_s), window.app().view().cursor_s);
-    assert!(window.shows("Engine failure: return, runway R05"));
+    assert!(window.shows("Engine failure: R05 is reached without the engine on return, "));
     assert!(!window.is_enabled("Undo"), "the plan is what it was");
     done(&mut window, "engine");
 }

@@ -76,7 +76,11 @@ fn what_is_being_drawn_is_tried_in_the_wind_that_is_set() {
         let mut said = window.harness.query_all_by_label_contains("Orbit: ");
         said.find_map(|node| node.accesskit_node().value()).unwrap()
     };
+    let accent = gcs_app::theme::palette(true).accent;
+    let drawn = |window: &Window| window.lines_within("Map", accent);
+    let before = drawn(&window);
     let calm = tried(&mut window);
+    assert!(drawn(&window) > before + 20, "its path is drawn, dash by dash");
     assert!(calm.contains(" m · ") || calm.contains(" km · "), "length and time: {calm}");
     slide(&mut window, "Wind speed", 12.0);
     assert_ne!(tried(&mut window), calm, "against the wind it takes longer");
@@ -153,9 +157,11 @@ fn an_engine_failure_at_the_cursor_leads_to_the_runway_of_the_plan_as_without_a_
     assert!((at_s / duration_s(&window) - 0.5).abs() < 0.02);
     choose(&mut window, "Engine failure");
     window.until("the way out", |app| app.analysis().diversion().is_some());
-    assert!(window.shows("Engine failure: return, runway R05"));
     let analysis = window.app().analysis().clone();
     let found = analysis.diversion().unwrap();
+    let first = "Engine failure: R05 is reached without the engine on return, ";
+    assert!(window.shows(first) && window.shows(" above the threshold, after "), "how high, and when");
+    assert!(window.shows("With an engine that runs: return, after "));
     assert_eq!(found.time_s, at_s);
     let threshold = window.plan().runway(&"R05".into()).unwrap().threshold;
     assert!(found.glide.as_ref().unwrap().path.last().unwrap().position.distance_m(threshold) < 500.0);
@@ -180,7 +186,7 @@ fn the_way_out_goes_with_its_banner_and_with_its_cursor() {
         scrub(&mut window, 0.5);
         choose(&mut window, "Engine failure");
         window.until("the way out", |app| app.analysis().diversion().is_some());
-        assert!(window.colour_within("Map", "Engine failure: return, ").is_some(), "on the map");
+        assert!(window.colour_within("Map", "R05: ").is_some(), "on the map");
         assert!(window.shows("What if: Engine failure at "), "the map says so");
         assert!(window.colour_within("Map", "glide").is_some(), "the legend says what the dashes are");
         let chip = window.harness.get_by_label_contains("What if: Engine failure at ").rect();
@@ -188,7 +194,7 @@ fn the_way_out_goes_with_its_banner_and_with_its_cursor() {
         assert!(!north.is_empty(), "the compass is on the map");
         assert!(north.iter().all(|north| !north.intersects(chip.expand(8.0))), "{north:?} {chip}");
         window.click(close);
-        assert_eq!(window.colour_within("Map", "Engine failure: return, "), None, "{close}");
+        assert_eq!(window.colour_within("Map", "R05: "), None, "{close}");
         assert!(!window.shows("What if: ") && window.app().view().alarm.is_none(), "{close}");
     }
 }
@@ -260,7 +266,7 @@ fn each_cause_is_raised_in_the_panel_and_in_the_palette() {
         choose(&mut window, cause_name(cause));
         let found = |app: &App| app.analysis().diversion().is_some_and(|found| found.cause == cause);
         window.until("the way out", found);
-        assert!(window.shows(&format!("{}: return, runway R05", cause_name(cause))), "{cause:?}");
+        assert!(window.shows(&format!("{}: R05 is reached ", cause_name(cause))), "{cause:?}");
         window.click("Back to the plan's own world");
         assert!(window.app().view().alarm.is_none());
         window.ask_for(&format!("what if {letters} here"));
@@ -338,6 +344,26 @@ fn the_flight_starts_at_the_time_that_is_chosen() {
     assert!(!window.app().document().is_dirty());
     choose(&mut window, "Start at a time of day");
     assert!(window.app().view().what_if.is_nothing());
+}
+
+/// A zone counts at the times of the flight that is tried.
+#[test]
+fn another_start_time_changes_what_the_preview_finds() {
+    let day = "2026-09-21T";
+    let zones = format!(
+        r#"<zones><keepOut id="town" name="Town, by day" lat="36.4" lon="-84.1" radius="200">
+        <active from="{day}06:00:00Z" until="{day}10:00:00Z"/></keepOut></zones><mainPlan "#
+    );
+    let mut window = opened(&SQUARE.replacen("<mainPlan ", &zones, 1));
+    assert!(window.errors().is_empty(), "{:?}", window.errors());
+    choose(&mut window, "Start at a time of day");
+    for (minutes, is_over) in [(11.0 * 60.0, true), (7.0 * 60.0, false)] {
+        slide(&mut window, "UTC", minutes);
+        window.until("the review", |app| app.analysis().what_if_problems().is_some());
+        let found = window.app().analysis().what_if_problems().unwrap();
+        assert_eq!(found.iter().any(|problem| problem.code == "zone-expired"), is_over, "{minutes}");
+        assert_eq!(window.shows("The review finds nothing more in this world"), !is_over, "{minutes}");
+    }
 }
 
 #[test]

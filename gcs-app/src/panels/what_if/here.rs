@@ -29,7 +29,7 @@ pub fn cause_name(cause: Cause) -> &'static str {
 pub fn reach_name(reach: Reach) -> &'static str {
     match reach {
         Reach::Good => "reached",
-        Reach::Tight => "reached on the reserve",
+        Reach::Tight => "just reached",
         Reach::Out => "not reached",
     }
 }

@@ -5,9 +5,9 @@ use super::here::{cause_name, reach_name};
 use crate::forecast::Alarm;
 use crate::units::{self, Units};
 use aircraft::Wind;
-use flight_exec::rehearse::{Diversion, Glide, Glided, Powered, Reach, WhatIf};
+use flight_exec::rehearse::{Diversion, Glide, Glided, Powered, Reach, TrackPoint, WhatIf};
 use flight_exec::review::Margins;
-use flight_plan::{Cause, FlightPlan, Id, VariableValue};
+use flight_plan::{Cause, FlightPlan, Runway, VariableValue};
 
 /// A wind: `8.0 m/s from 240°`, or `calm`.
 fn wind(wind: Wind, units: Units) -> String {
@@ -73,55 +73,96 @@ fn value_in_words(value: &VariableValue, unit: &str) -> String {
     }
 }
 
-/// What would happen after an alarm: what counts first, then the rest.
+/// What would happen after an alarm: first, in one sentence, whether the runway is reached; then what else there is to know.
 pub fn diversion(diversion: &Diversion, flown: &FlightPlan, units: Units) -> Vec<String> {
-    let margins = Margins::default();
-    let verdict = reach_name(diversion.reach(margins.glide_m, margins.energy_share));
     let alarm = cause_name(diversion.cause);
     let Some((plan, runway)) = &diversion.plan else {
         return vec![format!("{alarm}: no emergency plan answers here. The gateway's Safe mode decides.")];
     };
-    let mut lines = vec![format!("{alarm}: {}, runway {runway}: {verdict}", flown.label(plan))];
-    let glided = diversion.glided.as_ref().map(|flown| glided(flown, runway, units));
-    let glide = diversion.glide.as_ref().map(|g| glide(g, margins.glide_m, units));
-    let powered = match &diversion.powered {
-        Ok(flown) => powered(flown),
-        Err(why) => format!("Not flown: {why}."),
+    let margins = Margins::default();
+    let reach = diversion.reach(margins.glide_m, margins.energy_share);
+    let (plan, is_reached) = (flown.label(plan), format!("{runway} is {}", reach_name(reach)));
+    let glide = diversion.glide.as_ref();
+    let counts = match (&diversion.powered, &diversion.glided) {
+        (Err(why), _) => format!("{plan} is not flown: {why}."),
+        (Ok(_), Some(glided)) => {
+            let how = without_engine(glided, glide, (plan, flown.runway(runway)), units);
+            format!("{is_reached} without the engine{how}.")
+        }
+        (Ok(powered), None) => format!("{is_reached} on {plan}{}.", with_engine(powered)),
     };
-    match diversion.cause {
-        Cause::Engine => lines.extend(glided.into_iter().chain(glide).chain([powered])),
-        _ => lines.extend([powered].into_iter().chain(glide)),
-    }
-    lines
+    let just = (reach == Reach::Tight).then(|| just(diversion.cause, &margins, units));
+    let ran = diversion.powered.as_ref().ok().filter(|_| diversion.glided.is_some());
+    let ran = ran.map(|powered| format!("With an engine that runs: {plan}{}.", with_engine(powered)));
+    let glide = glide.map(|glide| calculated(glide, margins.glide_m, units));
+    [format!("{alarm}: {counts}")].into_iter().chain(just).chain(glide).chain(ran).collect()
 }
 
-fn powered(flown: &Powered) -> String {
-    let end = format!("{}, {:.0} % energy left", units::duration(flown.time_s), flown.battery_left * 100.0);
+/// What is meant by that word.
+fn just(cause: Cause, margins: &Margins, units: Units) -> String {
+    match cause {
+        Cause::Engine => {
+            format!("Just: less than {} of height is to spare.", units.altitude().show(margins.glide_m))
+        }
+        _ => format!("Just: less than {:.0} % energy is to spare.", margins.energy_share * 100.0),
+    }
+}
+
+/// Behind the word whether the runway is reached: how the plan ends that is flown with an engine.
+fn with_engine(flown: &Powered) -> String {
+    let end =
+        format!("after {}, {:.0} % energy left", units::duration(flown.time_s), flown.battery_left * 100.0);
     match &flown.cut_short {
-        _ if flown.landed => format!("With the engine: on the runway after {end}."),
-        Some(why) => format!("With the engine: {why}."),
-        None => format!("With the engine: it ends in the air after {end}."),
+        _ if flown.landed => format!(", {end}"),
+        Some(why) => format!(": {why}"),
+        None => format!(": it ends in the air {end}"),
     }
 }
 
-fn glided(flown: &Glided, runway: &Id, units: Units) -> String {
+/// The same of a plan that is flown without the engine.
+fn without_engine(
+    flown: &Glided,
+    glide: Option<&Glide>,
+    (plan, runway): (&str, Option<&Runway>),
+    units: Units,
+) -> String {
     let time = units::duration(flown.time_s);
-    if flown.missed_m <= 0.0 {
-        return format!("Flown without the engine: on runway {runway} after {time}.");
+    if flown.missed_m > 0.0 {
+        let missed = units.distance().show(flown.missed_m);
+        return format!(": on {plan} it comes down {missed} beside the runway after {time}");
     }
-    let missed = units.distance().show(flown.missed_m);
-    format!("Flown without the engine: it comes down {missed} beside runway {runway} after {time}.")
+    let part = match glide.filter(|glide| glide.along_plan).map(|glide| glide.reach(0.0)) {
+        Some(Reach::Out) => "on a part of",
+        Some(_) => "along",
+        None => "on",
+    };
+    let height = runway.and_then(|runway| height_at_threshold_m(flown, runway));
+    let height = height.map(|m| format!(", {} above the threshold", units.altitude().show(m)));
+    format!(" {part} {plan}{}, after {time}", height.unwrap_or_default())
 }
 
-fn glide(glide: &Glide, reserve_m: f64, units: Units) -> String {
-    let way = if glide.along_plan { "Glide along the plan" } else { "Glide straight to the runway" };
+/// So near to the threshold it is passed, metres.
+const AT_THRESHOLD_M: f64 = 100.0;
+
+/// How high the threshold is passed; `None`: it is not.
+fn height_at_threshold_m(flown: &Glided, runway: &Runway) -> Option<f64> {
+    let away_m = |at: &TrackPoint| at.position.distance_m(runway.threshold);
+    let nearest = flown.track.iter().min_by(|a, b| away_m(a).total_cmp(&away_m(b)))?;
+    let height_m = nearest.altitude_amsl_m - runway.elevation_amsl_m;
+    (away_m(nearest) < AT_THRESHOLD_M).then_some(height_m.max(0.0))
+}
+
+/// What a glide comes to that is worked out beside the flight.
+fn calculated(glide: &Glide, reserve_m: f64, units: Units) -> String {
+    let way =
+        if glide.along_plan { "A glide along all of the plan" } else { "A glide straight to the runway" };
     let height = units.altitude();
     if glide.hill.is_some() {
         return format!("{way}: it runs into a hill.");
     }
     match glide.reach(reserve_m) {
         _ if !glide.time_s.is_finite() => format!("{way}: it does not get there against the wind."),
-        Reach::Out => format!("{way}: ends before it, {} too low.", height.show(-glide.margin_m)),
+        Reach::Out => format!("{way}: ends before the runway, {} too low.", height.show(-glide.margin_m)),
         _ => format!(
             "{way}: there after {}, {} above the threshold.",
             units::duration(glide.time_s),
@@ -134,6 +175,7 @@ fn glide(glide: &Glide, reserve_m: f64, units: Units) -> String {
 mod tests {
     use super::*;
     use flight_exec::rehearse::GlidePoint;
+    use geometry::LatLon;
 
     #[test]
     fn what_is_otherwise_is_said_and_nothing_else() {
@@ -156,45 +198,115 @@ mod tests {
         assert_eq!(words(&aloft), expected, "from below");
     }
 
-    #[test]
-    fn a_way_out_says_what_counts_first() {
-        let start =
-            GlidePoint { time_s: 0.0, position: geometry::LatLon::new(0.0, 0.0), altitude_amsl_m: 500.0 };
-        let glide = Glide { along_plan: false, path: vec![start], time_s: 95.0, margin_m: -40.0, hill: None };
-        let mut found = Diversion {
+    /// The plan of the alarm, with its runway.
+    fn plan() -> FlightPlan {
+        let text = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer">
+            <runways><runway id="R05" lat="46" lon="9" elevation="300" heading="50" length="400"/></runways>
+            <mainPlan/><emergencyPlans><emergencyPlan id="return" name="Return home" runway="R05"/></emergencyPlans>
+            </flightPlan>"#;
+        flight_plan::read(text.as_bytes()).plan
+    }
+
+    fn point(lon: f64, altitude_amsl_m: f64) -> TrackPoint {
+        TrackPoint {
+            time_s: 0.0,
+            position: LatLon::new(46.0, lon),
+            altitude_amsl_m,
+            airspeed_mps: 16.0,
+            passage: None,
+            iteration: 0,
+        }
+    }
+
+    fn words(found: &Diversion) -> Vec<String> {
+        diversion(found, &plan(), Units::Si)
+    }
+
+    /// The engine fails 500 m up: it is down on the runway after 1:30, over whose threshold it comes 12 m high.
+    fn engine_fails() -> Diversion {
+        let start = GlidePoint { time_s: 0.0, position: LatLon::new(46.0, 8.9), altitude_amsl_m: 500.0 };
+        let glide = Glide { along_plan: true, path: vec![start], time_s: 95.0, margin_m: 40.0, hill: None };
+        let track = vec![point(8.99, 380.0), point(9.0001, 312.0), point(9.002, 300.0)];
+        Diversion {
             time_s: 10.0,
             cause: Cause::Engine,
             leg: "a".into(),
             plan: Some(("return".into(), "R05".into())),
-            powered: Err("the aircraft has not taken off".into()),
+            powered: Ok(Powered {
+                track: Vec::new(),
+                time_s: 200.0,
+                battery_left: 0.62,
+                landed: true,
+                cut_short: None,
+            }),
             glide: Some(glide),
-            glided: Some(Glided { track: Vec::new(), time_s: 90.0, missed_m: 480.0 }),
-        };
-        let words = |found: &Diversion| diversion(found, &FlightPlan::default(), Units::Si);
+            glided: Some(Glided { track, time_s: 90.0, missed_m: 0.0 }),
+        }
+    }
+
+    /// Which of three answers counts was not to be seen.
+    #[test]
+    fn an_engine_failure_says_first_whether_the_runway_is_reached_how_high_and_when() {
+        let mut found = engine_fails();
         assert_eq!(
             words(&found),
             [
-                "Engine failure: return, runway R05: not reached",
-                "Flown without the engine: it comes down 0.5 km beside runway R05 after 1:30.",
-                "Glide straight to the runway: ends before it, 40 m too low.",
-                "Not flown: the aircraft has not taken off."
+                "Engine failure: R05 is reached without the engine along Return home, 12 m above the threshold, after 1:30.",
+                "A glide along all of the plan: there after 1:35, 40 m above the threshold.",
+                "With an engine that runs: Return home, after 3:20, 62 % energy left.",
             ]
         );
-        found.cause = Cause::Link;
-        assert!(words(&found)[1].starts_with("Not flown"), "an engine that runs is used");
-        let flown =
-            Powered { track: Vec::new(), time_s: 200.0, battery_left: 0.62, landed: true, cut_short: None };
-        found.powered = Ok(flown.clone());
+        if let Some(glide) = &mut found.glide {
+            glide.margin_m = -480.0;
+        }
         assert_eq!(
-            words(&found)[..2],
+            words(&found)[..3],
             [
-                "Link lost: return, runway R05: reached",
-                "With the engine: on the runway after 3:20, 62 % energy left."
+                "Engine failure: R05 is just reached without the engine on a part of Return home, 12 m above the threshold, \
+                 after 1:30.",
+                "Just: less than 15 m of height is to spare.",
+                "A glide along all of the plan: ends before the runway, 480 m too low.",
             ]
         );
-        found.powered = Ok(Powered { landed: false, ..flown });
-        assert_eq!(words(&found)[1], "With the engine: it ends in the air after 3:20, 62 % energy left.");
+        if let Some(glided) = &mut found.glided {
+            glided.missed_m = 480.0;
+        }
+        assert_eq!(
+            words(&found)[0],
+            "Engine failure: R05 is not reached without the engine: on Return home it comes down 0.5 km beside the runway \
+             after 1:30."
+        );
+        (found.powered, found.glided) = (Err("the aircraft has not taken off".into()), None);
+        assert_eq!(
+            words(&found)[0],
+            "Engine failure: Return home is not flown: the aircraft has not taken off."
+        );
         found.plan = None;
         assert!(words(&found)[0].contains("Safe mode"));
+    }
+
+    #[test]
+    fn a_way_out_with_the_engine_says_when_it_lands_and_with_how_much_energy() {
+        let powered = |landed, battery_left| {
+            let powered = engine_fails().powered.map(|flown| Powered { landed, battery_left, ..flown });
+            words(&Diversion { cause: Cause::Link, powered, glided: None, ..engine_fails() })
+        };
+        assert_eq!(
+            powered(true, 0.62),
+            [
+                "Link lost: R05 is reached on Return home, after 3:20, 62 % energy left.",
+                "A glide along all of the plan: there after 1:35, 40 m above the threshold.",
+            ]
+        );
+        assert_eq!(
+            powered(true, 0.04)[..2],
+            [
+                "Link lost: R05 is just reached on Return home, after 3:20, 4 % energy left.",
+                "Just: less than 5 % energy is to spare.",
+            ]
+        );
+        let in_the_air =
+            "Link lost: R05 is not reached on Return home: it ends in the air after 3:20, 62 % energy left.";
+        assert_eq!(powered(false, 0.62)[0], in_the_air);
     }
 }
