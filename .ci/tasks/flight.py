@@ -42,8 +42,7 @@ def emergency_and_back(trial: Trial) -> None:
     window.click("Return to the main plan at*", BUTTON)
     # what would follow is looked at first
     window.wait_until_shown("Flies next: side")
-    window.give("Return to the main plan at*", gone="EMERGENCY: flying return")
-    window.wait_until_shown("circuit ▸ side")
+    window.hold("Return to the main plan at*", until="circuit ▸ side", which=-1)
     window.kill()
     events = recorded(trial)
     started = next(event for event in events if event["event"] == "emergency-started")

@@ -92,24 +92,12 @@ class Window:
         xdotool("mousemove", *start, "sleep", 0.2, "mousedown", 1, "sleep", 0.2)
         xdotool("mousemove", *half, "sleep", 0.2, "mousemove", *end, "sleep", 0.3, "mouseup", 1, "sleep", 0.2)
 
-    def hold(self, name: str, until: str) -> None:
+    def hold(self, name: str, until: str, which: int = 0) -> None:
         """Keeps a button pressed until something is shown."""
         self.gestures += 1
-        xdotool("mousemove", *self.find(name).middle, "sleep", 0.1, "mousedown", 1)
+        xdotool("mousemove", *self.find(name, BUTTON, which).middle, "sleep", 0.1, "mousedown", 1)
         try:
             self.wait_until_shown(until)
-        finally:
-            xdotool("mouseup", 1)
-
-    def give(self, name: str, gone: str) -> None:
-        """Clicks the last button of this name, and holds it where it asks for that, until something isn't shown any more."""
-        self.click(name, BUTTON, which=-1)
-        wait_for(f"an answer to {name!r}", lambda: not self.shows(gone) or self.shows("hold it"), self.told)
-        if not self.shows(gone):
-            return
-        xdotool("mousedown", 1)
-        try:
-            wait_for(f"the end of {gone!r}", lambda: not self.shows(gone), self.told)
         finally:
             xdotool("mouseup", 1)
 

@@ -51,14 +51,15 @@ impl App {
         for vehicle in self.vehicles.due_for_plan(now_s) {
             self.call(&vehicle, READ_ABOARD, Call::PlanAboard, now_s);
         }
+        // what somebody waits for comes first: one question at a time
+        for (vehicle, command) in self.vehicles.due_to_look_ahead(now_s) {
+            self.ask_what_follows(&vehicle, command, now_s);
+        }
         for vehicle in self.vehicles.due_for_way(now_s) {
             let ticket = self.call(&vehicle, LOOK_AHEAD, Call::Foresee(None), now_s);
             if let (Some(vehicle), Some(ticket)) = (self.vehicles.get_mut(&vehicle), ticket) {
                 vehicle.outlook.asked_which_way(ticket, now_s);
             }
-        }
-        for (vehicle, command) in self.vehicles.due_to_look_again(now_s) {
-            self.ask_what_follows(&vehicle, command, now_s);
         }
         self.compare_with_aboard();
     }
@@ -157,11 +158,14 @@ impl App {
         }
     }
 
-    /// A proposal is shown beside the plan aboard.
+    /// A proposal is shown beside the plan aboard, and so is a plan that is edited in flight.
     fn compare_with_aboard(&mut self) {
         self.aboard.receive();
         let vehicle = self.vehicles.shown();
-        if let (Some(aboard), true) = (&vehicle.aboard, vehicle.proposal.is_some()) {
+        let Some(aboard) = &vehicle.aboard else { return };
+        let shown = self.analysis.hash_of(self.document.version());
+        let is_another = vehicle.is_airborne() && shown.is_some_and(|shown| *shown != *aboard.hash);
+        if is_another || vehicle.proposal.is_some() {
             self.aboard.ask(aboard, vehicle.autopilot());
         }
     }

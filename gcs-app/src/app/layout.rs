@@ -64,7 +64,7 @@ impl App {
             .exact_size(42.0)
             .frame(frame.inner_margin(egui::Margin::symmetric(10, 4)))
             .show(ui, |ui| bar::show(ui, &scene, &fittings, queue));
-        let is_read = strips(ui, &scene, queue);
+        let is_read = strips(ui, &scene, dock.place_to_read(), queue);
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
             let whole = ui.max_rect();
             let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue), is_read);
@@ -93,14 +93,14 @@ impl App {
     }
 }
 
-/// What takes its place before map and panels. True: something is read beside the map.
-fn strips(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) -> bool {
+/// What takes its place before map and panels. True: something is read beside the map, so wide if that is given.
+fn strips(ui: &mut Ui, scene: &Scene<'_>, width: Option<f32>, queue: &mut Queue) -> bool {
     // before all that may take its place
     commands(ui, scene, queue);
     emergency::show(ui, scene, queue);
     story::show(ui, scene, queue);
     announcements(ui, scene, queue);
-    consider::show(ui, scene, queue) || push::show(ui, scene, queue)
+    consider::show(ui, scene, width, queue) || push::show(ui, scene, width, queue)
 }
 
 /// What lies over map and panels until something is decided, and the tour.

@@ -302,8 +302,12 @@ impl App {
 
     fn consider(&mut self, name: &VehicleName, command: PlanCommand, now_s: f64) {
         let Some(vehicle) = self.vehicles.get_mut(name) else { return };
-        vehicle.outlook.consider(command.clone());
-        self.ask_what_follows(name, command, now_s);
+        let leg = vehicle.current_leg().cloned();
+        vehicle.outlook.consider(command.clone(), leg);
+        // while another such question is answered, it is asked behind that one
+        if vehicle.may_look_ahead() || vehicle.open_link().is_none() {
+            self.ask_what_follows(name, command, now_s);
+        }
     }
 
     /// Asks what would follow the command that is considered.

@@ -26,6 +26,8 @@ pub struct Content<'a> {
     crowded: BTreeSet<PanelId>,
     closed: Vec<PanelId>,
     map_rect: Option<Rect>,
+    /// What the panels of the plan take.
+    plan_rect: Option<Rect>,
     stops: Vec<Stop>,
 }
 
@@ -46,6 +48,7 @@ impl<'a> Content<'a> {
             crowded: BTreeSet::new(),
             closed: Vec::new(),
             map_rect: None,
+            plan_rect: None,
             stops: Vec::new(),
         }
     }
@@ -68,6 +71,11 @@ impl<'a> Content<'a> {
 
     pub(super) fn map_rect(&self) -> Option<Rect> {
         self.map_rect
+    }
+
+    /// Where the panels of the plan are, if any is drawn.
+    pub(super) fn plan_rect(&self) -> Option<Rect> {
+        self.plan_rect
     }
 
     /// Has the panel something to show?
@@ -162,6 +170,9 @@ impl Behavior<PanelId> for Content<'_> {
             self.map_rect = Some(ui.max_rect());
             self.map.show(ui, self.scene, self.queue);
             return UiResponse::None;
+        }
+        if self.is_of_the_plan(id) {
+            self.plan_rect = Some(self.plan_rect.map_or(ui.max_rect(), |rect| rect | ui.max_rect()));
         }
         let frame = Frame::new().fill(theme::of(ui).panel).inner_margin(MARGIN);
         tour::mark(ui.ctx(), id, ui.max_rect());

@@ -10,8 +10,6 @@ use std::collections::HashMap;
 
 /// The least the map gets before its neighbours shrink, screen points.
 pub const LEAST: Vec2 = vec2(240.0, 200.0);
-/// The same while something beside it is read with the map.
-pub const READ: Vec2 = vec2(400.0, 200.0);
 /// A share that is no length: that of a tile that was just dropped here.
 const FRESH: f32 = 1.0;
 

@@ -24,8 +24,6 @@ pub const MAP: PanelId = "map";
 const STORAGE_KEY: &str = "layout";
 /// Between two tiles, screen points.
 const GAP: f32 = 1.0;
-/// A dock that is narrower has no room for a map that is read and panels on both sides of it, screen points.
-const ROOMY: f32 = 1016.0;
 /// In a dock that is lower a flight has no room for panels that it does not need, screen points.
 const HIGH: f32 = 560.0;
 /// Height of the titles, screen points.
@@ -42,6 +40,8 @@ pub struct Dock {
     grown: Option<f32>,
     /// The map and the panels that were drawn last.
     stops: Vec<Stop>,
+    /// What the panels of the plan took beside the map when they were drawn last, screen points; `None`: they stand elsewhere.
+    beside_map: Option<f32>,
 }
 
 impl Dock {
@@ -58,6 +58,7 @@ impl Dock {
             wanted: Default::default(),
             grown: None,
             stops: Vec::new(),
+            beside_map: None,
         };
         // a test shows that it is sound
         let sound = Self::of(&Stored::default_of(panels), panels);
@@ -71,7 +72,7 @@ impl Dock {
         let tree = stored.tree(&known)?;
         // what is no factor of ours is nobody's
         let grown = stored.grown.filter(|grown| (1.0..=grow::MOST).contains(grown));
-        Some(Self { tree, hidden, wanted: Default::default(), grown, stops: Vec::new() })
+        Some(Self { tree, hidden, wanted: Default::default(), grown, stops: Vec::new(), beside_map: None })
     }
 
     /// Stores the layout for the next run.
@@ -101,21 +102,26 @@ impl Dock {
         }
     }
 
+    /// The width of what is read with the map, if it stands in the place of the plan's panels.
+    pub fn place_to_read(&self) -> Option<f32> {
+        self.beside_map
+    }
+
     /// Draws everything. Returns where the map is, if no other tile is in front of it. `is_read`: something stands beside the dock
-    /// that is read with the map; where there is little room, the map gets that of the plan's panels.
+    /// that is read with the map, in the place of the plan's panels: neither the map nor the flight's values move for it.
     pub fn show(&mut self, ui: &mut Ui, content: &mut Content<'_>, is_read: bool) -> Option<Rect> {
         self.grown = grow::grown(&mut self.tree, ui.available_width(), self.grown, &self.wanted);
-        let is_tight = is_read && ui.available_width() < ROOMY;
+        let left = ui.max_rect().left();
+        let gives_place = is_read && self.beside_map.is_some();
         let is_low = ui.available_height() < HIGH;
         for (tile, panel) in self.panes() {
-            let is_aside =
-                (is_tight && content.is_of_the_plan(panel)) || (is_low && content.gives_way_to_flight(panel));
+            let is_aside = (gives_place && content.is_of_the_plan(panel))
+                || (is_low && content.gives_way_to_flight(panel));
             let is_shown = self.shows(panel) && content.is_relevant(panel) && !is_aside;
             self.tree.set_visible(tile, is_shown);
         }
         if let Some(root) = self.tree.root() {
-            let map = if is_read { fit::READ } else { fit::LEAST };
-            let least = fit::Least { map, panels: content.least_heights() };
+            let least = fit::Least { map: fit::LEAST, panels: content.least_heights() };
             fit::fit(&mut self.tree.tiles, root, ui.available_size(), &least, &mut self.wanted);
         }
         content.begin(&self.tree.tiles);
@@ -124,6 +130,11 @@ impl Dock {
             self.show_panel(panel, false);
         }
         self.stops = content.take_stops();
+        if !is_read {
+            let beside =
+                content.map_rect().zip(content.plan_rect()).filter(|(map, plan)| plan.right() <= map.left());
+            self.beside_map = beside.map(|(map, _)| map.left() - left);
+        }
         content.map_rect()
     }
 

@@ -40,7 +40,7 @@ impl Layer {
             |made| *made == of,
             |wide| {
                 let line = line_of(line, scene.vehicle.trail.points(), (changes, octave));
-                let parts = polyline::parts_of(line, wide, Style::Solid);
+                let parts = polyline::parts_of(line, wide);
                 (of, polyline::shapes(&parts, Stroke::new(2.6, p.flown), Style::Solid, p.halo))
             },
         );

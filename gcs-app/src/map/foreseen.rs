@@ -1,4 +1,4 @@
-//! Paths that are compared: what would follow a command that is considered, and beside a proposal the plan aboard.
+//! Paths that are compared: what would follow a command that is considered, and beside another plan the one aboard.
 
 use super::names::{self, Ground, Name, Rank};
 use super::polyline::{self, Style};
@@ -13,7 +13,7 @@ pub fn draw(sheet: &Sheet<'_>) {
         let path: Vec<LatLon> = foresight.path.iter().map(|point| point.position).collect();
         path_with_name(sheet, &path, "would be flown", p.text);
     }
-    if let (Some(aboard), true) = (scene.aboard, scene.vehicle.proposal.is_some()) {
+    if let Some(aboard) = scene.path_aboard() {
         let path: Vec<LatLon> = aboard.points.iter().map(|point| point.position).collect();
         path_with_name(sheet, &path, "aboard", p.contingency);
     }

@@ -28,8 +28,8 @@ pub const NARROW: f32 = 600.0;
 
 /// From one tool to the next, screen points.
 const TOOL: f32 = 36.0;
-/// From the legend's upper edge to the map's lower one, screen points.
-const LEGEND: f32 = 148.0;
+/// What the legend takes of the map's lower edge, besides its lines, screen points.
+const LEGEND: f32 = 36.0;
 /// Height of the line that names the map's sources, screen points.
 const SOURCES: f32 = 16.0;
 /// Length of the scale bar with its label, screen points.
@@ -51,9 +51,10 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, nam
     }
     if map.width() >= NARROW {
         // beside the tools where they reach down to it
-        let is_beside = toolbar.bottom() > map.bottom() - LEGEND;
+        let lines = lines(scene);
+        let is_beside = toolbar.bottom() > map.bottom() - LEGEND - size_of(lines.len()).y;
         let aside = if is_beside { toolbar.right() - 4.0 - map.left() } else { 0.0 };
-        names.keep_clear(legend(painter, map.with_min_x(map.left() + aside), p));
+        names.keep_clear(legend(painter, map.with_min_x(map.left() + aside), &lines, p));
     }
     let needle = view.rect.right_bottom() - vec2(26.0, 44.0);
     let north_at = Rect::from_min_max(needle - vec2(8.0, 30.0), needle + vec2(8.0, 0.0));
@@ -137,11 +138,18 @@ fn scale(painter: &Painter, view: &View, map: Rect, units: Units, p: &Palette) -
 /// Draws a line of some style from here to there.
 type Line = fn(&Painter, Pos2, Pos2, &Palette);
 
-/// Line styles and what they mean.
-const LINES: [(&str, Line); 7] = [
-    ("planned", |painter, a, b, p| {
-        painter.line_segment([a, b], Stroke::new(2.0, p.accent));
-    }),
+/// The plan that is shown, by what it is beside the one that is flown.
+const PLANNED: Line = |painter, a, b, p| {
+    painter.line_segment([a, b], Stroke::new(2.0, p.accent));
+};
+
+/// The plan aboard, where another one is shown.
+const ABOARD: Line = |painter, a, b, p| {
+    painter.extend(Shape::dashed_line(&[a, b], Stroke::new(2.4, p.contingency), 8.0, 5.0));
+};
+
+/// The lines that are always drawn alike, and what they mean.
+const LINES: [(&str, Line); 6] = [
     ("active", |painter, a, b, p| {
         painter.line_segment([a, b], Stroke::new(3.6, p.active));
     }),
@@ -161,20 +169,33 @@ const LINES: [(&str, Line); 7] = [
         painter.extend(Shape::dashed_line(&[a, b], Stroke::new(1.4, p.accent), 8.0, 5.0));
     }),
 ];
-/// Size of what they take, screen points.
-const LINES_SIZE: Vec2 = vec2(112.0, 16.0 * LINES.len() as f32);
+
+/// All of them, as they are drawn now.
+fn lines(scene: &Scene<'_>) -> Vec<(&'static str, Line)> {
+    let plans = match scene.path_aboard() {
+        Some(_) => vec![("edited plan", PLANNED), ("plan aboard", ABOARD)],
+        None => vec![("planned", PLANNED)],
+    };
+    plans.into_iter().chain(LINES).collect()
+}
+
+/// Size of what so many of them take, screen points.
+fn size_of(lines: usize) -> Vec2 {
+    vec2(112.0, 16.0 * lines as f32)
+}
 
 /// Returns where it is.
-fn legend(painter: &Painter, map: Rect, p: &Palette) -> Rect {
-    let origin = map.left_bottom() + vec2(12.0, -30.0 - LINES_SIZE.y);
-    let plate = Rect::from_min_size(origin, LINES_SIZE).expand2(vec2(6.0, 2.0));
+fn legend(painter: &Painter, map: Rect, lines: &[(&str, Line)], p: &Palette) -> Rect {
+    let size = size_of(lines.len());
+    let origin = map.left_bottom() + vec2(12.0, -30.0 - size.y);
+    let plate = Rect::from_min_size(origin, size).expand2(vec2(6.0, 2.0));
     painter.rect_filled(plate, 4.0, p.panel.gamma_multiply(0.8));
-    draw_lines(painter, origin, p);
+    draw_lines(painter, origin, lines, p);
     plate
 }
 
-fn draw_lines(painter: &Painter, origin: Pos2, p: &Palette) {
-    for (i, (name, line)) in LINES.iter().enumerate() {
+fn draw_lines(painter: &Painter, origin: Pos2, lines: &[(&str, Line)], p: &Palette) {
+    for (i, (name, line)) in lines.iter().enumerate() {
         let y = origin.y + 8.0 + 16.0 * i as f32;
         line(painter, pos2(origin.x, y), pos2(origin.x + 30.0, y), p);
         let (at, font) = (pos2(origin.x + 38.0, y), egui::FontId::proportional(11.0));
@@ -183,12 +204,13 @@ fn draw_lines(painter: &Painter, origin: Pos2, p: &Palette) {
 }
 
 /// On a map without room for it the legend is behind a button.
-fn legend_button(ui: &mut Ui) {
+fn legend_button(ui: &mut Ui, scene: &Scene<'_>) {
     let response = button(ui, "☰", "What the lines mean", false);
     Popup::menu(&response).show(|ui| {
-        let (rect, shown) = ui.allocate_exact_size(LINES_SIZE, Sense::hover());
-        draw_lines(ui.painter(), rect.min, theme::of(ui));
-        let names = LINES.map(|(name, _)| name).join(", ");
+        let lines = lines(scene);
+        let (rect, shown) = ui.allocate_exact_size(size_of(lines.len()), Sense::hover());
+        draw_lines(ui.painter(), rect.min, &lines, theme::of(ui));
+        let names = lines.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
         shown.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Lines: {names}")));
     });
 }
@@ -210,7 +232,7 @@ pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &m
         queue.view(ViewCommand::Fit);
     }
     if map.width() < NARROW {
-        legend_button(&mut column);
+        legend_button(&mut column, scene);
     }
     let follow = |ui: &mut Ui| button(ui, "✈", "Follow the aircraft", scene.view.follow).clicked();
     if scene.vehicle.position.is_some() && follow(&mut column) {

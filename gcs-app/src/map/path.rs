@@ -9,7 +9,7 @@ use crate::command::{PreviewCommand, Queue, Selection};
 use crate::forecast::{Coverage, Line, Passage, Point};
 use crate::jobs::{Taken, Task};
 use crate::map::coverage;
-use crate::panels::{Scene, bar, decision};
+use crate::panels::{Scene, decision};
 use crate::theme::Palette;
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use flight_plan::Id;
@@ -30,8 +30,8 @@ pub struct Layer {
     line: Option<Task<()>>,
 }
 
-/// Colours and style of a line.
-type Look = (Color32, Style, Color32);
+/// Colours of a line and of its halo.
+type Look = (Color32, Color32);
 
 /// Screen points per metre from which single waypoints are drawn.
 const WAYPOINTS_FROM: f64 = 0.015;
@@ -90,20 +90,16 @@ impl Layer {
 
     fn draw_path(&mut self, sheet: &Sheet<'_>) {
         let Sheet { view, scene, p, .. } = *sheet;
-        let (_, standing) = bar::plan_state(scene);
-        // a draft that differs from what is aboard is dashed
-        let is_draft = standing == bar::Standing::Draft && scene.vehicle.active_hash().is_some();
-        let style = if is_draft { Style::Dashed } else { Style::Solid };
         let (octave, line) = line(view, scene);
-        let of = (scene.analysis.forecast_version, octave, (colour(scene, p), style, p.halo));
+        let of = (scene.analysis.forecast_version, octave, (colour(scene, p), p.halo));
         self.path.draw(
             sheet.painter,
             sheet.view,
             |made| *made == of,
             |wide| {
-                let (colour, style, halo) = of.2;
-                let parts = line.map_or(Vec::new(), |line| polyline::parts_of(line, wide, style));
-                (of, polyline::shapes(&parts, Stroke::new(2.0, colour), style, halo))
+                let (colour, halo) = of.2;
+                let parts = line.map_or(Vec::new(), |line| polyline::parts_of(line, wide));
+                (of, polyline::shapes(&parts, Stroke::new(2.0, colour), Style::Solid, halo))
             },
         );
     }

@@ -15,10 +15,9 @@ pub fn visible(line: &[Pos2], screen: Rect) -> Vec<Vec<Pos2>> {
 }
 
 /// The parts of a thinned line for a style: no more than is seen, but with dashes, which would begin elsewhere as the map is moved.
-pub fn parts_of(line: &Line, view: &View, style: Style) -> Vec<Vec<Pos2>> {
+pub fn parts_of(line: &Line, view: &View) -> Vec<Vec<Pos2>> {
     let seen = view.rect.expand(BESIDE);
-    let near = if style == Style::Solid { seen } else { far_around(view.rect) };
-    let on_screen = |part: &[Mercator]| parts(part.iter().map(|m| view.screen(*m)), near);
+    let on_screen = |part: &[Mercator]| parts(part.iter().map(|m| view.screen(*m)), seen);
     line.parts(view.area(seen)).flat_map(on_screen).collect()
 }
 

@@ -6,13 +6,13 @@ use crate::command::{FlyCommand, Queue};
 use crate::state::{Considered, Vehicle};
 use crate::theme;
 use crate::units;
-use egui::{Panel, RichText, ScrollArea, Ui};
+use egui::{RichText, ScrollArea, Ui};
 use flight_exec::{Command, Foresight};
 use flight_plan::Id;
 use usal::contract::GatewayState;
 
-/// Screen points.
-const WIDTH: f32 = 260.0;
+/// Room for the button: what it does is known in more words a moment later, and nothing below moves for that, screen points.
+const BUTTON: f32 = 2.0 * 17.0 + 12.0;
 /// Nearer to the ground is a caution, metres.
 const LOW_M: f64 = 30.0;
 /// What was told so long ago, by the aircraft's clock, is of another place, seconds.
@@ -21,36 +21,37 @@ const OLD_S: f64 = 20.0;
 const MOST_LEGS: usize = 12;
 
 /// Draws what would follow the command that is considered; false: none is.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) -> bool {
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, width: Option<f32>, queue: &mut Queue) -> bool {
     let Some(considered) = scene.vehicle.outlook.considered() else { return false };
-    Panel::right("consider")
-        .exact_size(WIDTH)
-        .resizable(false)
-        .frame(theme::panel(ui).inner_margin(12.0))
-        .show(ui, |ui| body(ui, scene, considered, queue));
+    super::read_beside_map(ui, width, |ui| body(ui, scene, considered, queue));
     true
 }
 
 fn body(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Queue) {
     let p = theme::of(ui);
-    ui.label(RichText::new(format!("{}?", effect(considered, scene.vehicle))).strong().size(16.0));
+    let what = crate::app::plan_label(&considered.command, scene.vehicle);
+    ui.label(RichText::new(format!("{what}?")).strong().size(16.0));
+    // the decision first: it is never scrolled away
     let gone_on =
         considered.command == Command::SkipLeg && considered.has_gone_on(scene.vehicle.current_leg());
+    ui.scope(|ui| {
+        ui.set_min_height(BUTTON);
+        // who is in a hurry holds the button, whatever is known by then
+        ui.add_enabled_ui(!gone_on, |ui| give(ui, scene, considered, queue));
+    });
+    ui.horizontal(|ui| {
+        if ui.button("Cancel").clicked() {
+            queue.fly(FlyCommand::PutAside);
+        }
+        // everything else is looked at again by itself
+        if gone_on && ui.button("Look again").clicked() {
+            queue.fly(FlyCommand::Consider(considered.command.clone()));
+        }
+    });
     if gone_on {
         let text = "⚠ The aircraft is on another leg by now: look again.";
         ui.label(RichText::new(text).color(p.caution));
     }
-    // the decision first: it is never scrolled away
-    ui.horizontal_wrapped(|ui| {
-        // who is in a hurry holds the button, whatever is known by then
-        ui.add_enabled_ui(!gone_on, |ui| give(ui, scene, considered, queue));
-        if ui.button("Look again").clicked() {
-            queue.fly(FlyCommand::Consider(considered.command.clone()));
-        }
-        if ui.button("Cancel").clicked() {
-            queue.fly(FlyCommand::PutAside);
-        }
-    });
     ui.separator();
     match &considered.foresight {
         None => {
@@ -66,18 +67,15 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
     }
 }
 
-/// The command itself: a way with problems, or one that is not known, has to be held.
+/// The command itself. It is always held: what is known of the way changes while it is read, and a button that is to be clicked now
+/// and held a moment later is pressed in vain. Amber, where something is against it or nothing is known.
 fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Queue) {
     let p = theme::of(ui);
     let text = effect(considered, scene.vehicle);
     let is_as_told = since(considered, scene).is_empty();
     let is_clean = matches!(&considered.foresight, Some(Ok(foresight)) if is_as_told && cautions(considered, foresight, scene).is_empty());
-    let given = if is_clean {
-        field::is_pressed(&ui.add(super::primary_button(&text, p)))
-    } else {
-        field::hold_button(ui, &text, p.caution, 0.0)
-    };
-    if given {
+    let colour = if is_clean { p.accent } else { p.caution };
+    if field::hold_button(ui, &text, colour, ui.available_width()) {
         queue.plan(considered.command.clone());
     }
 }
@@ -85,13 +83,14 @@ fn give(ui: &mut Ui, scene: &Scene<'_>, considered: &Considered, queue: &mut Que
 /// What has become of the aircraft since what follows was told, or is about to: who reads it decides about another flight.
 fn since(considered: &Considered, scene: &Scene<'_>) -> Vec<String> {
     let vehicle = scene.vehicle;
+    let again = if vehicle.open_link().is_some() { ": looking again" } else { "" };
     let age_s = considered.age_s(scene.now_s, vehicle.clock_s(scene.now_s));
     let old = age_s.filter(|age_s| *age_s > OLD_S);
-    let old = old.map(|age_s| format!("Looked at {} ago: look again", units::duration(age_s)));
-    // another leg is not skipped at all: that is said above the button
+    let old = old.map(|age_s| format!("Looked at {} ago{again}", units::duration(age_s)));
+    // another leg is not skipped at all: that is said at the button
     let is_elsewhere =
         considered.command != Command::SkipLeg && considered.has_gone_on(vehicle.current_leg());
-    let elsewhere = is_elsewhere.then(|| "The aircraft is on another leg by now: look again".to_owned());
+    let elsewhere = is_elsewhere.then(|| format!("The aircraft is on another leg by now{again}"));
     let state = vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
     let landing = (state == Some(GatewayState::Land)).then(|| {
         let agl =

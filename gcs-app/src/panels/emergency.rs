@@ -4,39 +4,71 @@ use super::{Scene, field, flight};
 use crate::command::Queue;
 use crate::theme;
 use crate::units;
-use egui::{Color32, ComboBox, Frame, Margin, Panel, RichText, Ui};
-use flight_exec::Command;
+use egui::{Align, Button, Color32, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, Ui};
+use flight_exec::{Command, Phase};
 use flight_plan::{Cause, EmergencyPlan, FlightPlan, Id, Section};
+use usal::contract::GatewayState;
 
-/// Draws the banner, while an emergency plan is being flown.
+/// Height of the strip, screen points.
+const STRIP: f32 = 34.0;
+/// Most of it that the way back takes.
+const WAY_BACK: f32 = 0.55;
+
+/// Draws the banner while an emergency plan is being flown. Its room is kept for as long as the aircraft is in the air, and says what
+/// is flown: nothing moves under the pointer when an emergency begins.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let Some(flown) = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency.as_ref()) else { return };
-    let fill = theme::of(ui).warning;
-    Panel::top("emergency").frame(Frame::new().fill(fill).inner_margin(Margin::symmetric(10, 6))).show(
-        ui,
-        |ui| {
-            steady(ui, flown, |ui| {
-                let text = RichText::new(sentence(scene, flown)).strong().color(on(fill));
-                ui.label(text);
-                if !has_come_down(scene) {
-                    way_back(ui, scene, queue);
-                }
+    let flown = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency.as_ref());
+    if flown.is_none() && !scene.vehicle.is_airborne() {
+        return;
+    }
+    let p = theme::of(ui);
+    let fill = if flown.is_some() { p.warning } else { p.panel };
+    let frame = Frame::new().fill(fill).inner_margin(Margin::symmetric(10, 0));
+    Panel::top("emergency").exact_size(STRIP).frame(frame).show(ui, |ui| {
+        let (text, colour) = match flown {
+            Some(flown) => (RichText::new(sentence(scene, flown)).strong(), on(fill)),
+            None => match led_otherwise(scene) {
+                Some(how) => (RichText::new(how), p.caution),
+                None => (RichText::new(as_planned(scene)), p.weak),
+            },
+        };
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if flown.is_some() && !has_come_down(scene) {
+                way_back(ui, scene, queue);
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let whole = text.text().to_owned();
+                ui.add(Label::new(text.color(colour)).truncate()).on_hover_text(whole);
             });
-        },
-    );
+        });
+    });
 }
 
-/// As high as it was at most since this plan is flown, in a window of this width: where its text gets shorter, nothing below moves
-/// away under the pointer.
-fn steady(ui: &mut Ui, flown: &Id, show: impl FnOnce(&mut Ui)) {
-    let id = egui::Id::unique("height of the emergency's banner");
-    let width = ui.available_width();
-    let kept = ui.data(|d| d.get_temp::<(Id, f32, f32)>(id));
-    let least =
-        kept.filter(|(plan, of, _)| plan == flown && *of == width).map_or(0.0, |(_, _, height)| height);
-    ui.set_min_height(least);
-    let height = ui.horizontal_wrapped(show).response.rect.height();
-    ui.data_mut(|d| d.insert_temp(id, (flown.clone(), width, height.max(least))));
+/// `⚠ Manual: the pilot switched to FBWA`: the plan does not lead the aircraft, though it is in force.
+fn led_otherwise(scene: &Scene<'_>) -> Option<String> {
+    use GatewayState::{Directed, Hold, Manual, SafeApproach, SafeHold, SafeLand, SafeReturn};
+    let gateway = &scene.vehicle.gateway.as_ref()?.value;
+    let is_led_otherwise = match gateway.state {
+        Directed | Manual | SafeApproach | SafeHold | SafeLand | SafeReturn => true,
+        Hold => scene.vehicle.phase() != Phase::Holding,
+        _ => false,
+    };
+    is_led_otherwise.then(|| format!("⚠ {:?}: {}", gateway.state, gateway.cause))
+}
+
+/// `Flying Departure ▸ Climb in the hold · in an emergency: Return home`.
+fn as_planned(scene: &Scene<'_>) -> String {
+    let vehicle = scene.vehicle;
+    let status = vehicle.status.as_ref().map(|status| &status.value);
+    let place = status.and_then(|status| status.place.as_ref());
+    let does = if vehicle.phase() == Phase::Holding { "Holding on" } else { "Flying" };
+    let does = place.map_or_else(
+        || "In the air".to_owned(),
+        |at| format!("{does} {} ▸ {}", vehicle.name_of(&at.stage), vehicle.name_of(&at.leg)),
+    );
+    let answer = status.and_then(|status| status.emergency_in_force.as_ref());
+    let answer = answer.map(|plan| format!(" · in an emergency: {}", vehicle.name_of(plan)));
+    format!("{does}{}", answer.unwrap_or_default())
 }
 
 /// What can be read on a warning's colour.
@@ -44,7 +76,8 @@ fn on(fill: Color32) -> Color32 {
     if fill.intensity() > 0.5 { Color32::BLACK } else { Color32::WHITE }
 }
 
-/// `EMERGENCY: flying Return home, because the engine failed, to runway 27, lands in 6:20`; once it is down, where it lies.
+/// `EMERGENCY: flying Return home, lands in 6:20, to runway 27, because the engine failed`; once it is down, where it lies. In a
+/// narrow window the end is cut.
 fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     let plan = scene.vehicle.aboard.as_ref().and_then(|a| plan_named(&a.plan, flown));
     let name = plan.map(|plan| plan.name.as_str()).filter(|name| !name.is_empty()).unwrap_or(flown.as_str());
@@ -57,7 +90,7 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     let clock_s = scene.vehicle.clock_s(scene.now_s);
     let lands = clock_s.and_then(|aircraft_s| scene.vehicle.outlook.lands_in_s(aircraft_s));
     let lands = lands.map_or_else(String::new, |s| format!(", lands in {}", units::duration(s)));
-    format!("⛔ EMERGENCY: flying {name}{cause}{runway}{lands}")
+    format!("⛔ EMERGENCY: flying {name}{lands}{runway}{cause}")
 }
 
 /// `, 2.5 km from runway 27`.
@@ -117,10 +150,8 @@ fn way_back(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let id = ui.make_persistent_id("way back");
     let chosen: Option<Id> = ui.data(|d| d.get_temp(id));
     let Some(leg) = chosen.filter(|leg| main.contains(&leg)).or_else(|| way_back_to(scene)) else { return };
-    let back = ui.button(format!("Return to the main plan at {}", scene.vehicle.name_of(&leg)));
-    if field::is_pressed(&back) {
-        queue.consider(Command::ReturnToMain { leg: leg.clone() });
-    }
+    // a long name leaves the sentence its room
+    let most = ui.available_width() * WAY_BACK;
     let combo = ComboBox::from_id_salt("way back").selected_text("another leg").width(96.0);
     let shown = combo.show_ui(ui, |ui| {
         for other in main {
@@ -129,5 +160,14 @@ fn way_back(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             }
         }
     });
+    let taken = shown.response.rect.width();
     shown.response.on_hover_text("Return to the main plan at another leg");
+    let text = format!("Return to the main plan at {}", scene.vehicle.name_of(&leg));
+    let back = ui.scope(|ui| {
+        ui.set_max_width(most - taken);
+        ui.add(Button::new(text.as_str()).truncate())
+    });
+    if field::is_pressed(&back.inner.on_hover_text(text)) {
+        queue.consider(Command::ReturnToMain { leg });
+    }
 }

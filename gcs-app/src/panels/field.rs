@@ -2,9 +2,9 @@
 
 use crate::theme;
 use crate::units::Unit;
-use egui::text::{CCursor, CCursorRange};
+use egui::text::{CCursor, CCursorRange, LayoutJob, TextFormat};
 use egui::text_edit::TextEditState;
-use egui::{Color32, Context, DragValue, Id, Key, Response, RichText, Sense, Stroke, Ui, vec2};
+use egui::{Color32, Context, DragValue, FontId, Id, Key, Response, RichText, Sense, Stroke, Ui, vec2};
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
 
@@ -311,11 +311,11 @@ const LEAST_HOLD: f32 = 80.0;
 pub const HOLD_S: f64 = 1.0;
 
 /// A button for something dangerous, named by its effect: it works only when held for [`HOLD_S`],
-/// with the pointer or with the space bar. True in the frame in which it has been held long enough.
+/// with the pointer or with the space bar, and says so. True in the frame in which it has been held long enough.
 pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool {
     // a long name takes several lines where there is no room for one
     let room = (ui.max_rect().width() - 24.0).max(LEAST_HOLD);
-    let galley = ui.painter().layout(text.into(), egui::FontId::proportional(13.5), colour, room);
+    let galley = ui.painter().layout_job(to_hold(text, colour, room));
     let size = vec2((galley.size().x + 24.0).max(width), (galley.size().y + 12.0).max(HOLD_HEIGHT));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let name = format!("{text} (hold)");
@@ -335,20 +335,28 @@ pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool
     done.set_width(rect.width() * progress.min(1.0) as f32);
     painter.rect_filled(done, 5.0, colour.gamma_multiply(0.45));
     painter.galley_with_override_text_color(
-        rect.center() - galley.size() / 2.0,
+        rect.center() - vec2(0.0, galley.size().y / 2.0),
         galley,
         if progress > 0.0 { p.text } else { colour },
     );
     if was_let_go(ui, response.id) {
         response.show_tooltip_text(format!("Nothing was done: hold it. Keep it pressed for {HOLD_S:.0} s."));
-    } else {
-        response.on_hover_text(format!("Hold for {HOLD_S:.0} s"));
     }
     (1.0..f64::INFINITY).contains(&progress)
 }
 
-/// Seconds for which it is said that a hold was too short.
-const TOO_SHORT_S: f64 = 3.0;
+/// The text of a button, and behind it in small letters how long it is held: in one piece, also where there is no room in the line.
+fn to_hold(text: &str, colour: Color32, room: f32) -> LayoutJob {
+    let mut job = LayoutJob::simple(text.into(), FontId::proportional(13.5), colour, room);
+    let small =
+        TextFormat { font_id: FontId::proportional(11.0), valign: egui::Align::Center, ..Default::default() };
+    job.halign = egui::Align::Center;
+    job.append(&format!("hold\u{a0}{HOLD_S:.0}\u{a0}s"), 8.0, TextFormat { color: colour, ..small });
+    job
+}
+
+/// Seconds for which it is said that a hold was too short: long enough to be read by who looked elsewhere.
+const TOO_SHORT_S: f64 = 6.0;
 
 fn too_short(id: Id) -> Id {
     id.with("too short")

@@ -335,7 +335,7 @@ pub fn can_rewind(scene: &Scene<'_>) -> bool {
 }
 
 /// Least width of the emergency's button, screen points: most names fit, and what is beside it stays in its place.
-const EMERGENCY: f32 = 240.0;
+const EMERGENCY: f32 = 290.0;
 
 /// Which emergency plan, then hold: named by its effect.
 fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {

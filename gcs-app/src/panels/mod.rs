@@ -343,6 +343,12 @@ impl<'a> Scene<'a> {
             _ => None,
         }
     }
+    /// The path of the plan aboard, where it is flown while another plan is shown, or one is proposed.
+    pub fn path_aboard(&self) -> Option<&'a Forecast> {
+        let shown = self.analysis.hash_of(self.document.version());
+        let is_another = self.vehicle.is_airborne() && self.vehicle.active_hash().as_deref() != shown;
+        self.aboard.filter(|_| is_another || self.vehicle.proposal.is_some())
+    }
     /// The way out after the alarm that is raised, as soon as one is known.
     pub fn diversion(&self) -> Option<&'a Diversion> {
         self.analysis.diversion().filter(|_| self.view.alarm_at_cursor().is_some())
@@ -421,6 +427,18 @@ impl<'a> Scene<'a> {
 pub fn group_title(ui: &mut Ui, text: &str) {
     let weak = theme::of(ui).weak;
     ui.label(RichText::new(text.to_uppercase()).size(10.5).color(weak).strong());
+}
+
+/// Width of what is read beside the map where the plan's panels have no place beside it, screen points.
+const READ: f32 = 260.0;
+
+/// What is read with the map, in the place of the plan's panels, which is so wide.
+fn read_beside_map(ui: &mut Ui, width: Option<f32>, show: impl FnOnce(&mut Ui)) {
+    egui::Panel::left("read beside the map")
+        .exact_size(width.unwrap_or(READ))
+        .resizable(false)
+        .frame(theme::panel(ui).inner_margin(12.0))
+        .show(ui, show);
 }
 
 /// A button that is the main thing to do here.

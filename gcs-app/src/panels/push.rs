@@ -7,11 +7,9 @@ use crate::state::{Proposal, log::short_hash};
 use crate::theme::{self, Palette};
 use crate::units::{self, Units};
 use egui::collapsing_header::CollapsingState;
-use egui::{Color32, Label, Panel, RichText, ScrollArea, Sense, Ui};
+use egui::{Color32, Label, RichText, ScrollArea, Sense, Ui};
 use flight_plan::{Change, FlightPlan, Id, Verdict};
 
-/// Screen points.
-const WIDTH: f32 = 260.0;
 /// So many changes are written out.
 const MOST_CHANGES: usize = 200;
 /// So many legs are named when all are asked for, and without being asked for.
@@ -21,13 +19,9 @@ const FEW_LEGS: usize = 3;
 const HERE_M: f64 = 1.0;
 
 /// Draws the proposal's answer, while there is one; false: there is none.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) -> bool {
+pub fn show(ui: &mut Ui, scene: &Scene<'_>, width: Option<f32>, queue: &mut Queue) -> bool {
     let Some(proposal) = &scene.vehicle.proposal else { return false };
-    Panel::right("push")
-        .exact_size(WIDTH)
-        .resizable(false)
-        .frame(theme::panel(ui).inner_margin(12.0))
-        .show(ui, |ui| body(ui, scene, proposal, queue));
+    super::read_beside_map(ui, width, |ui| body(ui, scene, proposal, queue));
     true
 }
 
@@ -46,7 +40,7 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
     }
     ui.horizontal(|ui| buttons(ui, proposal, queue));
     ui.separator();
-    if scene.aboard.is_some() {
+    if scene.path_aboard().is_some() {
         ui.label(RichText::new("── on the map: this plan").color(p.accent));
         ui.label(RichText::new("╌╌ on the map: the plan aboard").color(p.contingency));
     }

@@ -11,7 +11,7 @@ use terrain::Terrain;
 pub struct Considered {
     /// The command.
     pub command: Command,
-    /// The leg that was being flown when it was looked at.
+    /// The leg that was being flown when it was looked at, or else when somebody wanted to.
     pub on_leg: Option<Id>,
     /// What would follow it, or why that is not known; `None`: not known yet.
     pub foresight: Option<Result<Box<Foresight>, String>>,
@@ -19,8 +19,8 @@ pub struct Considered {
     told: Option<Told>,
     /// When it was last asked or answered, seconds of the window's clock.
     tried_s: f64,
-    /// The leg that is flown as it is asked anew; `None`: it is not being asked.
-    asked_on: Option<Option<Id>>,
+    /// The leg that was being flown when it was last asked.
+    asked_on: Option<Id>,
     /// The least height above this window's ground on that way; `None`: that is known nowhere, or not yet.
     pub clearance: Option<Clearance>,
     is_over_ground: bool,
@@ -112,11 +112,11 @@ impl Outlook {
         }
     }
 
-    /// A command is considered; nothing is known of it yet.
-    pub fn consider(&mut self, command: Command) {
+    /// A command is considered while this leg is flown; nothing is known of it yet.
+    pub fn consider(&mut self, command: Command, leg: Option<Id>) {
         self.considered = Some(Considered {
             command,
-            on_leg: None,
+            on_leg: leg,
             foresight: None,
             told: None,
             tried_s: f64::NEG_INFINITY,
@@ -130,20 +130,18 @@ impl Outlook {
     /// It was asked what would follow the command that is considered, while this leg is flown.
     pub fn asked_what_follows(&mut self, ticket: Ticket, leg: Option<Id>, now_s: f64) {
         if let Some(considered) = &mut self.considered {
-            if considered.told.is_none() {
-                considered.on_leg.clone_from(&leg);
-            }
-            (considered.ticket, considered.asked_on, considered.tried_s) = (Some(ticket), Some(leg), now_s);
+            (considered.ticket, considered.asked_on, considered.tried_s) = (Some(ticket), leg, now_s);
         }
     }
 
-    /// The command that is considered, if what follows it is to be asked anew: the aircraft has flown on since. Another leg is not
-    /// skipped than the one that was meant.
-    pub fn to_ask_anew(&self, leg: Option<&Id>, now_s: f64, aircraft_s: Option<f64>) -> Option<&Command> {
-        let considered = self.considered.as_ref().filter(|considered| considered.asked_on.is_none())?;
-        let is_old = considered.age_s(now_s, aircraft_s).is_some_and(|age_s| age_s > AGAIN_S);
-        let is_due = is_old && now_s - considered.tried_s > PAUSE_S;
-        let is_of_another = considered.command == Command::SkipLeg && considered.has_gone_on(leg);
+    /// The command that is considered, if what follows it is to be asked now: it was not asked yet, or the aircraft has flown on
+    /// since. Another leg is not skipped than the one that was meant.
+    pub fn to_ask(&self, leg: Option<&Id>, now_s: f64, aircraft_s: Option<f64>) -> Option<&Command> {
+        let considered = self.considered.as_ref()?;
+        let has_gone_on = considered.has_gone_on(leg);
+        let is_old = considered.age_s(now_s, aircraft_s).is_none_or(|age_s| age_s > AGAIN_S);
+        let is_due = (is_old || has_gone_on) && now_s - considered.tried_s > PAUSE_S;
+        let is_of_another = considered.command == Command::SkipLeg && has_gone_on;
         (is_due && !is_of_another).then_some(&considered.command)
     }
 
@@ -193,7 +191,7 @@ impl Outlook {
             let told = answer.ok().zip(aircraft_s);
             self.way = told.map(|(foresight, told_s)| Way { foresight, told_s, over_ground: None });
         } else if let Some(considered) = self.considered.as_mut().filter(|c| c.ticket == Some(ticket)) {
-            let leg = considered.asked_on.take().flatten();
+            let leg = considered.asked_on.take();
             considered.tried_s = now_s;
             if answer.is_ok() || !matches!(considered.foresight, Some(Ok(_))) {
                 considered.foresight = Some(answer);
@@ -234,27 +232,24 @@ mod tests {
         let mut outlook = Outlook::default();
         let go_on = Command::ReturnToMain { leg: "valley".into() };
         let (hold, land) = (Some(Id::new("hold")), Some(Id::new("land")));
-        outlook.consider(go_on.clone());
+        outlook.consider(go_on.clone(), hold.clone());
         outlook.asked_what_follows(Ticket(1), hold.clone(), 10.0);
         outlook.answered(Ticket(1), foresight(191.0), 11.0, None);
-        let anew = |outlook: &Outlook, now_s, aircraft_s| {
-            outlook.to_ask_anew(land.as_ref(), now_s, aircraft_s).cloned()
-        };
-        assert_eq!(anew(&outlook, 15.0, None), None, "it is fresh");
-        assert_eq!(
-            anew(&outlook, 17.0, None),
-            Some(go_on.clone()),
-            "also where the aircraft's clock was not known"
-        );
+        let anew =
+            |outlook: &Outlook, leg: &Option<Id>, now_s| outlook.to_ask(leg.as_ref(), now_s, None).cloned();
+        assert_eq!(anew(&outlook, &hold, 15.0), None, "it is fresh");
+        let asked = Some(go_on);
+        assert_eq!(anew(&outlook, &hold, 17.0), asked, "also where the aircraft's clock was not known");
+        assert_eq!(anew(&outlook, &land, 12.0), None, "looking ahead is work");
+        assert_eq!(anew(&outlook, &land, 14.0), asked, "from another leg sooner");
         outlook.asked_what_follows(Ticket(2), land.clone(), 17.0);
-        assert_eq!(anew(&outlook, 30.0, None), None, "one question at a time");
         assert!(
             outlook.considered().is_some_and(|considered| considered.has_gone_on(land.as_ref())),
             "as long as no answer is there"
         );
         outlook.answered(Ticket(2), Err("others are being looked ahead for".into()), 18.0, Some(100.0));
         assert_eq!(
-            (least_m(&outlook), anew(&outlook, 19.0, None)),
+            (least_m(&outlook), anew(&outlook, &land, 19.0)),
             (Some(191.0), None),
             "what is known stays"
         );
@@ -270,11 +265,11 @@ mod tests {
     #[test]
     fn no_other_leg_is_skipped_than_the_one_that_was_meant() {
         let mut outlook = Outlook::default();
-        outlook.consider(Command::SkipLeg);
+        outlook.consider(Command::SkipLeg, Some("side2".into()));
         outlook.asked_what_follows(Ticket(1), Some("side2".into()), 0.0);
         outlook.answered(Ticket(1), foresight(80.0), 1.0, None);
         let leg = |id: &str| Some(Id::new(id));
-        assert_eq!(outlook.to_ask_anew(leg("side2").as_ref(), 10.0, None), Some(&Command::SkipLeg));
-        assert_eq!(outlook.to_ask_anew(leg("side3").as_ref(), 10.0, None), None);
+        assert_eq!(outlook.to_ask(leg("side2").as_ref(), 10.0, None), Some(&Command::SkipLeg));
+        assert_eq!(outlook.to_ask(leg("side3").as_ref(), 10.0, None), None);
     }
 }

@@ -376,13 +376,18 @@ impl Vehicle {
     /// It flies an emergency plan, or otherwise than the preview has it, and should be asked now which way.
     pub(super) fn should_ask_which_way(&self, now_s: f64) -> bool {
         let wanted = self.outlook.is_elsewhere() || self.emergency().is_some();
-        wanted && self.outlook.is_due(now_s) && self.open_link().is_some()
+        wanted && self.outlook.is_due(now_s) && self.may_look_ahead()
     }
 
-    /// The command that is considered, if what follows it should be asked anew now.
-    pub(super) fn should_look_again(&self, now_s: f64) -> Option<&flight_exec::Command> {
-        self.open_link()?;
-        self.outlook.to_ask_anew(self.current_leg(), now_s, self.clock_s(now_s))
+    /// The command that is considered, if it should be asked now what follows.
+    pub(super) fn should_ask_what_follows(&self, now_s: f64) -> Option<&flight_exec::Command> {
+        let due = self.outlook.to_ask(self.current_leg(), now_s, self.clock_s(now_s));
+        due.filter(|_| self.may_look_ahead())
+    }
+
+    /// The vehicle answers one such question at a time, and refuses another one of the same asker.
+    pub(crate) fn may_look_ahead(&self) -> bool {
+        self.open_link().is_some() && !self.requests.is_pending(LOOK_AHEAD)
     }
 
     /// The emergency plan that is being flown, or was flown last.

@@ -138,9 +138,9 @@ impl Vehicles {
         due.map(|(name, _)| name.clone()).collect()
     }
 
-    /// Commands that are considered, where what follows should be asked anew now.
-    pub fn due_to_look_again(&self, now_s: f64) -> Vec<(VehicleName, flight_exec::Command)> {
-        let due = self.by_name.iter().filter_map(|(name, v)| Some((name, v.should_look_again(now_s)?)));
+    /// Commands that are considered, where it should be asked now what follows.
+    pub fn due_to_look_ahead(&self, now_s: f64) -> Vec<(VehicleName, flight_exec::Command)> {
+        let due = self.by_name.iter().filter_map(|(name, v)| Some((name, v.should_ask_what_follows(now_s)?)));
         due.map(|(name, command)| (name.clone(), command.clone())).collect()
     }
 

@@ -1,6 +1,6 @@
 //! Commands that lead elsewhere are looked at before they are given.
 
-use super::emergency::in_emergency;
+use super::emergency::{in_emergency, raised};
 use super::flying::{fly_its_plan, flying, flying_its_plan};
 use super::vehicle::{place, position, status};
 use super::{SQUARE, Window};
@@ -56,24 +56,64 @@ fn skip_shows_what_follows_and_is_given_by_a_button_named_by_its_effect() {
     ] {
         assert!(window.shows(text), "{text}");
     }
-    window.click("Skip side2, fly side3 next");
+    window.hold("Skip side2, fly side3 next (hold)", 90);
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::SkipLeg)));
     assert!(!window.shows("Left out"), "it was given");
 }
 
 /// The aircraft has flown on since.
 #[test]
-fn what_was_looked_at_long_ago_says_so_and_has_to_be_held() {
+fn what_was_looked_at_long_ago_says_so() {
     let (mut window, ticket) = considered();
     window.receive(position(2.0, 500.0, false));
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     assert!(!window.shows("Looked at"));
     window.receive(position(47.0, 500.0, false));
-    assert!(window.shows("⚠ Looked at 45 s ago: look again"));
-    assert!(window.shows("Skip side2, fly side3 next (hold)"));
+    assert!(window.shows("⚠ Looked at 45 s ago: looking again"));
 }
 
-/// Nobody decides by a height of a minute ago: it is looked at again by itself, and a leg further on it has to be held.
+/// It was to be clicked, then held, then clicked again, as the aircraft went from leg to leg: three clicks did nothing.
+#[test]
+fn the_command_is_held_whatever_is_known_and_stays_where_it_is() {
+    let p = gcs_app::theme::palette(true);
+    let (mut window, ticket) = considered();
+    let top = |window: &Window, label: &str| window.harness.get_by_label(label).rect().left_top();
+    let colour = |window: &Window| window.colour_of("Skip side2");
+    let (button, cancel) = (top(&window, "Skip side2 (hold)"), top(&window, "Cancel"));
+    assert_eq!(colour(&window), Some(p.caution), "nothing is known yet");
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    let named = "Skip side2, fly side3 next (hold)";
+    assert_eq!((top(&window, named), top(&window, "Cancel")), (button, cancel));
+    assert_eq!(colour(&window), Some(p.accent), "nothing is against it");
+    assert!(window.paints("hold\u{a0}1\u{a0}s"), "it says so");
+    window.click(named);
+    window.steps(60 * 5);
+    while let Some((_, call)) = window.asked() {
+        assert!(matches!(call, Call::Foresee(_)), "a click does nothing: {call:?}");
+    }
+    assert!(window.shows("Nothing was done: hold it"), "that can be read");
+    window.steps(60 * 2);
+    assert!(!window.shows("Nothing was done: hold it"));
+}
+
+/// The agent answers one question of a window at a time, and refuses the next: "your last question is still being looked into".
+#[test]
+fn what_follows_is_asked_behind_what_the_window_wanted_to_know_for_itself() {
+    let (mut window, landing) = raised();
+    window.click("Return to the main plan at side3");
+    assert!(window.shows("Looking ahead") && window.asked().is_none(), "the agent is at another question");
+    window.answer(landing, Ok(Reply::Foresight(Box::new(foresight()))));
+    let back = Command::ReturnToMain { leg: "side3".into() };
+    let (ticket, call) = window.asked().unwrap();
+    assert_eq!(call, Call::Foresee(Some(back.clone())));
+    window.click("Cancel");
+    window.click("Return to the main plan at side3");
+    assert!(window.asked().is_none(), "the first one is still being answered");
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(back))));
+}
+
+/// Nobody decides by a height of a minute ago: it is looked at again by itself.
 #[test]
 fn what_follows_is_looked_at_again_while_it_is_read() {
     let mut window = flying_its_plan();
@@ -83,19 +123,18 @@ fn what_follows_is_looked_at_again_while_it_is_read() {
     let (ticket, _) = window.asked().unwrap();
     window.receive(position(2.0, 500.0, false));
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
-    assert!(!window.shows("Go to side4 (hold)"));
     window.steps(130);
     assert!(window.asked().is_none(), "it is fresh");
     let mut value = window.app().vehicle().status.as_ref().unwrap().value.clone();
     value.place = Some(place("circuit", "side3"));
     window.receive_status(value);
     window.receive(position(9.0, 500.0, false));
-    assert!(window.shows("on another leg by now") && window.shows("Go to side4 (hold)"));
+    assert!(window.shows("The aircraft is on another leg by now: looking again"));
     let (again, call) = window.asked().unwrap();
     assert_eq!(call, Call::Foresee(Some(to)));
     let lower = Foresight { clearance_m: Some(42.0), ..foresight() };
     window.answer(again, Ok(Reply::Foresight(Box::new(lower))));
-    assert!(window.shows("until the approach: 42 m") && !window.shows("Go to side4 (hold)"));
+    assert!(window.shows("until the approach: 42 m") && !window.shows("on another leg by now"));
 }
 
 /// The button that has to be held made the card wider than its place: its left end was cut off.
@@ -108,7 +147,7 @@ fn a_long_name_on_a_button_to_hold_takes_two_lines() {
     window.click("⏭ Skip leg");
     let button =
         window.harness.get_by_label("Skip Along the long valley behind the second ridge (hold)").rect();
-    assert!(button.left() > 1280.0 - 260.0 && button.right() < 1280.0 && button.height() > 35.0, "{button}");
+    assert!(button.left() > 0.0 && button.right() < 268.0 && button.height() > 35.0, "{button}");
 }
 
 #[test]
@@ -129,7 +168,7 @@ fn who_is_in_a_hurry_holds_the_button_before_the_answer() {
 }
 
 #[test]
-fn a_climb_that_is_not_done_or_a_low_way_has_to_be_held() {
+fn a_climb_that_is_not_done_or_a_low_way_is_a_caution() {
     let low = Foresight { clearance_m: Some(12.0), ..foresight() };
     let late = Foresight { short_of_altitude_m: Some(120.0), ..foresight() };
     for (foresight, text) in [(low, "Only 12 m above the ground"), (late, "Climb not done: it arrives 120 m")]
@@ -137,7 +176,8 @@ fn a_climb_that_is_not_done_or_a_low_way_has_to_be_held() {
         let (mut window, ticket) = considered();
         window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight))));
         assert!(window.shows(text), "{text}");
-        assert!(window.shows("Skip side2, fly side3 next (hold)"));
+        let p = gcs_app::theme::palette(true);
+        assert_eq!(window.colour_of("Skip side2, fly side3 next"), Some(p.caution));
     }
 }
 
@@ -157,14 +197,15 @@ fn over(ground: Arc<dyn Terrain>) -> Window {
 fn where_the_agent_has_no_elevations_the_window_measures_the_height_above_the_ground() {
     let window = over(Arc::new(Flat(380.0)));
     assert!(window.shows("until the approach: 120 m, by this window's elevations"));
-    assert!(window.shows("Skip side2, fly side3 next") && !window.shows("fly side3 next (hold)"));
+    let p = gcs_app::theme::palette(true);
+    assert_eq!(window.colour_of("Skip side2, fly side3 next"), Some(p.accent));
     let low = over(Arc::new(Flat(480.0)));
     assert!(low.shows("Only 20 m above the ground where it is lowest, by this window's elevations"));
-    assert!(low.shows("Skip side2, fly side3 next (hold)"));
+    assert_eq!(low.colour_of("Skip side2, fly side3 next"), Some(p.caution));
 }
 
 #[test]
-fn ground_that_nobody_knows_is_a_caution_and_the_command_has_to_be_held() {
+fn ground_that_nobody_knows_is_a_caution() {
     struct Unknown;
     impl Terrain for Unknown {
         fn elevation_m(&self, _: LatLon) -> Option<f64> {
@@ -174,7 +215,7 @@ fn ground_that_nobody_knows_is_a_caution_and_the_command_has_to_be_held() {
     let window = over(Arc::new(Unknown));
     let p = gcs_app::theme::palette(true);
     assert_eq!(window.colour_of("⚠ The ground below is known neither aboard nor here"), Some(p.caution));
-    assert!(window.shows("Skip side2, fly side3 next (hold)"));
+    assert_eq!(window.colour_of("Skip side2, fly side3 next"), Some(p.caution));
 }
 
 #[test]
@@ -196,7 +237,7 @@ fn a_leg_that_was_not_looked_at_is_not_skipped() {
     let mut value = status(Phase::Flying);
     value.place = Some(place("circuit", "side3"));
     window.receive_status(value);
-    assert!(window.shows("on another leg by now") && !window.is_enabled("Skip side2, fly side3 next"));
+    assert!(window.shows("on another leg by now") && !window.is_enabled("Skip side2, fly side3 next (hold)"));
     window.click("Look again");
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(Command::SkipLeg))));
 }
@@ -230,7 +271,7 @@ fn is_looked_at_first(window: &mut Window, command: Command, button: &str) {
     assert!(window.asked().is_none());
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     assert!(window.shows("Left out: side2"));
-    window.click(button);
+    window.hold(&format!("{button} (hold)"), 90);
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(command)));
 }
 

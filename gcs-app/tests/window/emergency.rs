@@ -13,9 +13,12 @@ use geometry::LatLon;
 use std::sync::Arc;
 use usal::contract::{GatewayState, Position, Stamped};
 
-/// Flying the emergency plan of the square.
+/// Flying the emergency plan of the square; when it lands is not known.
 pub fn in_emergency() -> Window {
-    raised().0
+    let (mut window, landing) = raised();
+    window.answer(landing, Err("it is not known".into()));
+    window.leave_open();
+    window
 }
 
 /// It was raised on side3 because of the engine; the ticket of the question when it lands.
@@ -25,7 +28,7 @@ pub fn raised() -> (Window, Ticket) {
     let hash = Arc::<str>::from("the plan that is aboard");
     value.plan = Some(hash.clone());
     value.emergency = Some("return".into());
-    value.place = Some(place("r-approach", "r1"));
+    value.place = Some(place("r-arrival", "r1"));
     if let Some(place) = &mut value.place {
         place.plan = Branching::Emergency("return".into());
     }
@@ -52,6 +55,7 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     for text in ["EMERGENCY: flying", "because the engine failed", "to runway R05"] {
         assert!(window.shows(text), "{text}");
     }
+    assert!(window.shows("Arrival ▸ r1"), "the stage has no name, but a kind");
     assert!(window.shows("Emergency: flying return (hold)") && !window.shows("Emergency: fly return"));
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     assert!(window.shows("lands in 6:20"));
@@ -65,31 +69,53 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(back))));
 }
 
-/// Who is about to press what stands below presses that.
+/// Who is about to press something presses that: the banner has its room before.
 #[test]
-fn nothing_moves_when_the_banner_gets_shorter() {
-    let (mut window, ticket) = raised();
-    let foresight = flight_exec::Foresight { time_s: 604.0, ..foresight() };
-    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight))));
-    let top = |window: &Window, label: &str| {
-        window.harness.query_all_by_label_contains(label).next().unwrap().rect().center().y
-    };
-    // the widest window in which the last of its parts is on a second line
-    let (mut low, mut high) = (600.0_f32, 1900.0_f32);
-    while high - low > 1.0 {
-        let width = ((low + high) / 2.0).round();
-        window.harness.set_size(egui::vec2(width, 800.0));
-        window.receive(position(1.0, 500.0, false));
-        assert!(window.shows("lands in 10:0"));
-        let wraps = top(&window, "another leg") > top(&window, "Return to the main plan at side3") + 10.0;
-        if wraps { low = width } else { high = width }
+fn nothing_moves_when_an_emergency_begins_and_its_red_banner_changes() {
+    for size in [egui::vec2(960.0, 600.0), egui::vec2(1280.0, 800.0)] {
+        let (mut window, mut value) = flying();
+        window.harness.set_size(size);
+        value.emergency_in_force = Some("return".into());
+        window.receive_status(value.clone());
+        assert!(
+            window.shows("Flying circuit ▸ side2 · in an emergency: return"),
+            "the plan aboard is not known"
+        );
+        let where_it_is = |window: &Window| {
+            ["Map", "Zoom in", "⏸ Hold", "⏭ Skip leg", "TF side3", "Hide Flight"]
+                .map(|label| window.harness.get_by_label(label).rect())
+        };
+        let before = where_it_is(&window);
+        value.emergency = Some("return".into());
+        window.receive_status(value);
+        assert_eq!(where_it_is(&window), before);
+        let p = gcs_app::theme::palette(true);
+        let words = window.harness.get_by_label_contains("EMERGENCY: flying return").rect();
+        assert_eq!(window.fill_around(words), Some(p.warning), "it is red");
+        for label in ["⏸ Hold", "Emergency: flying return (hold)"] {
+            assert!(window.is_enabled(label), "{label}");
+        }
     }
-    window.harness.set_size(egui::vec2(low, 800.0));
-    window.receive(position(1.0, 500.0, false));
-    let before = top(&window, "⏸ Hold");
-    window.receive(position(20.0, 500.0, false));
-    assert!(window.shows("lands in 9:4"));
-    assert_eq!(top(&window, "⏸ Hold"), before);
+}
+
+/// They stood beside it, and everything else moved aside.
+#[test]
+fn the_map_and_the_values_of_the_flight_stay_where_they_are_while_a_question_is_read() {
+    for size in [egui::vec2(960.0, 600.0), egui::vec2(1280.0, 800.0)] {
+        let (mut window, _) = flying();
+        window.harness.set_size(size);
+        window.steps(3);
+        let where_it_is = |window: &Window| {
+            ["Map", "Zoom in", "⏸ Hold", "Hide Flight", "Push"]
+                .map(|label| window.harness.get_by_label(label).rect())
+        };
+        let before = where_it_is(&window);
+        window.click("⏭ Skip leg");
+        assert!(window.shows("Looking ahead"));
+        assert_eq!(where_it_is(&window), before, "{size}");
+        window.click("Cancel");
+        assert_eq!(where_it_is(&window), before, "{size}");
+    }
 }
 
 #[test]
@@ -150,13 +176,11 @@ fn there_is_no_banner_without_an_emergency() {
 #[test]
 fn who_holds_the_way_back_has_pressed_it() {
     let mut window = in_emergency();
-    while window.asked().is_some() {}
     let back = window.harness.get_all_by_label_contains("Return to the main plan at").next().unwrap().rect();
     window.harness.hover_at(back.center());
     window.harness.drag_at(back.center());
     window.steps(120);
     window.harness.drop_at(back.center());
     window.steps(3);
-    let asked = std::iter::from_fn(|| window.asked()).any(|(_, call)| matches!(call, Call::Foresee(Some(_))));
-    assert!(asked, "a long press counts");
+    assert!(window.shows("Looking ahead"), "a long press counts");
 }

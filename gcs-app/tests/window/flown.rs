@@ -212,12 +212,10 @@ fn an_emergency_is_flown_and_the_way_back_is_taken() {
     };
     assert!(field.heard.contains(&started), "{:#?}", field.heard);
     field.until_shown("EMERGENCY: flying return");
-    let back = "Return to the main plan at side";
-    field.window.click_beginning(back);
+    field.window.click("Return to the main plan at side2");
     // what would follow is looked at first
     field.until_shown("Flies next: side");
-    field.window.harness.query_all_by_label_contains(back).last().unwrap().click();
-    field.window.steps(3);
+    field.window.hold("Return to the main plan at side2 (hold)", 80);
     field.until("it is back", |_, heard| {
         entered(heard).last().is_some_and(|(plan, _)| *plan == Branching::Main)
     });

@@ -1,14 +1,16 @@
 //! In flight, against a vehicle that the test plays.
 
-use super::vehicle::{decision, place, status};
+use super::vehicle::{decision, gateway_status, place, status};
 use super::{SQUARE, Window};
 use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::{Command, IterationPlace, Phase, ProposalReport};
-use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Reply};
+use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Outcome};
 use std::sync::Arc;
-use usal::contract::{Alarm, Severity};
+use usal::contract::{
+    Alarm, GatewayState, GatewayStatus, PlanVariable, PlanVariables, Severity, Stamped, VariableValue,
+};
 
 pub fn report(hash: &str, acceptable: bool) -> ProposalReport {
     ProposalReport {
@@ -48,7 +50,7 @@ pub fn flying() -> (Window, flight_exec::Status) {
     window.receive_position(false);
     window.receive_status(value.clone());
     // the window reads the plan aboard; this vehicle does not give it
-    while window.asked().is_some() {}
+    window.leave_open();
     (window, value)
 }
 
@@ -71,7 +73,7 @@ pub fn fly_its_plan(window: &mut Window) {
     window.receive_status(value);
     let (ticket, _) = window.asked().unwrap();
     window.answer(ticket, Ok(Reply::Plan(Some(aboard))));
-    while window.asked().is_some() {}
+    window.leave_open();
 }
 
 #[test]
@@ -135,8 +137,6 @@ fn proposal_leaves_the_commands_of_the_flight_in_reach() {
         window.steps(3);
         let commit = window.centre("Commit");
         assert!(egui::Rect::from_min_size(egui::Pos2::ZERO, size).contains(commit));
-        let map = window.harness.get_by_label("Map").rect();
-        assert!(map.width() >= 399.0, "{size}: the map is {map}");
         let buttons = window.harness.get_by_label("Zoom in").rect();
         // behind one button where the map is narrow
         let tools = window.harness.query_by_label("Select and move (V)");
@@ -169,7 +169,7 @@ fn proposal_says_in_words_what_is_different_and_what_was_edited_since() {
     let drafted = window.app().analysis().hash_of(window.app().document().version()).unwrap().to_string();
     window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&drafted, true)))));
     assert!(window.shows("leg side2 removed") && !window.shows("edited since"));
-    window.click("TF side3");
+    window.click_at(window.centre("Path of side3"));
     window.press(egui::Key::Delete);
     window.until_analysed();
     assert!(window.shows("The draft was edited since"));
@@ -458,4 +458,76 @@ fn the_emergency_button_keeps_its_place() {
     window.receive_status(value);
     assert!(!window.shows("Skip leg"));
     assert_eq!(window.harness.get_by_label(name).rect(), before);
+}
+
+/// Whoever took the aircraft: it is said by whom, in words and by an alarm, and there is a way back.
+#[test]
+fn an_aircraft_that_was_taken_over_says_by_whom_and_offers_to_resume() {
+    let p = gcs_app::theme::palette(true);
+    for (state, cause, said) in [
+        (GatewayState::Manual, "the pilot switched to FBWA", "⚠ Manual: the pilot switched to FBWA"),
+        (GatewayState::Directed, "a service directs it", "⚠ Directed: a service directs it"),
+    ] {
+        let (mut window, _) = flying();
+        assert!(!window.shows("▶ Resume") && window.shows("Flying circuit ▸ side2"));
+        let alarm = Alarm {
+            id: "not-in-command".into(),
+            severity: Severity::Caution,
+            advice: "Resume when the pilot gives it back".into(),
+            source: "gateway".into(),
+            cause: None,
+        };
+        let value = GatewayStatus { cause: cause.into(), alarms: vec![alarm], ..gateway_status(state) };
+        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        assert_eq!(window.colour_of(said), Some(p.caution), "{state:?}");
+        assert!(window.shows("NOT IN COMMAND") && window.shows("Resume when the pilot gives it back"));
+        assert!(!window.shows("Flying circuit"), "that is not true any more");
+        window.click("▶ Resume");
+        assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Resume)), "{state:?}");
+        window.receive_gateway_state(GatewayState::Nav);
+        assert!(!window.shows("▶ Resume") && !window.shows(said));
+    }
+}
+
+#[test]
+fn the_fire_on_the_map_grows_as_its_radius_does_aboard() {
+    let mut window = Window::open(gcs_app::assets::FIRE_WATCH);
+    window.until_analysed();
+    fly_its_plan(&mut window);
+    let caution = gcs_app::theme::palette(true).caution;
+    let radius = |window: &Window| window.circles_within("Map", caution).into_iter().fold(0.0, f32::max);
+    let before = radius(&window);
+    assert!(before > 0.0);
+    let grown = PlanVariable {
+        name: "fire_radius".into(),
+        value: VariableValue::Number(525.0),
+        unit: "m".into(),
+        min: None,
+        max: None,
+    };
+    let value = PlanVariables { variables: vec![grown] };
+    window.receive(Telemetry::Variables(Stamped { time_s: 2.0, validity_s: 60.0, value }));
+    let times = radius(&window) / before;
+    assert!((times - 1.5).abs() < 0.02, "from 350 m to 525 m: {times}");
+}
+
+/// What is drawn in flight is what the legend has: the plan that is edited, and the one that is flown.
+#[test]
+fn an_edited_plan_and_the_one_aboard_are_told_apart_on_the_map_and_in_its_legend() {
+    let mut window = flying_its_plan();
+    let p = gcs_app::theme::palette(true);
+    assert!(window.paints("planned") && !window.paints("plan aboard"));
+    let (blue, aboard) =
+        (window.triangles_within("Map", p.accent), window.lines_within("Map", p.contingency));
+    let at = window.centre("Fix C");
+    window.drag(at, egui::vec2(40.0, 0.0));
+    window.until_analysed();
+    window.until("the path aboard", |app| app.path_aboard().is_some());
+    assert!(window.paints("edited plan") && window.paints("plan aboard") && !window.paints("planned"));
+    assert!(window.triangles_within("Map", p.accent) > blue / 2, "the edited plan is one line, not dashes");
+    assert!(window.lines_within("Map", p.contingency) > aboard, "the plan aboard is dashed");
+    window.harness.set_size(egui::vec2(960.0, 600.0));
+    window.steps(3);
+    window.click("What the lines mean");
+    assert!(window.shows("Lines: edited plan, plan aboard, active"));
 }

@@ -47,10 +47,19 @@ fn corners(shape: &Shape, colour: Color32) -> usize {
     }
 }
 
-/// The rectangles of a shape.
-fn plates(shape: &Shape) -> Vec<Rect> {
+/// The radii of the circles of this colour in a shape, screen points.
+fn radii(shape: &Shape, colour: Color32) -> Vec<f32> {
     match shape {
-        Shape::Rect(plate) => vec![plate.rect],
+        Shape::Vec(several) => several.iter().flat_map(|shape| radii(shape, colour)).collect(),
+        Shape::Circle(circle) if circle.stroke.color == colour => vec![circle.radius],
+        _ => Vec::new(),
+    }
+}
+
+/// The rectangles of a shape, with what fills them.
+fn plates(shape: &Shape) -> Vec<(Rect, Color32)> {
+    match shape {
+        Shape::Rect(plate) => vec![(plate.rect, plate.fill)],
         Shape::Vec(several) => several.iter().flat_map(plates).collect(),
         _ => Vec::new(),
     }
@@ -139,10 +148,27 @@ impl Window {
 
     /// The smallest plate that is painted behind something.
     pub fn plate_around(&self, inner: Rect) -> Option<Rect> {
+        self.plate_with_fill(inner).map(|(plate, _)| plate)
+    }
+
+    /// The colour of the smallest plate that is painted behind something.
+    pub fn fill_around(&self, inner: Rect) -> Option<Color32> {
+        self.plate_with_fill(inner).map(|(_, fill)| fill)
+    }
+
+    fn plate_with_fill(&self, inner: Rect) -> Option<(Rect, Color32)> {
         let shapes = self.harness.output().shapes.iter();
-        let plates =
-            shapes.flat_map(|clipped| plates(&clipped.shape)).filter(|plate| plate.contains_rect(inner));
-        plates.min_by(|a, b| a.area().total_cmp(&b.area()))
+        let plates = shapes.flat_map(|clipped| plates(&clipped.shape));
+        let behind = plates.filter(|(plate, _)| plate.contains_rect(inner));
+        behind.min_by(|(a, _), (b, _)| a.area().total_cmp(&b.area()))
+    }
+
+    /// The radii of the circles of this colour that are painted within what is called so, screen points.
+    pub fn circles_within(&self, name: &str, colour: Color32) -> Vec<f32> {
+        let rect = self.harness.query_all_by_label_contains(name).next().unwrap().rect();
+        let shapes = self.harness.output().shapes.iter();
+        let inside = shapes.filter(|clipped| rect.expand(1.0).contains_rect(clipped.clip_rect));
+        inside.flat_map(|clipped| radii(&clipped.shape, colour)).collect()
     }
 
     /// So many lines of this colour are painted within what is called so.

@@ -364,9 +364,7 @@ fn emergency_is_flown_and_the_way_back_is_taken() {
     assert_eq!(call, Call::Foresee(Some(back.clone())));
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     done_in_flight(&mut window, "way-back");
-    let given = window.harness.get_all_by_label("Return to the main plan at side3").last().unwrap();
-    given.click();
-    window.steps(3);
+    window.hold("Return to the main plan at side3 (hold)", 90);
     let calls: Vec<Call> = std::iter::from_fn(|| window.asked()).map(|(_, call)| call).collect();
     assert!(calls.contains(&Call::Plan(back)), "{calls:?}");
 }
