@@ -111,17 +111,7 @@ impl Rehearsal {
     ///
     /// Only what follows the nearest place before that was kept is flown again.
     pub fn divert(&self, time_s: f64, cause: Cause) -> Option<Diversion> {
-        let here = Here::of(self, time_s)?;
-        let answer = here.answer(cause);
-        let powered = match answer {
-            Some(_) => here.powered(cause)?,
-            None => Err("no emergency plan answers here: the gateway's Safe mode decides".into()),
-        };
-        let glide = answer.filter(|_| powered.is_ok()).map(|answer| here.glide(answer));
-        let fails = answer.filter(|_| cause == Cause::Engine && powered.is_ok());
-        let glided = fails.and_then(|(_, runway)| here.glided(runway));
-        let plan = answer.map(|(plan, runway)| (plan.id.clone(), runway.id.clone()));
-        Some(Diversion { time_s, cause, leg: here.leg, plan, powered, glide, glided })
+        Here::of(self, time_s)?.diversion(cause)
     }
 
     /// How the worst alarm would end so many seconds after the start, and which that is; `None`: nothing was flown, or the aircraft
@@ -133,20 +123,16 @@ impl Rehearsal {
         if matches!(kind, StageKind::TakeOff | StageKind::Land) {
             return None;
         }
-        let engine = here.answer(Cause::Engine);
-        let reach = engine.map_or(Reach::Out, |answer| here.reach_without_engine(answer, glide_m));
-        let mut worst = (reach, Cause::Engine);
+        let mut worst = (here.diversion(Cause::Engine)?.reach(glide_m, energy_share), Cause::Engine);
         let mut tried: Vec<Option<&Id>> = Vec::new();
         for cause in POWERED {
+            // with its engine, the aircraft flies a plan alike for whatever cause
             let plan = here.answer(cause).map(|(plan, _)| &plan.id);
             if tried.contains(&plan) {
                 continue;
             }
             tried.push(plan);
-            let reach = match plan {
-                Some(_) => reach_powered(&here.powered(cause)?, energy_share),
-                None => Reach::Out,
-            };
+            let reach = here.diversion(cause)?.reach(glide_m, energy_share);
             if reach < worst.0 {
                 worst = (reach, cause);
             }
@@ -170,6 +156,19 @@ impl<'a> Here<'a> {
         answer(program, program.emergency_choice(&self.leg, cause)?.plan_for(cause)?)
     }
 
+    fn diversion(&self, cause: Cause) -> Option<Diversion> {
+        let answer = self.answer(cause);
+        let powered = match answer {
+            Some(_) => self.powered(cause)?,
+            None => Err("no emergency plan answers here: the gateway's Safe mode decides".into()),
+        };
+        let glide = answer.filter(|_| powered.is_ok()).map(|answer| self.glide(answer));
+        let fails = answer.filter(|_| cause == Cause::Engine && powered.is_ok());
+        let glided = fails.and_then(|(_, runway)| self.glided(runway));
+        let plan = answer.map(|(plan, runway)| (plan.id.clone(), runway.id.clone()));
+        Some(Diversion { time_s: self.time_s, cause, leg: self.leg.clone(), plan, powered, glide, glided })
+    }
+
     /// As it is flown with an engine, or why it is not.
     fn powered(&self, cause: Cause) -> Option<Result<Powered, String>> {
         let alarm = Act::Command(Command::Emergency { cause, plan: None });
@@ -190,18 +189,6 @@ impl<'a> Here<'a> {
         let (winds, options) = (self.rehearsal.winds, &self.rehearsal.options);
         let given = Circumstances { winds, scenario: &scenario, options };
         Some(judge(self.flown.resumed_before(self.time_s, given)?))
-    }
-
-    /// What is out of reach of a glide is not flown to find that out.
-    fn reach_without_engine(&self, (plan, runway): Answer, glide_m: f64) -> Reach {
-        let calculated = self.glide((plan, runway)).reach(glide_m);
-        let straight = [runway.threshold];
-        let (profile, winds) = (&self.rehearsal.profile, self.rehearsal.winds);
-        let arrives = glide(profile, winds, self.start, &straight, runway.heading_deg)
-            .and_then(|points| points.last().copied())
-            .is_some_and(|last| last.altitude_amsl_m >= runway.elevation_amsl_m);
-        let glided = if arrives { self.glided(runway) } else { None };
-        reach_glided(calculated, glided.as_ref())
     }
 
     fn glide(&self, (plan, runway): Answer) -> Glide {
