@@ -50,7 +50,7 @@ const PLAYED: [(GatewayState, Intent, u64); 13] = [
 /// A gateway in a state, with the whole plan aboard.
 fn in_state(state: GatewayState, intent: Intent, steers_to: u64) -> Core {
     let mut core = Core::new();
-    core.step(Input::Report(Report::Capability(Ok("a plane"))));
+    core.step(Input::Report(Report::Capability(Ok(PLANE))));
     core.run(1, &reports(GatewayState::Stop, Loss::Nothing));
     let join = Join { plan: Some("plan".into()), earlier: vec![], last_token: Token(0) };
     core.step(Input::Join(1, join, fp_manager()));

@@ -42,6 +42,7 @@ impl Talk {
         self.commands.shown(self.now, shown)
     }
 
+    #[expect(deprecated, reason = "PX4 takes an entry by the deprecated message only")]
     fn sent(&mut self) -> Vec<MavCmd> {
         let number = |message| match message {
             MavMessage::COMMAND_LONG(data) => data.command,

@@ -139,6 +139,7 @@ impl Px4 {
         self.out.push(MavMessage::MISSION_REQUEST_INT(data));
     }
 
+    #[expect(deprecated, reason = "PX4 takes an entry by the deprecated message only")]
     pub fn receive(&mut self, message: &MavMessage) {
         match message {
             MavMessage::HEARTBEAT(beat) => self.hears_station |= beat.mavtype == MavType::MAV_TYPE_GCS,
