@@ -13,6 +13,7 @@ const DOCUMENTS: &[(&str, &str)] = &[
     ("plan-language.md", include_str!("../../assets/docs/plan-language.md")),
     ("examples.md", include_str!("../../assets/docs/examples.md")),
     ("gateway-states.md", include_str!("../../assets/docs/gateway-states.md")),
+    ("flight-tests.md", include_str!("../../assets/docs/flight-tests.md")),
     ("recordings.md", include_str!("../../assets/docs/recordings.md")),
 ];
 
@@ -195,6 +196,16 @@ mod tests {
                 assert!(known, "{}: {target}", topic.key);
                 rest = after;
             }
+        }
+    }
+
+    /// So that none of them goes stale.
+    #[test]
+    fn every_picture_of_the_window_is_made_by_a_test() {
+        let tests = include_str!("../tests/window/looks.rs");
+        for (name, _) in PICTURES.iter().filter(|(name, _)| name.starts_with("pictures/guide-")) {
+            let made = name.trim_start_matches("pictures/").trim_end_matches(".png");
+            assert!(tests.contains(&format!("\"{made}\"")), "{made}");
         }
     }
 

@@ -321,3 +321,33 @@ fn a_zone_keeps_off_the_centre_line_that_legs_are_drawn_to() {
     assert!(is_on_line(&mut window, Key::T));
     assert!(!is_on_line(&mut window, Key::Z));
 }
+
+/// Rule 5: a new leg flies as high as those beside it, whatever its stage says.
+#[test]
+fn a_new_leg_has_the_altitude_of_its_neighbours() {
+    let altitude =
+        |window: &Window, leg: &str| window.plan().leg(&Id::new(leg)).unwrap().leg.altitude.clone();
+    let mut low = SQUARE.to_owned();
+    for leg in [r#"id="side2" fix="B""#, r#"id="side3" fix="C""#] {
+        low = low.replace(leg, &format!(r#"{leg} altitude="130" altitudeReference="home""#));
+    }
+    for (plan, own) in [(low.as_str(), true), (SQUARE, false)] {
+        let mut window = Window::open(plan);
+        window.until_analysed();
+        window.click("TF side2");
+        window.press(Key::T);
+        let at = window.centre("Map") + vec2(60.0, 40.0);
+        window.click_at(at);
+        window.press(Key::V);
+        assert_eq!(altitude(&window, "leg1"), altitude(&window, "side2"), "drawn");
+        assert_eq!(altitude(&window, "leg1").is_some(), own);
+        let middle = window.centre("Fix B") + (window.centre("Waypoint leg1") - window.centre("Fix B")) * 0.5;
+        window.drag(middle, vec2(10.0, -20.0));
+        assert_eq!(
+            altitude(&window, &window.selected()),
+            altitude(&window, "side2"),
+            "dragged out of the line"
+        );
+        assert_ne!(window.selected(), "leg1");
+    }
+}

@@ -228,6 +228,47 @@ fn a_centre_line_snaps_and_alt_holds_that_off() {
     assert!(off(&window) > 2.0, "beside it: {}", off(&window));
 }
 
+/// What is drawn beside a thing is drawn on it, and it says so before the click.
+#[test]
+fn corners_waypoints_and_both_ends_of_a_runway_snap() {
+    let zone = r#"<zones><keepOut id="wood"><corner lat="36.300" lon="-84.170"/><corner lat="36.300" lon="-84.165"/><corner lat="36.304" lon="-84.165"/></keepOut></zones>"#;
+    let mut window = with(zone);
+    window.click("TF side4");
+    window.press(Key::T);
+    let at = window.centre("Map") + vec2(90.0, 120.0);
+    window.click_at(at);
+    window.press(Key::V);
+    let plan = window.plan();
+    let runway = plan.runways[0].clone();
+    let end = runway.threshold.destination(runway.heading_deg, runway.length_m);
+    let ZoneShape::Polygon(corners) = &plan.zones[0].shape else { panic!("no polygon") };
+    let Some(Place::Position(Value::Constant(leg))) = plan.leg(&"leg1".into()).unwrap().leg.place().cloned()
+    else {
+        panic!("no position")
+    };
+    for (what, place) in [
+        ("Corner 2 of wood", corners[1]),
+        ("Waypoint leg1", leg),
+        ("threshold of R05", runway.threshold),
+        ("end of R05", end),
+    ] {
+        window.press(Key::M);
+        type_place(&mut window, &format!("{}, {}", place.lat_deg, place.lon_deg));
+        let on = window.centre("Measure from here");
+        window.press(Key::Escape);
+        window.press(Key::X);
+        let beside = on + vec2(5.0, 4.0);
+        window.harness.hover_at(beside);
+        window.steps(2);
+        assert!(window.paints(what), "{what}");
+        window.click_at(beside);
+        let made = window.plan().fix(&window.selected().as_str().into()).unwrap().position;
+        assert!(made.distance_m(place) < 0.1, "{what}: {} m", made.distance_m(place));
+        window.press(Key::Escape);
+        window.click("Undo");
+    }
+}
+
 #[test]
 fn places_are_typed_into_the_tool_by_bearing_and_distance_too() {
     let mut window = window();

@@ -404,27 +404,6 @@ fn what_stands_below_an_alarm_stays_in_its_place_when_it_is_raised() {
     }
 }
 
-/// Whatever the forecast says of its legs: the stages of the plan, in their order, each beginning where the one before it ends.
-#[test]
-fn the_timeline_has_the_stages_one_after_the_other() {
-    let window = opened(SQUARE);
-    let forecast = &window.app().analysis().forecast;
-    let stages = gcs_app::panels::timeline::stages(forecast);
-    let names: Vec<&str> = stages.iter().map(|(id, ..)| id.as_str()).collect();
-    assert_eq!(names, ["take-off", "circuit", "land"]);
-    assert_eq!((stages[0].1, stages[2].2), (0.0, forecast.duration_s()));
-    assert!(
-        stages.windows(2).all(|pair| pair[0].2 == pair[1].1) && stages.iter().all(|(_, from, to)| to > from)
-    );
-    // a long side and two short ones at the aircraft's cruise
-    let circuit_s = stages[1].2 - stages[1].1;
-    let plan = window.plan();
-    let [a, b, c, d] = ["A", "B", "C", "D"].map(|fix| plan.fix(&fix.into()).unwrap().position);
-    let cruise_mps = Profile::by_name(&plan.aircraft).unwrap().cruise_airspeed_mps;
-    let least_s = (a.distance_m(b) + b.distance_m(c) + c.distance_m(d)) / cruise_mps;
-    assert!((least_s * 0.9..least_s * 1.6).contains(&circuit_s), "{circuit_s} s for {least_s}");
-}
-
 #[test]
 fn it_is_flown_by_the_vehicles_autopilot_unless_another_is_chosen() {
     let mut window = opened(SQUARE);

@@ -57,3 +57,27 @@ fn points_of(plan: &FlightPlan, of: &Id, hole: Option<usize>) -> (usize, usize, 
         _ => (usize::MAX, 3, "An area"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_point_of_a_line_is_its_corner_unless_a_variable_or_a_fix_says_it() {
+        let of = Id::new("line");
+        let first = Handled::Waypoint(of.clone());
+        for (said, is_own) in
+            [(r#"lat="36.33" lon="-84.17""#, true), (r#"at="= fire""#, false), (r#"fix="A""#, false)]
+        {
+            let variable = r#"<variables><variable name="fire" type="position" initial="36.33 -84.17"/></variables><mainPlan"#;
+            let line = format!(
+                r#"<trackLine id="line" spacing="400"><route><point {said}/><point lat="36.34" lon="-84.16"/></route></trackLine><TF id="side4""#
+            );
+            let text = include_str!("../../../../assets/plans/square.xml");
+            let text = text.replacen("<mainPlan", variable, 1).replacen(r#"<TF id="side4""#, &line, 1);
+            let plan = flight_plan::read(&text).plan;
+            let corner = Handled::Corner { leg: of.clone(), hole: None, corner: 0 };
+            assert_eq!(corner_of(&plan, &first), is_own.then_some(corner), "{said}");
+        }
+    }
+}

@@ -51,7 +51,7 @@ fn all() -> Vec<Box<dyn Tool>> {
         Box::new(draw_leg::DrawLeg::new(&draw_leg::AREA)),
         Box::new(draw_leg::DrawLeg::new(&draw_leg::LINE)),
         Box::new(draw_leg::DrawLeg::new(&draw_leg::CIRCLE)),
-        Box::new(thing::PlaceFix),
+        Box::new(thing::PlaceFix::default()),
         Box::new(thing::DrawZone::default()),
         Box::new(thing::DrawRunway::default()),
         Box::new(procedure::PlaceProcedure::default()),

@@ -1,6 +1,7 @@
 //! Fixes, runways and zones.
 
 use super::pen::{Figure, Mark, Pen};
+use super::snap::{self, snap};
 use super::{Canvas, Card, Pointer, Tool, Touch};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::panels::Scene;
@@ -12,7 +13,10 @@ use geometry::LatLon;
 
 /// Each click makes a fix.
 #[derive(Debug, Default)]
-pub struct PlaceFix;
+pub struct PlaceFix {
+    /// Where a click would make one.
+    pointer: Option<Mark>,
+}
 
 impl Tool for PlaceFix {
     fn card(&self) -> &'static Card {
@@ -21,6 +25,10 @@ impl Tool for PlaceFix {
 
     fn status(&self, _scene: &Scene<'_>) -> Option<String> {
         Some("Fix: click where it is; legs that are drawn near it go there. Esc ends it.".into())
+    }
+
+    fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
+        self.pointer = at.map(|at| snap(at, canvas));
     }
 
     fn typed_from(&self) -> Option<Option<LatLon>> {
@@ -38,11 +46,19 @@ impl Tool for PlaceFix {
         queue.view(ViewCommand::Select(Some(Selection::Fix(id))));
     }
 
+    fn leave(&mut self) {
+        self.pointer = None;
+    }
+
     fn cursor(&self) -> CursorIcon {
         CursorIcon::Crosshair
     }
 
-    fn paint(&self, _painter: &Painter, _canvas: &Canvas<'_>, _touch: Touch, _p: &Palette) {}
+    fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, _touch: Touch, p: &Palette) {
+        if let Some(mark) = &self.pointer {
+            snap::paint(painter, mark, canvas, p);
+        }
+    }
 }
 
 /// Two clicks along a runway.
