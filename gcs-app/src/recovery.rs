@@ -160,8 +160,8 @@ impl Keeper {
     /// It was decided, of all or `only` of one of them: what was left behind is given away, and its copy is no longer needed once the
     /// document that it became is kept or saved.
     pub fn take_left_behind(&mut self, only: Option<usize>) -> Vec<LeftDocument> {
-        // what is there now is not of this document
-        self.kept = None;
+        // what is there now is not of this document; those that are open stay as old as they are
+        self.recovered.extend(self.kept.take().into_iter().flatten());
         let Some(mut left) = self.left_behind.take() else { return Vec::new() };
         let Some(number) = only.filter(|number| *number < left.documents.len()) else {
             return left.documents;
@@ -462,10 +462,15 @@ mod tests {
         drop(window);
         let mut next = Keeper::open(folder.path()).unwrap();
         assert_eq!(ages(&next), [Some(TODAY_S), Some(1000)]);
+        // those that are open when it is decided, too
+        let own = edited();
+        tend(&mut next, &own, 0.0);
         let found = next.take_left_behind(None);
+        next.tend(std::iter::once(&own), 1000.0, utc(500));
+        assert_eq!(next.kept.as_ref().map(|kept| kept[0].1), Some(TODAY_S));
         let mut recovered = edited();
         next.recovered_as(recovered.version(), &found[1]);
-        tend(&mut next, &recovered, 0.0);
+        tend(&mut next, &recovered, 2000.0);
         drop(next);
         let mut again = Keeper::open(folder.path()).unwrap();
         assert_eq!(ages(&again), [Some(1000)]);

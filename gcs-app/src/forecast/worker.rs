@@ -125,15 +125,14 @@ impl Analysis {
             self.coverage = former.coverage;
             self.what_if_problems = former.what_if_problems;
             self.last_review = former.last_review;
-            self.unsettled = if self.reviewed { Arc::default() } else { self.not_known_anew() };
+            let unreviewed = || missing(&self.last_review, &self.problems);
+            self.unsettled = if self.reviewed { Arc::default() } else { unreviewed() };
         }
     }
 
-    /// What the last review found, and the checks of this version have not.
-    fn not_known_anew(&self) -> Arc<[Problem]> {
-        let key = |problem: &Problem| (problem.code, problem.subject.clone());
-        let known: HashSet<_> = self.problems.iter().map(key).collect();
-        self.last_review.iter().filter(|old| !known.contains(&key(old))).cloned().collect()
+    /// What the last review found of this version.
+    fn settled(&self) -> Vec<Problem> {
+        missing(&self.last_review, &self.unsettled).to_vec()
     }
 
     fn take(&mut self, found: Found) {
@@ -142,14 +141,19 @@ impl Analysis {
             Found::Forecast(version, flown) if version == self.version => self.take_forecast(flown),
             Found::Hash(version, hash) if version == self.version => self.hash = hash,
             Found::Problems(version, problems) if version == self.version => {
-                // of the extremes of its variables, there are more to come
-                let so_far = if self.reviewed { self.last_review.to_vec() } else { Vec::new() };
-                self.last_review = so_far.into_iter().chain(problems.iter().cloned()).collect();
-                self.unsettled = Arc::default();
-                self.problems.extend(problems);
+                let so_far = if self.reviewed { self.settled() } else { Vec::new() };
+                self.problems.extend(problems.iter().cloned());
                 self.reviewed = true;
+                // of the extremes of its variables, there are more to come: what they alone show is not settled before
+                self.unsettled = missing(&self.unsettled, &self.problems);
+                self.last_review =
+                    so_far.into_iter().chain(problems).chain(self.unsettled.to_vec()).collect();
             }
-            Found::Everything(version) if version == self.version => self.is_complete = true,
+            Found::Everything(version) if version == self.version => {
+                self.is_complete = true;
+                self.last_review = self.settled().into();
+                self.unsettled = Arc::default();
+            }
             Found::Remedies(version, remedied) if version == self.version => {
                 put_remedies(&mut self.problems, remedied);
             }
@@ -255,6 +259,13 @@ impl Outbox {
     }
 }
 
+/// Those that are not among others.
+fn missing(problems: &[Problem], others: &[Problem]) -> Arc<[Problem]> {
+    let key = |problem: &Problem| (problem.code, problem.subject.clone());
+    let known: HashSet<_> = others.iter().map(key).collect();
+    problems.iter().filter(|old| !known.contains(&key(old))).cloned().collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -279,7 +290,17 @@ mod tests {
         known.take(of_version(3, vec![low()]));
         assert_eq!(unsettled(&known), ["keep-out"], "the check has found the other one already");
         known.take(Found::Problems(3, Vec::new()));
+        assert_eq!(
+            unsettled(&known),
+            ["keep-out"],
+            "it may be one of the extremes, which are reviewed after that"
+        );
         known.take(of_version(4, Vec::new()));
-        assert_eq!(unsettled(&known), [""; 0], "the newer review found nothing");
+        assert_eq!(unsettled(&known), ["keep-out"], "and was not known when the next version came");
+        known.take(Found::Problems(4, vec![low()]));
+        known.take(Found::Everything(4));
+        assert_eq!(unsettled(&known), [""; 0], "the newer review did not find it");
+        known.take(of_version(5, Vec::new()));
+        assert_eq!(unsettled(&known), ["below-terrain"]);
     }
 }

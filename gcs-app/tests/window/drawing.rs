@@ -168,6 +168,17 @@ fn fixes_runways_and_zones_are_drawn_on_the_map() {
     window.click_at(at);
     window.click_at(at + vec2(200.0, 0.0));
     assert_eq!(window.selected(), "keep-in-1");
+    // what is half drawn stays, whatever else could be drawn
+    window.press(Key::Z);
+    let corners = figure(Shape::Area).iter().map(|offset| at + *offset * 0.5 - vec2(300.0, 0.0));
+    corners.for_each(|corner| window.click_at(corner));
+    assert!(!window.shows("(Z: circle)") && !window.is_enabled("circle"));
+    window.press(Key::Z);
+    window.press(Key::Enter);
+    let drawn = window.plan().zone(&window.selected().as_str().into()).unwrap().shape.clone();
+    assert!(matches!(drawn, ZoneShape::Polygon(ref corners) if corners.len() == 4), "{drawn:?}");
+    window.click("Undo");
+    window.press(Key::Escape);
     window.press(Key::R);
     window.click_at(at + vec2(-20.0, 40.0));
     window.click_at(at + vec2(60.0, 40.0));

@@ -324,6 +324,15 @@ fn a_zone_is_selected_by_a_click_inside_and_moved_by_a_drag_there() {
     window.click_at(inside);
     assert_eq!(window.selected(), "quarry");
     let before = window.plan();
+    window.harness.hover_at(inside);
+    window.harness.drag_at(inside);
+    window.steps(90);
+    window.harness.drop_at(inside);
+    window.steps(3);
+    assert!(
+        window.plan() == before && !window.shows("Moved the selected zone"),
+        "it was only pressed for long"
+    );
     window.drag(inside, vec2(20.0, 15.0));
     let shape = |plan: &FlightPlan| match plan.zone(&"quarry".into()).unwrap().shape {
         ZoneShape::Circle { centre, radius_m } => (centre, radius_m),

@@ -289,6 +289,14 @@ struct Held<T> {
     gate: Gate,
 }
 
+impl<T> Held<T> {
+    /// Somebody waits for a value, and none came in since.
+    fn is_wanted_since(&self, asked: Instant) -> bool {
+        let has_come = |received: &Arc<Received<T>>| received.at >= asked;
+        !self.sender.is_closed() && !self.sender.borrow().as_ref().is_some_and(has_come)
+    }
+}
+
 type Cell<T> = Arc<Held<T>>;
 
 /// Asks the publisher for its last value; an answer is good only while nothing newer came in.
@@ -317,7 +325,7 @@ where
     let drop = {
         let (inner, key, cell) = (inner.clone(), key.to_owned(), cell.clone());
         move || {
-            if !answered.load(Ordering::Relaxed) && attempts_left > 0 {
+            if !answered.load(Ordering::Relaxed) && attempts_left > 0 && cell.is_wanted_since(asked) {
                 ask_again(inner.clone(), key.clone(), cell.clone(), attempts_left - 1);
             }
         }

@@ -75,10 +75,15 @@ impl Pen {
         self.figure
     }
 
-    /// Draws another figure from now on; a place that was clicked alone begins it.
+    /// Another figure can be drawn: of more places than one, all but the first would be lost.
+    pub fn may_change(&self) -> bool {
+        self.len() < 2
+    }
+
+    /// Draws another figure from now on, if it may; a place that was clicked alone begins it.
     pub fn set_figure(&mut self, figure: Figure) {
-        if figure != self.figure {
-            let marks = if self.len() == 1 { self.drawn() } else { Vec::new() };
+        if figure != self.figure && self.may_change() {
+            let marks = self.drawn();
             *self = Self { marks, is_off_lines: self.is_off_lines, ..Self::new(figure) };
         }
     }

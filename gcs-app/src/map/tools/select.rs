@@ -37,6 +37,8 @@ pub struct Select {
     line: Option<Id>,
     /// The zone that is moved as a whole.
     zone: Option<Id>,
+    /// It was: a press alone moves nothing.
+    zone_moves: bool,
     /// What the last click may have meant.
     among: Vec<Selection>,
     /// The handles around several selected legs.
@@ -180,7 +182,11 @@ impl Tool for Select {
     }
 
     fn drag(&mut self, grip: usize, to: Pos2, canvas: &Canvas<'_>, queue: &mut Queue) {
-        if self.refused || self.group.drag(to, canvas, queue) {
+        if self.refused {
+            return;
+        }
+        if self.group.drag(to, canvas, queue) {
+            self.zone_moves = self.zone.is_some();
             return;
         }
         let plan = canvas.scene.document.plan();
@@ -222,7 +228,7 @@ impl Tool for Select {
 
     fn release(&mut self, queue: &mut Queue) {
         self.inserting = None;
-        if self.zone.take().is_some() {
+        if self.zone.take().is_some() && std::mem::take(&mut self.zone_moves) {
             // who meant the map sees what he did
             queue.view(ViewCommand::Notice("Moved the selected zone. Ctrl+Z takes it back.".into()));
         }

@@ -7,7 +7,7 @@ use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::panels::Scene;
 use crate::panels::field::{self, Change};
 use crate::theme::Palette;
-use egui::{CursorIcon, Key, Painter, Pos2, Ui};
+use egui::{Button, CursorIcon, Key, Painter, Pos2, Ui};
 use flight_plan::{Altitude, AltitudeReference, Edit, Thing, Value, Zone, ZoneKind, ZoneShape, create};
 use geometry::LatLon;
 
@@ -217,7 +217,8 @@ impl Tool for DrawZone {
             _ => ("outline", "circle"),
         };
         let (zone, hint) = (zone_name(self.kind), self.pen.hint());
-        Some(format!("{zone}, {figure} (Z: {other}): {hint}. Esc ends it."))
+        let other = if self.pen.may_change() { format!(" (Z: {other})") } else { String::new() };
+        Some(format!("{zone}, {figure}{other}: {hint}. Esc ends it."))
     }
 
     fn again(&mut self) {
@@ -231,7 +232,8 @@ impl Tool for DrawZone {
         let above_ground =
             |metres| Altitude { metres: Value::Constant(metres), reference: AltitudeReference::Agl };
         for (figure, name) in [(Figure::Ring, "outline"), (Figure::Circle, "circle")] {
-            if ui.selectable_label(self.pen.figure() == figure, name).clicked() {
+            let choice = Button::selectable(self.pen.figure() == figure, name);
+            if ui.add_enabled(self.pen.may_change(), choice).clicked() {
                 self.pen.set_figure(figure);
             }
         }

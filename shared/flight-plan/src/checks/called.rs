@@ -11,6 +11,8 @@ struct Made {
     written: Id,
     /// The innermost call that makes it.
     call: Id,
+    /// The loops of the procedure that are around it, as what they are written, the nearest first.
+    loops: Vec<Id>,
 }
 
 /// Makes edits of legs that come from calls edits of the procedure's legs; what can't be one is no remedy, for the plan as written
@@ -33,7 +35,10 @@ impl Made {
         let behind = |around: &Id| leg.strip_prefix(around.as_str())?.strip_prefix('.').map(Id::new);
         let made = step.around.loops.iter().filter_map(|around| Some((behind(&around.id)?, &around.id)));
         let (written, call) = made.min_by_key(|(written, _)| written.as_str().len())?;
-        Some(Self { written, call: call.clone() })
+        let of_call =
+            |around: &Id| around.as_str().strip_prefix(call.as_str())?.strip_prefix('.').map(Id::new);
+        let loops = step.around.loops.iter().rev().filter_map(|around| of_call(&around.id)).collect();
+        Some(Self { written, call: call.clone(), loops })
     }
 }
 
@@ -62,6 +67,7 @@ impl Writing<'_> {
             Edit::All(edits) => {
                 let edits: Vec<Edit> =
                     edits.iter().map(|edit| self.edit(edit, is_made)).collect::<Option<_>>()?;
+                let edits = each_once(edits);
                 are_of_each_once(&edits).then_some(Edit::All(edits))
             }
             other => (!is_made).then_some(other),
@@ -72,16 +78,31 @@ impl Writing<'_> {
         self.made.get(id).map_or(id, |made| &made.written)
     }
 
-    /// Where a value of this leg is changed: in the procedure, if a number stands there; at the call, if the leg inherits it from
-    /// there, for that is nothing to the other calls. `None`: it follows from a formula, or another call makes the call.
+    /// Where a value of this leg is changed: in the procedure, if a number stands there, at the leg or a loop around it; at the
+    /// call, if the leg inherits it from there, for that is nothing to the other calls. `None`: it follows from a formula, or
+    /// another call makes the call.
     fn valued(&self, id: &Id, own: impl Fn(&Leg) -> Option<Value<f64>>) -> Option<Id> {
         let Some(made) = self.made.get(id) else { return Some(id.clone()) };
-        match own(self.plan.any_leg(&made.written)?) {
-            Some(Value::Constant(_)) => Some(made.written.clone()),
-            Some(Value::Expression(_)) => None,
-            None => self.plan.leg(&made.call).map(|context| context.leg.id.clone()),
+        for written in std::iter::once(&made.written).chain(&made.loops) {
+            match own(self.plan.any_leg(written)?) {
+                Some(Value::Constant(_)) => return Some(written.clone()),
+                Some(Value::Expression(_)) => return None,
+                None => {}
+            }
+        }
+        self.plan.leg(&made.call).map(|context| context.leg.id.clone())
+    }
+}
+
+/// What is to be done twice is done once: two legs may inherit from one place.
+fn each_once(edits: Vec<Edit>) -> Vec<Edit> {
+    let mut once: Vec<Edit> = Vec::new();
+    for edit in edits {
+        if !once.contains(&edit) {
+            once.push(edit);
         }
     }
+    once
 }
 
 /// No two edits set a value of the same: legs of one call are not raised by different amounts there.
@@ -133,6 +154,29 @@ mod tests {
         let raised = ["west", "east", "low"].map(|leg| altitude_m(&mended, leg));
         let at = |metres| Some(crate::Value::Constant(metres));
         assert_eq!(raised, [at(350.0), at(600.0), None]);
+    }
+
+    #[test]
+    fn what_a_loop_of_the_procedure_says_is_mended_at_that_loop() {
+        let low = r#"<iterative id="twice" count="2" altitude="250" altitudeReference="amsl">
+            <TF id="low" lat="36.3" lon="-84.185"/></iterative><TF id="far" lat="36.3" lon="-84.19"/>"#;
+        let mended = fixed(&called(&LOOK.replace("{leg}", low), CALLS), "below-terrain");
+        let raised = ["twice", "low", "far", "west"].map(|leg| altitude_m(&mended, leg));
+        let at = |metres| Some(crate::Value::Constant(metres));
+        assert_eq!(raised, [at(350.0), None, None, at(250.0)]);
+    }
+
+    #[test]
+    fn two_legs_that_inherit_from_one_call_are_mended_together() {
+        let set = |metres| {
+            let altitude = crate::Altitude {
+                metres: crate::Value::Constant(metres),
+                reference: crate::AltitudeReference::Amsl,
+            };
+            crate::Edit::SetAltitude { of: "west".into(), altitude: Some(altitude) }
+        };
+        assert_eq!(super::each_once(vec![set(350.0), set(350.0)]), [set(350.0)]);
+        assert!(!super::are_of_each_once(&super::each_once(vec![set(350.0), set(400.0)])));
     }
 
     #[test]

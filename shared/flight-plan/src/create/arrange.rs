@@ -126,6 +126,8 @@ pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     let Gathered { legs: moved, next, led } = gather(plan, &legs, &id)?;
     let first = moved.first()?.clone();
     let reference = moved.iter().find_map(|leg| place_of(plan, leg));
+    // where it is: what has an anchor can be dragged elsewhere
+    let anchor = own_place(&moved).map(|at| Place::Position(Value::Constant(at)));
     let procedure = Procedure {
         id: plan.fresh_id("procedure"),
         name: String::new(),
@@ -134,8 +136,6 @@ pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
         bearing_deg: 0.0,
         legs: moved,
     };
-    // where it is: what has an anchor can be dragged elsewhere
-    let anchor = reference.map(|at| Place::Position(Value::Constant(at)));
     let call = Call { procedure: procedure.id.clone(), arguments: Vec::new(), anchor, bearing_deg: None };
     let caller = Leg {
         id: id.clone(),
@@ -158,6 +158,18 @@ fn place_of(plan: &FlightPlan, leg: &Leg) -> Option<geometry::LatLon> {
         Place::Position(Value::Constant(at)) => Some(*at),
         Place::Position(Value::Expression(_)) => None,
     }
+}
+
+/// The first place that moves with a procedure of these legs. `None` also if a fix is among them: that stays where it is, and would
+/// tear the others off.
+fn own_place(legs: &[Arc<Leg>]) -> Option<geometry::LatLon> {
+    let places = || legs.iter().filter_map(|leg| leg.first_flown().place());
+    let is_fix = |place: &Place| matches!(place, Place::Fix(_));
+    let own = |place: &Place| match place {
+        Place::Position(Value::Constant(at)) => Some(*at),
+        _ => None,
+    };
+    if places().any(is_fix) { None } else { places().find_map(own) }
 }
 
 /// Legs in the order of their list; `None`: they are of several lists, or none.

@@ -365,6 +365,24 @@ fn legs_are_copied_moved_and_put_into_loops_forks_and_procedures() {
     assert!(matches!(anchored.kind, LegKind::Call(ref call) if call.anchor.is_some()));
 }
 
+/// What goes to a fix stays there, whatever is dragged.
+#[test]
+fn a_procedure_is_anchored_if_all_of_it_moves() {
+    let plan = made(Template::Patrol);
+    let anchor_of = |plan: &FlightPlan, legs: &[Id]| {
+        let (caller, edit) = procedure_of(plan, legs).unwrap();
+        let LegKind::Call(call) = edit.apply(plan).unwrap().leg(&caller).unwrap().leg.kind.clone() else {
+            panic!("no call")
+        };
+        call.anchor
+    };
+    let own = leg(&plan, &Profile::default(), LegChoice::Tf, &Drawn::Place(at(HOME)), None, None).unwrap();
+    let own_id = own.id.clone();
+    let plan = insert(&plan, own, Spot::After("patrol".into())).apply(&plan).unwrap();
+    assert_eq!(anchor_of(&plan, std::slice::from_ref(&own_id)), Some(at(HOME)));
+    assert_eq!(anchor_of(&plan, &["patrol".into(), own_id]), None);
+}
+
 /// What is made of a branch's leg stands in the branch, and leads on as that did.
 #[test]
 fn a_leg_of_a_branch_becomes_a_loop_or_a_procedure_in_its_branch() {
