@@ -578,6 +578,25 @@ fn a_glide_that_ends_in_a_hill() {
     assert!(poor.iter().any(|p| p.code == "glide-out-of-reach"), "{:?}", shown(&poor));
 }
 
+/// To name the fallback for an engine failure changes what counts, not what is flown: the two figures can be compared.
+#[test]
+fn an_alternate_that_is_named_says_how_it_would_count_unnamed() {
+    let out_of_glide = |document: &str| {
+        let found = verdict_over(document.as_bytes());
+        found.into_iter().find(|p| p.code == "glide-out-of-reach").unwrap().message
+    };
+    let unnamed = String::from_utf8(rectangle("", "")).unwrap();
+    let named = unnamed.replace(
+        r#"<mainPlan emergency="home">"#,
+        r#"<mainPlan emergency="home"><emergency cause="engine" plan="home"/>"#,
+    );
+    let (unnamed, named) = (out_of_glide(&unnamed), out_of_glide(&named));
+    let share = unnamed.split(" % of the flight").next().and_then(|text| text.rsplit(' ').next()).unwrap();
+    assert!(unnamed.contains("a glide straight to the runway counts"), "{unnamed}");
+    let compared = format!("a glide straight to its runway falls short on {share} %");
+    assert!(named.contains("All of its legs count") && named.contains(&compared), "{unnamed}\n{named}");
+}
+
 #[test]
 fn a_flight_that_never_ends_is_reviewed_all_the_same() {
     let lasting = Profile { energy_j: 1e12, ..Profile::default() };

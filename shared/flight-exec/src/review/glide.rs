@@ -52,8 +52,31 @@ fn glides(
         let samples = from.iter().filter(|_| named).step_by(SAMPLE_EVERY);
         return samples.into_iter().find_map(|from| hill(view, alternate, from));
     };
-    let share = short.len() as f64 / from.len() as f64;
-    Some(out_of_reach(view, alternate, *worst, (named, share)))
+    let counted = Counted {
+        percent: percent(short.len(), from.len()),
+        straight_percent: named.then(|| straight_percent(view, alternate, from)),
+    };
+    Some(out_of_reach(view, alternate, *worst, counted))
+}
+
+/// On how much of the flight a plan is out of reach.
+struct Counted {
+    /// Of a plan that is named for an engine failure by the glide along all of it, of the fallback by one straight to its runway.
+    percent: f64,
+    /// Of a plan that is named, what it would be as the fallback: without that, to name a plan would look like a change for the worse.
+    straight_percent: Option<f64>,
+}
+
+fn percent(part: usize, all: usize) -> f64 {
+    (100.0 * part as f64 / all.max(1) as f64).ceil()
+}
+
+/// As of the fallback: without what is near the runway.
+fn straight_percent(view: &View, alternate: &Alternate, from: &[&Origin]) -> f64 {
+    let far: Vec<_> = from.iter().filter(|from| !is_near_runway(view, from)).collect();
+    let straight = [alternate.runway.threshold];
+    let short = far.iter().filter(|from| missing_m(view, alternate, &straight, from) > 0.0);
+    percent(short.count(), far.len())
 }
 
 /// Seconds between points from which a glide is tried, and how many of them are left out before the next at whose hills one samples.
@@ -86,12 +109,11 @@ fn height_m(view: &View, alternate: &Alternate, way: &[LatLon], from: &Origin) -
     Some(altitude_amsl_m - path.last()?.altitude_amsl_m)
 }
 
-/// `share`: of the points where the plan answers, named for it or as the fallback, how many are out of its reach.
 fn out_of_reach(
     view: &View,
     alternate: &Alternate,
     (missing_m, from): (f64, &Origin),
-    (named, share): (bool, f64),
+    Counted { percent, straight_percent }: Counted,
 ) -> Problem {
     let short_m = missing_m * view.profile.glide_ratio;
     let what = if missing_m.is_finite() {
@@ -103,15 +125,14 @@ fn out_of_reach(
         format!("does not get to the runway `{}` against the wind: fly nearer to it", alternate.runway.id)
     };
     let plan = &alternate.plan.id;
-    let percent = (100.0 * share).ceil();
-    if named {
+    if let Some(straight) = straight_percent {
         let message = format!(
-            "engine failure: `{plan}` is out of glide on {percent:.0} % of the flight where it answers. At worst, from {from}, a glide along all of it {what}, or name a nearer emergency plan for an engine failure"
+            "engine failure: `{plan}` is out of glide on {percent:.0} % of the flight where it answers. All of its legs count, for it is named for an engine failure: a glide straight to its runway falls short on {straight:.0} %. At worst, from {from}, a glide along all of it {what}, or name a nearer emergency plan for an engine failure"
         );
         return Problem::warning("glide-out-of-reach", message).of(&from.leg).with_place(from.position);
     }
     let message = format!(
-        "engine failure: runway out of glide on {percent:.0} % of the flight. Be ready to land elsewhere: no emergency plan is named for the cause `engine`, and at worst, from {from}, a glide {what}, or name a nearer plan for this cause"
+        "engine failure: runway out of glide on {percent:.0} % of the flight. Be ready to land elsewhere: no emergency plan is named for the cause `engine`, so a glide straight to the runway counts; at worst, from {from}, it {what}, or name a nearer plan for this cause"
     );
     Problem::warning("glide-out-of-reach", message).of(plan).with_place(from.position)
 }
