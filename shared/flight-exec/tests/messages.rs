@@ -56,8 +56,26 @@ fn a_leg_that_is_still_climbing_has_to_begin_higher() {
     let level = climbs.replace("700", "500");
     let problems = found_over(&level, Arc::new(Ridge(480.0)), Conditions::default());
     let problem = with_code(&problems, "low-clearance");
-    assert!(problem.message.starts_with("raise this leg by 2"), "{problem}");
+    // the ridge is in the middle of its way: half of what its end is raised by arrives there
+    assert!(problem.message.starts_with("raise this leg by 4"), "{problem}");
     assert!(problem.message.ends_with("40 m is the least of a path as flown"), "{problem}");
+}
+
+/// A leg behind a fork is come to from two places, by the other branch along a ridge.
+#[test]
+fn one_fix_raises_a_leg_enough_on_every_way_to_it() {
+    let legs = r#"<intersection id="fork" default="on"><branch id="on" next="low"/><branch id="away" next="far"/></intersection>
+        <TF id="far" fix="FAR"/><DF id="low" fix="C" altitude="480" altitudeReference="amsl"/>"#;
+    let plan = document("", legs);
+    for ridge_m in [500.0, 470.0] {
+        let ridge = || Arc::new(Ridge(ridge_m));
+        let is_low = |p: &&Problem| ["low-clearance", "below-terrain"].contains(&p.code);
+        let found = found_over(&plan, ridge(), Conditions::default());
+        let low = found.iter().find(|p| is_low(p) && p.subject == Some("low".into())).unwrap();
+        let raised = low.fix.as_ref().unwrap().apply(&flight_plan::read(&plan).plan).unwrap();
+        let again = found_over(&flight_plan::write(&raised), ridge(), Conditions::default());
+        assert_eq!(again.iter().find(is_low), None, "{low}");
+    }
 }
 
 fn rounds(until: &str) -> String {

@@ -89,6 +89,17 @@ impl Flown {
         Some((&last.waypoint.leg, last.wanted_amsl_m))
     }
 
+    /// How much of what its leg is raised by arrives at a point, 0..=1: on the way to the leg's first waypoint the altitude changes
+    /// evenly, behind that all of it does.
+    pub fn share_of_leg(&self, point: &Point) -> f64 {
+        let waypoint = |index: usize| self.waypoints.get(index);
+        let ends = point.waypoint.checked_sub(1).and_then(waypoint).zip(waypoint(point.waypoint));
+        let Some((before, to)) = ends.filter(|(before, to)| before.passage != to.passage) else { return 1.0 };
+        let whole_m = before.waypoint.position.distance_m(to.waypoint.position);
+        let left_m = point.position.distance_m(to.waypoint.position);
+        if whole_m > 0.0 { (1.0 - left_m / whole_m).clamp(0.0, 1.0) } else { 1.0 }
+    }
+
     /// The leg that is flown before the first passage of one.
     pub fn leg_before(&self, leg: &Id) -> Option<&Id> {
         let first = self.waypoints.iter().position(|w| w.waypoint.leg == *leg)?;

@@ -28,7 +28,12 @@ struct Lowest<'a> {
     known: bool,
     /// What is flown before the leg, and the altitude with which that ends, metres AMSL.
     before: Option<(&'a Id, f64)>,
+    /// By how much the leg has to be raised so that all of it is high enough, on every way to it, metres.
+    lift_m: f64,
 }
+
+/// A leg is not raised by more than so many times what lacks.
+const MOST_OF_LACK: f64 = 4.0;
 
 impl Lowest<'_> {
     /// What has to begin higher, and by how much (metres), where the leg itself is high enough and only still climbing: between
@@ -51,17 +56,38 @@ fn track<'a>(
     lowest: &mut HashMap<&'a Id, Lowest<'a>>,
     order: &mut Vec<&'a Id>,
 ) {
+    let margin_m = view.conditions.margins.terrain_m;
     for point in flown.points.iter().filter(|p| !flown.enters(p)) {
         let Some((clearance_m, known)) = clearance_m(view, point) else { continue };
         let Some(leg) = flown.leg(point) else { continue };
         let wanted_amsl_m = flown.wanted_amsl_m(point).unwrap_or(point.altitude_amsl_m);
-        let here = Lowest { clearance_m, point: *point, wanted_amsl_m, known, before: flown.before(point) };
-        if lowest.get(leg).is_none_or(|old| clearance_m < old.clearance_m)
-            && lowest.insert(leg, here).is_none()
-        {
-            order.push(leg);
+        let before = flown.before(point);
+        let mut here =
+            Lowest { clearance_m, point: *point, wanted_amsl_m, known, before, lift_m: f64::NEG_INFINITY };
+        if is_too_low(view, leg, clearance_m) && here.begins_too_low(margin_m).is_none() {
+            here.lift_m = (margin_m - clearance_m) / flown.share_of_leg(point).max(1.0 / MOST_OF_LACK);
+        }
+        match lowest.get_mut(leg) {
+            None => {
+                order.push(leg);
+                lowest.insert(leg, here);
+            }
+            Some(old) => {
+                here.lift_m = here.lift_m.max(old.lift_m);
+                if clearance_m < old.clearance_m {
+                    *old = here;
+                } else {
+                    old.lift_m = here.lift_m;
+                }
+            }
         }
     }
+}
+
+/// For a departure and an approach the ground is low enough.
+fn is_too_low(view: &View, leg: &Id, clearance_m: f64) -> bool {
+    let near_runway = matches!(view.stage_kind(leg), Some(StageKind::Departure | StageKind::Approach));
+    clearance_m < if near_runway { 0.0 } else { view.conditions.margins.terrain_m }
 }
 
 /// The height above the ground, metres, and whether that is known there: where it is not, all that can be said is that it lies
@@ -78,13 +104,11 @@ fn problem(view: &View, leg: &Id, lowest: &Lowest, ways: Option<&OtherWays>) -> 
     let Lowest { clearance_m, point, wanted_amsl_m, known, .. } = *lowest;
     let kind = view.stage_kind(leg)?;
     // the autopilot performs these, on the runway's elevation and not the terrain's
-    if matches!(kind, StageKind::TakeOff | StageKind::Land) {
+    if matches!(kind, StageKind::TakeOff | StageKind::Land) || !is_too_low(view, leg, clearance_m) {
         return None;
     }
-    let near_runway = matches!(kind, StageKind::Departure | StageKind::Approach);
     let margin_m = view.conditions.margins.terrain_m;
     let (lat, lon) = (point.position.lat_deg, point.position.lon_deg);
-    let raise_m = margin_m - clearance_m;
     let (advice, fix) = match lowest.begins_too_low(margin_m) {
         Some((before, ends_amsl_m, by_m)) => (
             format!(
@@ -94,8 +118,8 @@ fn problem(view: &View, leg: &Id, lowest: &Lowest, ways: Option<&OtherWays>) -> 
             view.relevelled(before, ends_amsl_m, by_m),
         ),
         None => (
-            format!("raise this leg by {:.0} m", raise_m.ceil()),
-            view.relevelled(leg, wanted_amsl_m, raise_m),
+            format!("raise this leg by {:.0} m", lowest.lift_m.ceil()),
+            view.relevelled(leg, wanted_amsl_m, lowest.lift_m),
         ),
     };
     let way = ways.and_then(|ways| ways.to(leg, lowest.before.map(|(before, _)| before)));
@@ -116,6 +140,5 @@ fn problem(view: &View, leg: &Id, lowest: &Lowest, ways: Option<&OtherWays>) -> 
         "{advice}: as flown, it passes {:.0} m above the ground. That is at {lat:.5}, {lon:.5}; {margin_m:.0} m is the least of a path as flown",
         clearance_m.floor()
     );
-    let problem = Problem::warning("low-clearance", message).of(leg).with_place(spot);
-    (clearance_m < margin_m && !near_runway).then(|| problem.perhaps_fixed_by(fix))
+    Some(Problem::warning("low-clearance", message).of(leg).with_place(spot).perhaps_fixed_by(fix))
 }
