@@ -206,6 +206,15 @@ impl Document {
         outer.find(|id| self.names.kind(id) == Some("call"))
     }
 
+    /// A flown leg is wanted as itself, as the call that has made it, or as the leg of the procedure that it stands for.
+    pub fn is_wanted(&self, flown: &Id, wanted: impl Fn(&Id) -> bool) -> bool {
+        // only what a call has made has a dot: it is looked up
+        let is_made = || flown.as_str().contains('.') && self.names.kind(flown).is_none();
+        wanted(flown)
+            || (is_made()
+                && (wanted(&self.written(flown)) || self.call_of(flown).is_some_and(|call| wanted(&call))))
+    }
+
     /// What a flown leg is in the document: a leg, also of a procedure, or a stage that is flown without legs.
     pub fn part_of(&self, flown: &Id) -> Selection {
         let written = self.written(flown);
@@ -329,6 +338,23 @@ mod tests {
             description: String::new(),
         };
         Document::new(FlightPlan { fixes: vec![fix], ..new_plan() }, None, Vec::new())
+    }
+
+    #[test]
+    fn a_leg_that_a_call_made_is_wanted_with_the_call_and_with_the_procedures_leg() {
+        let plan = r#"<flightPlan xmlns="urn:legwork:flight-plan:1"><procedures><procedure id="look" reference="46 9">
+            <TF id="near" lat="46" lon="9"/></procedure></procedures><mainPlan><stage id="m" type="mission">
+            <call id="c1" procedure="look"/><call id="c2" procedure="look"/><TF id="b" lat="46.1" lon="9"/></stage></mainPlan></flightPlan>"#;
+        let d = Document::new(flight_plan::read(plan).plan, None, Vec::new());
+        let with = |wanted: &str| {
+            let flown = ["c1.near", "c2.near", "b"].into_iter();
+            flown
+                .filter(|flown| d.is_wanted(&(*flown).into(), |id| id.as_str() == wanted))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(with("c2"), ["c2.near"]);
+        assert_eq!(with("near"), ["c1.near", "c2.near"]);
+        assert_eq!((with("b"), with("m"), with("c2.near")), (vec!["b"], vec![], vec!["c2.near"]));
     }
 
     fn moved(lat: f64) -> Edit {

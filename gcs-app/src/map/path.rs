@@ -155,7 +155,10 @@ impl Layer {
             |wide| {
                 let looked_at = LookedAt::of(scene, p);
                 let ids = looked_at.ids();
-                let wanted = |passage: &Passage| ids.contains(&passage.leg) || ids.contains(&passage.stage);
+                let wanted = |passage: &Passage| {
+                    ids.contains(&passage.stage)
+                        || scene.document.is_wanted(&passage.leg, |id| ids.contains(id))
+                };
                 let shapes =
                     if ids.is_empty() { Vec::new() } else { highlight(wide, scene, (p.text, p), wanted) };
                 drop(ids);

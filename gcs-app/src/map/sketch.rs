@@ -12,6 +12,7 @@ mod reader;
 mod ruler;
 mod ways;
 
+use calls::Calls;
 pub use handle::{Handle, Handled};
 pub use placed::Placed;
 pub use radius::{bound_radius, radius_edit};
@@ -115,7 +116,7 @@ impl Sketch {
         sketch.add_lines(plan, &reader);
         sketch.add_variables();
         sketch.ways = ways::of(&arrivals, &reader);
-        sketch.called = ways::called(&reader);
+        sketch.add_called(&reader);
         sketch.placed = Placed::of(&sketch, former);
         sketch
     }
@@ -132,22 +133,36 @@ impl Sketch {
         if !ends.is_empty() {
             self.photo_ends.insert(leg.id.clone(), ends);
         }
+        if let Some(rim) = round(leg) {
+            return self.add_circle(leg, rim, reader);
+        }
         match &leg.kind {
-            LegKind::Orbit { centre, radius_m, .. } => self.add_circle(leg, centre, radius_m, false, reader),
             LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => {
                 self.add_area(leg, area, reader)
             }
-            LegKind::Pattern(
-                Pattern::Spiral { centre, outer_radius_m: radius_m, .. }
-                | Pattern::ExpandingSquare { centre, radius_m, .. }
-                | Pattern::Sector { centre, radius_m, .. }
-                | Pattern::FigureEight { centre, radius_m, .. },
-            ) => self.add_circle(leg, centre, radius_m, false, reader),
             LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. }) => {
                 self.add_route(leg, route, reader)
             }
             _ => leg.place().into_iter().for_each(|place| self.add_waypoint(leg, place, reader)),
         }
+    }
+
+    /// What procedures fly where they are called: nothing of it can be dragged.
+    fn add_called(&mut self, reader: &Reader<'_>) {
+        let mut calls = Calls::of(reader.plan);
+        for context in reader.plan.all_legs() {
+            let body = calls.body(context.leg);
+            body.iter().for_each(|leg| self.add_flown(&context.leg.id, leg, reader));
+        }
+    }
+
+    fn add_flown(&mut self, call: &Id, leg: &Leg, reader: &Reader<'_>) {
+        self.called.extend(ways::places(leg, reader));
+        let rim = round(leg).and_then(|rim| circle(call, rim, ways::area(leg).is_some(), reader));
+        self.circles.extend(rim);
+        let covered = ways::area(leg).and_then(|area| rings(area, reader));
+        self.polygons.extend(covered.map(|rings| (call.clone(), rings)));
+        leg.body().iter().for_each(|inner| self.add_flown(call, inner, reader));
     }
 
     /// The line and the middle of a straight leg, if both of its ends are known.
@@ -220,18 +235,15 @@ impl Sketch {
     }
 
     fn add_area(&mut self, leg: &Leg, area: &Area, reader: &Reader<'_>) {
-        match area {
-            Area::Circle { centre, radius_m } => self.add_circle(leg, centre, radius_m, true, reader),
-            Area::Polygon { corners, holes } => self.add_polygon(leg, corners, holes),
-            // its corners are a variable's
-            Area::Expression(source) => {
-                let Some(ring) = reader.polygon(source) else { return };
-                if reader.plan.variable(&Id::new(source)).is_some() {
-                    self.add_ring(&leg.id, None, &ring);
-                }
-                self.polygons.push((leg.id.clone(), vec![ring]));
-            }
+        let Some(rings) = rings(area, reader) else { return };
+        let can_be_dragged = match area {
+            Area::Expression(source) => reader.plan.variable(&Id::new(source)).is_some(),
+            Area::Polygon { .. } | Area::Circle { .. } => true,
+        };
+        for (ring, points) in rings.iter().enumerate().filter(|_| can_be_dragged) {
+            self.add_ring(&leg.id, ring.checked_sub(1), points);
         }
+        self.polygons.push((leg.id.clone(), rings));
     }
 
     fn add_waypoint(&mut self, leg: &Leg, place: &Place, reader: &Reader<'_>) {
@@ -243,30 +255,21 @@ impl Sketch {
         }
     }
 
-    fn add_circle(
-        &mut self,
-        leg: &Leg,
-        centre: &Place,
-        source_m: &Value<f64>,
-        is_area: bool,
-        reader: &Reader<'_>,
-    ) {
-        let (Some(at), Some(radius_m)) = (reader.place(centre), reader.number(source_m)) else { return };
-        if !(radius_m > 0.0 && radius_m < 1.0e6) {
-            return;
-        }
-        self.note_radius(centre, source_m, reader);
+    fn add_circle(&mut self, leg: &Leg, rim: Rim<'_>, reader: &Reader<'_>) {
+        let Some(circle) = circle(&leg.id, rim, ways::area(leg).is_some(), reader) else { return };
+        let Circle { centre: at, radius_m, .. } = circle;
+        self.note_radius(rim, reader);
         // circles around the same place share one handle: the first one's
         if self.centres.insert([at.lat_deg, at.lon_deg].map(f64::to_bits)) {
             self.handles.push(Handle { what: Handled::Centre(leg.id.clone()), at });
         }
         self.handles
             .push(Handle { what: Handled::Radius(leg.id.clone()), at: at.destination(90.0, radius_m) });
-        self.circles.push(Circle { leg: leg.id.clone(), centre: at, radius_m, is_area });
+        self.circles.push(circle);
     }
 
     /// A circle around a variable whose radius is made of another variable: that one is the radius of the thing itself.
-    fn note_radius(&mut self, centre: &Place, radius_m: &Value<f64>, reader: &Reader<'_>) {
+    fn note_radius(&mut self, (centre, radius_m): Rim<'_>, reader: &Reader<'_>) {
         let (Place::Position(Value::Expression(centre)), Value::Expression(radius)) = (centre, radius_m)
         else {
             return;
@@ -278,15 +281,6 @@ impl Sketch {
         {
             variable.radius_m.get_or_insert(*metres);
         }
-    }
-
-    fn add_polygon(&mut self, leg: &Leg, corners: &[LatLon], holes: &[Vec<LatLon>]) {
-        let rings: Vec<Vec<LatLon>> =
-            std::iter::once(corners.to_vec()).chain(holes.iter().cloned()).collect();
-        for (ring, points) in rings.iter().enumerate() {
-            self.add_ring(&leg.id, ring.checked_sub(1), points);
-        }
-        self.polygons.push((leg.id.clone(), rings));
     }
 
     fn add_lines(&mut self, plan: &FlightPlan, reader: &Reader<'_>) {
@@ -337,6 +331,43 @@ impl Sketch {
     }
 }
 
+/// A centre and a radius.
+type Rim<'a> = (&'a Place, &'a Value<f64>);
+
+/// Of a leg around a place, or of one that covers a circle.
+fn round(leg: &Leg) -> Option<Rim<'_>> {
+    match &leg.kind {
+        LegKind::Orbit { centre, radius_m, .. }
+        | LegKind::Scan(Scan { area: Area::Circle { centre, radius_m }, .. })
+        | LegKind::Pattern(
+            Pattern::Contour { area: Area::Circle { centre, radius_m }, .. }
+            | Pattern::Spiral { centre, outer_radius_m: radius_m, .. }
+            | Pattern::ExpandingSquare { centre, radius_m, .. }
+            | Pattern::Sector { centre, radius_m, .. }
+            | Pattern::FigureEight { centre, radius_m, .. },
+        ) => Some((centre, radius_m)),
+        _ => None,
+    }
+}
+
+/// `None`: it can't be placed.
+fn circle(leg: &Id, (centre, radius_m): Rim<'_>, is_area: bool, reader: &Reader<'_>) -> Option<Circle> {
+    let (centre, radius_m) = (reader.place(centre)?, reader.number(radius_m)?);
+    let can_be_drawn = radius_m > 0.0 && radius_m < 1.0e6;
+    can_be_drawn.then(|| Circle { leg: leg.clone(), centre, radius_m, is_area })
+}
+
+/// The outline of an area with corners, and those of its holes.
+fn rings(area: &Area, reader: &Reader<'_>) -> Option<Vec<Vec<LatLon>>> {
+    match area {
+        Area::Polygon { corners, holes } => {
+            Some(std::iter::once(corners.clone()).chain(holes.iter().cloned()).collect())
+        }
+        Area::Expression(source) => Some(vec![reader.polygon(source)?]),
+        Area::Circle { .. } => None,
+    }
+}
+
 fn placed_variables(plan: &FlightPlan, variables: &Variables) -> Vec<PlacedVariable> {
     let place = |name: &Id| match variables.get(name) {
         Some(VariableValue::Position(at)) if at.is_valid() => Some(*at),
@@ -381,6 +412,25 @@ mod tests {
         let corners: Vec<_> = sketch.handles.iter().filter_map(corner).collect();
         let (fix, own) = (LatLon::new(46.0, 9.0), LatLon::new(46.1, 9.0));
         assert_eq!(corners, [(0, fix), (1, own), (3, fix)], "the variable's place is moved by itself");
+    }
+
+    #[test]
+    fn what_a_call_flies_around_or_covers_is_drawn_where_it_is_called_as_the_calls() {
+        let plan = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><procedures>
+            <procedure id="look" reference="46 9"><orbit id="o" radius="300" turns="1" turn="left"><centre lat="46" lon="9"/></orbit>
+              <scan id="s" spacing="300"><area><corner lat="46" lon="9"/><corner lat="46" lon="9.1"/><corner lat="46.1" lon="9"/></area></scan>
+            </procedure></procedures><mainPlan><stage id="m" type="mission">
+            <call id="c" procedure="look" lat="46.5" lon="9"/></stage></mainPlan></flightPlan>"#;
+        let plan = flight_plan::read(plan).plan;
+        let sketch = Sketch::new(&plan, &Variables::initial(&plan), &Sketch::default());
+        let [circle] = sketch.circles.as_slice() else { panic!("{:?}", sketch.circles) };
+        assert_eq!((circle.leg.as_str(), circle.radius_m.round(), circle.is_area), ("c", 300.0, false));
+        assert!(circle.centre.distance_m(LatLon::new(46.5, 9.0)) < 1.0);
+        let [(leg, rings)] = sketch.polygons.as_slice() else { panic!("{:?}", sketch.polygons) };
+        assert_eq!((leg.as_str(), rings[0].len()), ("c", 3));
+        let is_draggable =
+            |handle: &Handle| matches!(handle.what, Handled::Radius(_) | Handled::Corner { .. });
+        assert!(!sketch.handles.iter().any(is_draggable));
     }
 
     #[test]

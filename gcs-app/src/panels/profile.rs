@@ -340,7 +340,8 @@ fn draw_path(painter: &Painter, axes: &Axes, seen: &[Point], scene: &Scene<'_>, 
     }
     draw_diversion(painter, axes, scene, p);
     let highlighted = |leg: &flight_plan::Id, colour: Color32| {
-        for part in forecast.passages_of(leg) {
+        let is_its = |passage: &&Passage| scene.document.is_wanted(&passage.leg, |id| id == leg);
+        for part in forecast.passages.iter().filter(is_its).filter_map(|passage| forecast.part(passage)) {
             painter.add(Shape::line(part.iter().map(|q| axes.place(q)).collect(), Stroke::new(2.6, colour)));
         }
     };

@@ -230,23 +230,8 @@ impl Trace<'_, '_> {
     }
 }
 
-/// The places that calls lead over.
-pub(super) fn called(reader: &Reader<'_>) -> Vec<LatLon> {
-    let mut calls = Calls::of(reader.plan);
-    let mut found = Vec::new();
-    for context in reader.plan.all_legs() {
-        calls.body(context.leg).iter().for_each(|leg| add_places(leg, reader, &mut found));
-    }
-    found
-}
-
-fn add_places(leg: &Leg, reader: &Reader<'_>, found: &mut Vec<LatLon>) {
-    found.extend(places(leg, reader));
-    leg.body().iter().for_each(|inner| add_places(inner, reader, found));
-}
-
 /// The places that a leg leads over: of an area its middle.
-fn places(leg: &Leg, reader: &Reader<'_>) -> Vec<LatLon> {
+pub(super) fn places(leg: &Leg, reader: &Reader<'_>) -> Vec<LatLon> {
     if let LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. }) = &leg.kind {
         return route.iter().filter_map(|place| reader.place(place)).collect();
     }
@@ -260,7 +245,7 @@ fn places(leg: &Leg, reader: &Reader<'_>) -> Vec<LatLon> {
 }
 
 /// What a leg covers, if it is an area.
-fn area(leg: &Leg) -> Option<&Area> {
+pub(super) fn area(leg: &Leg) -> Option<&Area> {
     match &leg.kind {
         LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => Some(area),
         _ => None,
