@@ -18,6 +18,7 @@ mod preview;
 mod pushing;
 mod remembered;
 mod screenshot;
+mod tips;
 mod window;
 
 pub use clock::TimeOfDay;
@@ -126,6 +127,7 @@ impl App {
         let ctx = creation.egui_ctx.clone();
         theme::install(&ctx);
         ctx.add_plugin(press::PressFirst::default());
+        ctx.add_plugin(tips::UnderDialogs::default());
         let wake: Arc<dyn Fn() + Send + Sync> = {
             let ctx = ctx.clone();
             Arc::new(move || ctx.request_repaint())

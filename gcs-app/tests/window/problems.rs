@@ -78,6 +78,19 @@ fn the_headlines_of_a_plan_are_in_view_and_all_of_a_text_is_behind_its_mark() {
     assert!(window.shows("Less of: "));
 }
 
+/// Its tip, too, is of what the dialog covers, though the pointer still rests there.
+#[test]
+fn no_tip_stays_over_a_dialog() {
+    let mut window = opened(SQUARE);
+    let row = window.harness.query_all_by_label_contains("out of glide").next().unwrap().rect().center();
+    window.harness.hover_at(row);
+    window.steps(60);
+    assert!(window.shows("[glide-out-of-reach]"));
+    window.press_ctrl(egui::Key::S);
+    window.steps(60);
+    assert!(window.shows("Save here") && !window.shows("[glide-out-of-reach]"));
+}
+
 /// Each call of a procedure has its problems; they are mended once, and listed so.
 #[test]
 fn a_problem_inside_a_procedure_is_listed_once_with_the_calls_that_have_it() {
