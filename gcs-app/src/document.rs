@@ -35,6 +35,8 @@ pub struct Document {
     is_superseded: bool,
     /// Its edits by then, if it had no changes of its own: without more of them nobody misses it.
     superseded_at: Option<u64>,
+    /// It was made of a file of another format.
+    is_import: bool,
 }
 
 impl Default for Document {
@@ -66,6 +68,7 @@ impl Document {
             is_discarded: false,
             is_superseded: false,
             superseded_at: None,
+            is_import: false,
         };
         document.changed();
         document.id = document.version;
@@ -97,6 +100,11 @@ impl Document {
         let mut document = Self::new(plan, None, Vec::new());
         document.history.mark_unsaved();
         document
+    }
+
+    /// A plan from a file of another format, which holds it still.
+    pub fn imported(plan: FlightPlan) -> Self {
+        Self { is_import: true, ..Self::unsaved(plan) }
     }
 
     /// The plan.
@@ -135,6 +143,10 @@ impl Document {
     /// It differs from its file, and nobody said that it need not be kept.
     pub fn would_be_missed(&self) -> bool {
         self.is_dirty() && !self.is_discarded && self.superseded_at != Some(self.edits)
+    }
+    /// It is in another file as it came from there: nobody worked on it.
+    pub fn is_untouched_import(&self) -> bool {
+        self.is_import && self.edits == 0
     }
     /// Its changes are not wanted any more.
     pub fn is_discarded(&self) -> bool {

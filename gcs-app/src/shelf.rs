@@ -44,7 +44,12 @@ impl Shelf {
             return false;
         }
         self.settle(shown);
-        self.turn(shown, Way::Back)
+        let taken_back = shown.is_untouched_import();
+        let turned = self.turn(shown, Way::Back);
+        if let Some(import) = self.after.last_mut().filter(|_| turned && taken_back) {
+            import.set_discarded(true);
+        }
+        turned
     }
 
     /// The other way.
@@ -189,6 +194,24 @@ mod tests {
         shown.set_discarded(true);
         assert!(shelf.undo(&mut shown) && shown.plan().name == "a");
         assert_eq!(names(shelf.unsaved(&shown)), ["b"]);
+    }
+
+    /// It took nobody's work, and its file is still there.
+    #[test]
+    fn an_import_that_was_undone_is_missed_only_when_it_was_worked_on() {
+        let import = || Document::imported(FlightPlan { name: "import".into(), ..FlightPlan::default() });
+        let (mut shelf, mut shown) = (Shelf::default(), named("mine", true));
+        shelf.open(&mut shown, import());
+        assert_eq!(names(shelf.unsaved(&shown)), ["import", "mine"]);
+        shelf.undo(&mut shown);
+        assert_eq!(names(shelf.unsaved(&shown)), ["mine"]);
+        shelf.redo(&mut shown);
+        assert_eq!(names(shelf.unsaved(&shown)), ["import", "mine"], "it is wanted again");
+        shown.replace(FlightPlan { name: "import, edited".into(), ..FlightPlan::default() });
+        while shelf.can_undo(&shown) {
+            shelf.undo(&mut shown);
+        }
+        assert_eq!(names(shelf.unsaved(&shown)), ["mine", "import"]);
     }
 
     /// Undo and redo that go on past it leave it given up; who turns around there, or works on it, has brought it back.

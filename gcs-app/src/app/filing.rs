@@ -154,7 +154,7 @@ impl App {
         if let Some(imported) = self.view.imported.take() {
             let name = imported.path.file_name().unwrap_or_default().to_string_lossy();
             self.tell_losses(format!("Imported {name}"), &imported.import.notes, now_s);
-            self.shelf.open(&mut self.document, Document::unsaved(imported.import.plan.clone()));
+            self.shelf.open(&mut self.document, Document::imported(imported.import.plan.clone()));
             self.show_another();
         }
     }
