@@ -52,8 +52,8 @@ fn new_parts(scene: &Scene<'_>) -> Vec<Action> {
     for (kind, name) in make::STAGES {
         add(format!("Add a stage: {name}"), make::stage(plan, kind));
     }
-    for (name, initial) in make::kinds_of_variables(scene) {
-        add(format!("Add a variable: {name}"), make::variable(plan, initial));
+    for initial in make::kinds_of_variables(scene) {
+        add(format!("Add a variable: {}", initial.kind()), make::variable(plan, initial));
     }
     for runway in plan.runways.iter().take(MOST) {
         let home = DocumentCommand::BringHome { runway: runway.id.clone(), outwards: Vec::new() };

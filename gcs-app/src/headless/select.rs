@@ -220,7 +220,7 @@ fn no_leg(plan: &FlightPlan, name: &str) -> anyhow::Error {
 fn branch_of(plan: &FlightPlan, leg: &str, branch: &str) -> anyhow::Result<(Id, Id)> {
     let context = plan.leg(&Id::new(leg)).ok_or_else(|| no_leg(plan, leg))?;
     let LegKind::Intersection { branches, .. } = &context.leg.kind else {
-        bail!("`{leg}` is no intersection");
+        bail!("`{leg}` is no fork");
     };
     match branches.iter().find(|b| b.id.as_str() == branch) {
         Some(found) => Ok((context.leg.id.clone(), found.id.clone())),
@@ -343,7 +343,7 @@ mod tests {
         };
         for (selection, said) in [
             (decide("ask=nope"), "has no branch `nope`: it has again, close"),
-            (decide("sweep=close"), "no intersection"),
+            (decide("sweep=close"), "no fork"),
             (decide("nope=close"), "no leg `nope`"),
             (emergency("nope", None), "there are return, north-strip"),
             (emergency("return", Some("nope")), "no leg `nope`"),

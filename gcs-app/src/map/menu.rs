@@ -6,7 +6,7 @@ use crate::command::{PreviewCommand, Queue, Selection, ViewCommand};
 use crate::map::path;
 use crate::map::tools::pen::way;
 use crate::panels::tree::menu as tree_menu;
-use crate::panels::what_if::{self, CAUSES, cause_name};
+use crate::panels::what_if::{self, CAUSES};
 use crate::panels::{Scene, tree};
 use crate::theme;
 use crate::units;
@@ -153,7 +153,7 @@ fn what_happens_here(ui: &mut Ui, canvas: &Canvas<'_>, at: Pos2, queue: &mut Que
     let Some(time_s) = path::time_near(at, canvas.view, canvas.scene) else { return };
     ui.menu_button("What happens here", |ui| {
         for cause in CAUSES {
-            if ui.button(cause_name(cause)).clicked() {
+            if ui.button(cause.name()).clicked() {
                 queue.preview(PreviewCommand::Scrub(Some(time_s)));
                 queue.preview(PreviewCommand::Raise(Some(cause)));
                 queue.view(ViewCommand::ShowPanel(what_if::ID, true));

@@ -140,9 +140,9 @@ fn heading(ui: &mut Ui, scene: &Scene<'_>, draft: &Draft) {
     let id = element.attribute("id").unwrap_or("");
     let name = element.attribute("name").filter(|name| !name.is_empty()).unwrap_or(id);
     let mut kind = draft.description().label.to_lowercase();
-    if let Subject::Leg(_) = draft.subject()
-        && !same_words(&element.name, &kind)
-    {
+    // what pilots know by two letters is told with them
+    let is_code = element.name.chars().all(|letter| letter.is_ascii_uppercase());
+    if is_code {
         kind = format!("{} {kind}", element.name);
     }
     if let Subject::Leg(leg) = draft.subject()

@@ -8,7 +8,7 @@ mod wind;
 mod words;
 mod world;
 
-pub use here::{CAUSES, cause_name, reach_name};
+pub use here::{CAUSES, reach_name};
 pub use variables::set as set_variable;
 pub use words::{alarm as alarm_in_words, diversion, winds, world as in_words};
 

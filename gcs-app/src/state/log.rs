@@ -201,7 +201,7 @@ pub fn gateway_event(event: &GatewayEvent) -> Option<(Level, String)> {
 /// A variable's value as text.
 pub fn variable(value: &VariableValue) -> String {
     match value {
-        VariableValue::Bool(b) => b.to_string(),
+        VariableValue::Bool(b) => flight_plan::words::yes_or_no(*b).to_owned(),
         VariableValue::Number(n) => n.to_string(),
         VariableValue::Text(t) => t.clone(),
         VariableValue::Position(p) => crate::units::position(*p),

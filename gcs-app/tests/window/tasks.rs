@@ -175,7 +175,7 @@ fn procedure_at_three_pylons() {
     assert_eq!(window.selected(), "call1", "the next call goes behind it");
     let procedure = window.plan().procedures[0].id.to_string();
     window.click("Draw legs (T)");
-    window.choose_kind("Procedure");
+    window.choose_kind("Call of a procedure");
     click_map(&mut window, &[vec2(160.0, 60.0), vec2(200.0, -60.0)]);
     window.click("Select and move (V)");
     let plan = window.plan();

@@ -143,7 +143,7 @@ fn leg_becomes_every_kind_that_its_menu_offers() {
         window.steps(3);
         let kinds = window.harness.get_by_label_contains("Change its kind").rect().center();
         window.click_at(kinds);
-        let offered = choice != LegChoice::Tf && window.is_enabled(choice.name());
+        let offered = choice != LegChoice::Tf && window.is_enabled(&choice.name());
         if offered {
             let at = window.harness.get_by_label(choice.name()).rect().center();
             window.click_at(at);

@@ -484,7 +484,7 @@ fn count_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Option<Val
 fn default_mut<'a>(plan: &'a mut FlightPlan, id: &Id) -> Result<&'a mut Option<Id>, EditError> {
     match &mut leg_mut(plan, id)?.kind {
         LegKind::Intersection { default, .. } => Ok(default),
-        _ => Err(not_applicable(id, "is no intersection: it has no branches")),
+        _ => Err(not_applicable(id, "is no fork: it has no branches")),
     }
 }
 

@@ -24,6 +24,7 @@ pub mod transform;
 pub mod uses;
 pub mod variables;
 pub mod walk;
+pub mod words;
 pub mod xml;
 
 pub use alternate::{Alternates, InForce};

@@ -174,7 +174,7 @@ pub fn choose_side(ui: &mut Ui, scene: &Scene<'_>, side: &mut Side) {
 /// Lets a kind of leg be chosen.
 pub fn choose_kind(ui: &mut Ui, choices: impl Iterator<Item = LegChoice>, choice: &mut LegChoice) {
     let shown = choice.name();
-    let list = ComboBox::from_id_salt("kind").height(LIST).selected_text(shown).show_ui(ui, |ui| {
+    let list = ComboBox::from_id_salt("kind").height(LIST).selected_text(&shown).show_ui(ui, |ui| {
         for other in choices {
             ui.selectable_value(choice, other, other.name()).on_hover_text(other.about());
         }

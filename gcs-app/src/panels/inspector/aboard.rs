@@ -8,6 +8,7 @@ use crate::theme;
 use crate::units;
 use egui::{RichText, Ui};
 use flight_exec::Command;
+use flight_plan::words::yes_or_no;
 use flight_plan::{Id, Variable, VariableValue};
 use wire::Convert;
 
@@ -66,8 +67,7 @@ fn variable_field(
         }
         VariableValue::Bool(current) => {
             let mut new = *current;
-            let text = if new { "true" } else { "false" };
-            if ui.checkbox(&mut new, text).changed() {
+            if ui.checkbox(&mut new, yes_or_no(*current)).changed() {
                 Change::Set(VariableValue::Bool(new))
             } else {
                 Change::None

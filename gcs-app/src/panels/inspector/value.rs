@@ -10,6 +10,7 @@ use crate::theme;
 use crate::units::{self, Unit, Units};
 use egui::{RichText, Ui};
 use flight_plan::describe::{self, Kind, Property, Quantity, Range, Sort, choices};
+use flight_plan::words::yes_or_no;
 use flight_plan::{Use, Value};
 
 /// A value in a row of its own.
@@ -187,7 +188,7 @@ fn reference(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, sort: So
 
 fn flag(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) {
     let mut on = value == "true";
-    let text = if on { "yes" } else { "no" };
+    let text = yes_or_no(on);
     let response = ui.checkbox(&mut on, text);
     let name = page.name(property.label);
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, on, &name));

@@ -2,7 +2,6 @@
 
 use crate::command::{Queue, Selection};
 use crate::panels::Scene;
-use crate::panels::what_if::cause_name;
 use crate::theme;
 use egui::{RichText, Ui};
 use flight_plan::{Alternates, Cause, Edit, EmergencyChoice, FlightPlan, Id, InForce};
@@ -10,7 +9,7 @@ use std::collections::BTreeSet;
 
 /// What a cause is called in a menu; `None` stands for every cause that has no plan of its own there.
 pub fn name_of(cause: Option<Cause>) -> &'static str {
-    cause.map_or("Any cause", cause_name)
+    cause.map_or("Any cause", Cause::name)
 }
 
 /// All of them, in the order of a menu.
@@ -90,26 +89,14 @@ pub(super) fn own_in_short(plan: &FlightPlan, all: &Alternates, of: Option<&Id>)
     Some(format!("{}{}{more}", only_for(all, usual), plan_name(plan, &usual.plan)))
 }
 
-/// `engine, link: `, where it is not for every cause.
+/// `Engine, Link: `, where it is not for every cause.
 fn only_for(all: &Alternates, usual: &InForce) -> String {
     if all.iter().all(|(_, in_force)| in_force.is_some_and(|f| f.from == usual.from)) {
         return String::new();
     }
     let causes = all.iter().filter(|(_, in_force)| *in_force == Some(usual));
-    let causes: Vec<&str> = causes.map(|(cause, _)| short_name(cause)).collect();
+    let causes: Vec<&str> = causes.map(|(cause, _)| cause.short_name()).collect();
     format!("{}: ", causes.join(", "))
-}
-
-fn short_name(cause: Cause) -> &'static str {
-    match cause {
-        Cause::Engine => "engine",
-        Cause::Energy => "energy",
-        Cause::Gps => "GPS",
-        Cause::Link => "link",
-        Cause::Traffic => "traffic",
-        Cause::Payload => "payload",
-        Cause::Operator => "operator",
-    }
 }
 
 /// The emergency plan for every cause, and who names it.
@@ -124,7 +111,7 @@ pub(super) fn explain(ui: &mut Ui, text: &str, plan: &FlightPlan, all: &Alternat
     let weak = theme::of(ui).weak;
     egui::Grid::new("alternates").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
         for (cause, in_force) in all.iter() {
-            ui.label(RichText::new(cause_name(cause)).color(weak));
+            ui.label(RichText::new(cause.name()).color(weak));
             ui.label(match in_force {
                 None => "nothing".to_owned(),
                 Some(f) if f.from.as_ref() == of.map(Selection::id) => plan_name(plan, &f.plan),
@@ -162,7 +149,7 @@ mod tests {
         };
         assert_eq!(own_in_short(&plan, &whole, None).as_deref(), Some("home"), "the plan itself");
         assert_eq!(said(&[]), "");
-        assert_eq!(said(&[(Some(Cause::Engine), "field")]), "engine: field");
+        assert_eq!(said(&[(Some(Cause::Engine), "field")]), "Engine: field");
         assert_eq!(said(&[(None, "strip"), (Some(Cause::Engine), "field")]), "strip +1");
     }
 }

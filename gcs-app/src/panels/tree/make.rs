@@ -140,22 +140,22 @@ fn emergency_plans(ui: &mut Ui, plan: &FlightPlan, queue: &mut Queue) {
 }
 
 fn variables(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    for (name, initial) in kinds_of_variables(scene) {
-        if ui.button(name).clicked() {
+    for initial in kinds_of_variables(scene) {
+        if ui.button(initial.kind()).clicked() {
             queue.push(variable(scene.document.plan(), initial));
         }
     }
 }
 
-/// Kinds of variables that can be added, with what they begin with.
-pub fn kinds_of_variables(scene: &Scene<'_>) -> [(&'static str, VariableValue); 5] {
+/// What variables that can be added begin with, one of each kind.
+pub fn kinds_of_variables(scene: &Scene<'_>) -> [VariableValue; 5] {
     let here = middle(scene);
     [
-        ("Number", VariableValue::Number(0.0)),
-        ("Yes or no", VariableValue::Bool(false)),
-        ("Text", VariableValue::Text(String::new())),
-        ("Position", VariableValue::Position(here)),
-        ("Area", VariableValue::Polygon(square(here))),
+        VariableValue::Number(0.0),
+        VariableValue::Bool(false),
+        VariableValue::Text(String::new()),
+        VariableValue::Position(here),
+        VariableValue::Polygon(square(here)),
     ]
 }
 

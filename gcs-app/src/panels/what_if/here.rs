@@ -12,19 +12,6 @@ use flight_plan::Cause;
 /// The alarms that can be raised.
 pub const CAUSES: [Cause; 5] = [Cause::Engine, Cause::Energy, Cause::Link, Cause::Gps, Cause::Operator];
 
-/// For people.
-pub fn cause_name(cause: Cause) -> &'static str {
-    match cause {
-        Cause::Engine => "Engine failure",
-        Cause::Energy => "Energy low",
-        Cause::Link => "Link lost",
-        Cause::Gps => "GPS lost",
-        Cause::Operator => "Operator",
-        Cause::Payload => "Payload failure",
-        Cause::Traffic => "Traffic",
-    }
-}
-
 /// How a way out ends.
 pub fn reach_name(reach: Reach) -> &'static str {
     match reach {
@@ -66,9 +53,8 @@ const BAR_HEIGHT: f32 = 6.0;
 const OUTCOME_HEIGHT: f32 = 120.0;
 
 fn alarm(ui: &mut Ui, cause: Cause, scene: &Scene<'_>, queue: &mut Queue) {
-    let (raised, name) = (scene.view.alarm == Some(cause), cause_name(cause));
-    let short = name.split_whitespace().next().unwrap_or(name);
-    let button = ui.selectable_label(raised, RichText::new(short).size(12.5));
+    let (raised, name) = (scene.view.alarm == Some(cause), cause.name());
+    let button = ui.selectable_label(raised, RichText::new(cause.short_name()).size(12.5));
     button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, raised, name));
     if button.on_hover_text(name).clicked() {
         queue.preview(PreviewCommand::Raise((!raised).then_some(cause)));

@@ -1,12 +1,13 @@
 //! What is otherwise, and what would happen, in words.
 
 use super::autopilot;
-use super::here::{cause_name, reach_name};
+use super::here::reach_name;
 use crate::forecast::Alarm;
 use crate::units::{self, Units};
 use aircraft::Wind;
 use flight_exec::rehearse::{Diversion, Glide, Glided, Powered, Reach, TrackPoint, WhatIf};
 use flight_exec::review::Margins;
+use flight_plan::words::yes_or_no;
 use flight_plan::{Cause, FlightPlan, Runway, VariableValue};
 
 /// A wind: `8.0 m/s from 240°`, or `calm`.
@@ -60,13 +61,13 @@ pub fn world(what_if: &WhatIf, plan: &FlightPlan, units: Units) -> String {
 
 /// `Engine failure at 3:20`.
 pub fn alarm(alarm: Alarm) -> String {
-    format!("{} at {}", cause_name(alarm.cause), units::duration(alarm.time_s))
+    format!("{} at {}", alarm.cause.name(), units::duration(alarm.time_s))
 }
 
 fn value_in_words(value: &VariableValue, unit: &str) -> String {
     match value {
         VariableValue::Number(n) => format!("{n:.1} {unit}").trim_end().to_owned(),
-        VariableValue::Bool(yes) => yes.to_string(),
+        VariableValue::Bool(yes) => yes_or_no(*yes).to_owned(),
         VariableValue::Text(text) => text.clone(),
         VariableValue::Position(at) => units::position(*at),
         VariableValue::Polygon(corners) => format!("{} corners", corners.len()),
@@ -75,7 +76,7 @@ fn value_in_words(value: &VariableValue, unit: &str) -> String {
 
 /// What would happen after an alarm: first, in one sentence, whether the runway is reached; then what else there is to know.
 pub fn diversion(diversion: &Diversion, flown: &FlightPlan, units: Units) -> Vec<String> {
-    let alarm = cause_name(diversion.cause);
+    let alarm = diversion.cause.name();
     let Some((plan, runway)) = &diversion.plan else {
         return vec![format!("{alarm}: no emergency plan answers here. The gateway's Safe mode decides.")];
     };

@@ -312,7 +312,7 @@ fn check_branch(program: &Program, leg: &Id, branch: &Id) -> Result<(), Refusal>
     let Some(Fork { branches, .. }) = program.leg(leg).and_then(Leg::as_fork) else {
         let forks = |id: &Id| program.leg(id).and_then(Leg::as_fork).is_some();
         let meant = did_you_mean_leg(program.flown(), leg, forks);
-        let reason = format!("`{leg}` is no intersection of the plan: name one that is{meant}");
+        let reason = format!("`{leg}` is no fork of the plan: name one that is{meant}");
         return Err(refusal("unknown-leg", reason));
     };
     if branches.iter().any(|b| b.id == *branch) {

@@ -10,7 +10,7 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
         let Some(plan) = plans.get(*index) else { continue };
         problems.extend(endless(landing).map(|(why, leg)| {
             let message = format!(
-                "give every loop, holding and intersection of `{}` an end of its own, after an emergency nobody may be there to help: {why}",
+                "give every loop, holding and fork of `{}` an end of its own, after an emergency nobody may be there to help: {why}",
                 plan.id
             );
             Problem::error("emergency-endless", message).of(leg.unwrap_or(&plan.id))

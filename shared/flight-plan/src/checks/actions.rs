@@ -46,7 +46,7 @@ fn misplaced_wait(leg: &Leg, index: usize, action: &LegAction) -> Option<Problem
             "wait on the last leg inside this one: a loop or a call has no end of its own to circle at, its wait is not done"
         }
         LegKind::Intersection { .. } => {
-            "wait on the leg before: an intersection has no end of its own to circle at, its wait is not done"
+            "wait on the leg before: a fork has no end of its own to circle at, its wait is not done"
         }
         _ => return wait_on_the_way(leg, index, action),
     };
@@ -129,7 +129,7 @@ fn never_at_once(view: &Inspection, trigger: &Trigger) -> Option<String> {
         Trigger::Distance(x) | Trigger::Time(x) => view.number(x)? <= 0.0,
         Trigger::Every(_) | Trigger::Abeam(_) => false,
     };
-    let message = "do it `on=\"start\"`, or on a leg before or after: an intersection has no length";
+    let message = "do it `on=\"start\"`, or on a leg before or after: a fork has no length";
     (!comes).then(|| message.into())
 }
 

@@ -16,7 +16,7 @@ pub(super) fn check(_: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
         Some(id) if !branches.iter().any(|b| b.id == *id) => {
             let near = meant(id.as_str(), branches.iter().map(|b| b.id.as_str()));
             let message = format!(
-                "the default `{id}` is no branch of this intersection: name one of them{}",
+                "the default `{id}` is no branch of this fork: name one of them{}",
                 near.map_or_else(String::new, question)
             );
             let problem = Problem::error("unknown-branch", message).of(&leg.id);

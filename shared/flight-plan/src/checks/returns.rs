@@ -43,7 +43,7 @@ fn back(
     let Some(before) = before.filter(|leg| only_place(leg).is_some()) else { return };
     for branch in branches.iter().filter(|b| b.next.as_ref() == Some(&before.id)) {
         let message = format!(
-            "let the branch `{}` lead to another leg, or hold there with HM: `{}` ends where this intersection is, and nothing would be flown",
+            "let the branch `{}` lead to another leg, or hold there with HM: `{}` ends where this fork is, and nothing would be flown",
             branch.id, before.id
         );
         let problem = if default == Some(&branch.id) { Problem::error } else { Problem::warning };

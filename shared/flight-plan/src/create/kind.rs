@@ -148,14 +148,27 @@ impl LegChoice {
         }
     }
 
-    /// What it is called.
-    pub fn name(self) -> &'static str {
+    /// What it is called wherever it is met; see [`LegChoice::code`].
+    pub const fn label(self) -> &'static str {
+        self.words().1
+    }
+
+    /// The two letters that pilots know it by; empty: it has none.
+    pub const fn code(self) -> &'static str {
         self.words().0
     }
 
+    /// Both: `HM hold until released`.
+    pub fn name(self) -> String {
+        match self.code() {
+            "" => self.label().into(),
+            code => format!("{code} {}", self.label().to_lowercase()),
+        }
+    }
+
     /// What it does, in a line.
-    pub fn about(self) -> &'static str {
-        self.words().1
+    pub const fn about(self) -> &'static str {
+        self.words().2
     }
 
     /// What its identifiers begin with.
@@ -177,31 +190,35 @@ impl LegChoice {
         }
     }
 
-    fn words(self) -> (&'static str, &'static str) {
+    const fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
-            Self::If => ("IF initial fix", "Where a path starts; flies nothing itself"),
-            Self::Tf => ("TF track to a fix", "The shortest way from the fix before"),
-            Self::Df => ("DF direct to a fix", "Straight from wherever the aircraft is"),
-            Self::Rf => ("RF arc to a fix", "An arc that leaves the path before it smoothly"),
-            Self::Cf => ("CF course to a fix", "Intercepts a course and follows it to the fix"),
-            Self::Fa => ("FA fix to an altitude", "Follows a course until the altitude is reached"),
-            Self::Hf => ("HF hold, once", "A racetrack, left at its first crossing of the fix"),
-            Self::Ha => ("HA hold to an altitude", "A racetrack until the altitude is reached"),
-            Self::Hm => ("HM hold until told", "A racetrack until a command, a condition or its laps end it"),
-            Self::Iterative => ("Loop", "Legs that are flown several times"),
-            Self::Intersection => ("Fork", "A choice between ways on, made in flight"),
-            Self::Scan => ("Scan", "Parallel tracks over an area, along its long side"),
-            Self::CreepingLine => ("Creeping line", "Parallel tracks along the short side of an area"),
-            Self::CrissCross => ("Criss-cross", "Parallel tracks, then tracks across them"),
-            Self::Contour => ("Contour", "Loops along an area's edge, one inside the other"),
-            Self::TrackLine => ("Track line", "There on one side of a line, and back on the other"),
-            Self::Corridor => ("Corridor", "A strip along a line, in parallel tracks"),
-            Self::Orbit => ("Orbit", "Circles around a point"),
-            Self::Spiral => ("Spiral", "From the rim to the middle"),
-            Self::ExpandingSquare => ("Expanding square", "A search that begins in the middle"),
-            Self::Sector => ("Sector search", "Spokes through the middle"),
-            Self::FigureEight => ("Figure of eight", "Two circles that touch in the middle"),
-            Self::Call => ("Procedure", "Legs of a procedure, put here"),
+            Self::If => ("IF", "Initial fix", "Where a path starts; flies nothing itself"),
+            Self::Tf => ("TF", "Track to a fix", "The shortest way from the fix before"),
+            Self::Df => ("DF", "Direct to a fix", "Straight from wherever the aircraft is"),
+            Self::Rf => ("RF", "Arc to a fix", "An arc that leaves the path before it smoothly"),
+            Self::Cf => ("CF", "Course to a fix", "Intercepts a course and follows it to the fix"),
+            Self::Fa => ("FA", "Fix to an altitude", "Follows a course until the altitude is reached"),
+            Self::Hf => ("HF", "Hold once", "A racetrack, left at its first crossing of the fix"),
+            Self::Ha => ("HA", "Hold to an altitude", "A racetrack until the altitude is reached"),
+            Self::Hm => (
+                "HM",
+                "Hold until released",
+                "A racetrack until somebody releases it, a condition holds or its laps are flown",
+            ),
+            Self::Iterative => ("", "Loop", "Legs that are flown several times"),
+            Self::Intersection => ("", "Fork", "A choice between ways on, made in flight"),
+            Self::Scan => ("", "Scan", "Parallel tracks over an area, along its long side"),
+            Self::CreepingLine => ("", "Creeping line", "Parallel tracks along the short side of an area"),
+            Self::CrissCross => ("", "Criss-cross", "Parallel tracks, then tracks across them"),
+            Self::Contour => ("", "Contour", "Loops along an area's edge, one inside the other"),
+            Self::TrackLine => ("", "Track line", "There on one side of a line, and back on the other"),
+            Self::Corridor => ("", "Corridor", "A strip along a line, in parallel tracks"),
+            Self::Orbit => ("", "Orbit", "Circles around a point"),
+            Self::Spiral => ("", "Spiral", "From the rim to the middle"),
+            Self::ExpandingSquare => ("", "Expanding square", "A search that begins in the middle"),
+            Self::Sector => ("", "Sector search", "Spokes through the middle"),
+            Self::FigureEight => ("", "Figure of eight", "Two circles that touch in the middle"),
+            Self::Call => ("", "Call of a procedure", "Its legs, put here"),
         }
     }
 }

@@ -6,6 +6,7 @@ use super::parts::{
     ALTITUDE, ANCHOR, BY_CAUSES, EMERGENCY, FLY_OVER, HEAD, SPEED, TO, TURN, element, property, text, value,
 };
 use super::{Children, Description, Kind, OneOf, Property, Quantity, Row, Sort, Way, Word};
+use crate::create::LegChoice;
 
 pub(super) const TAIL: &[Row] = &[
     ALTITUDE,
@@ -52,9 +53,9 @@ const FORMS: &[Word] = &[("forward", "round and round"), ("reverse", "forth and 
 const BRANCH: Description = element(
     "branch",
     "Branch",
-    "A way on from the intersection.",
+    "A way on from the fork.",
     &[&[
-        P(property("id", "Identifier", "Unique in its intersection.", Kind::Identifier)),
+        P(property("id", "Identifier", "Unique at its fork.", Kind::Identifier)),
         P(text("label", "Label", "What the operator reads.")),
         P(property("next", "Leads to", "The leg it leads to, in the same list.", Kind::Reference(Sort::Leg))
             .without("the leg after it")),
@@ -89,16 +90,21 @@ const fn many(label: &'static str, help: &'static str, of: &'static [&'static De
 }
 
 pub(super) const ALL: &[Description] = &[
-    element("IF", "Initial fix", "Where a path starts; flies nothing.", &[HEAD, &[TO, FLY_OVER], TAIL]),
+    element(
+        "IF",
+        LegChoice::If.label(),
+        "Where a path starts; flies nothing.",
+        &[HEAD, &[TO, FLY_OVER], TAIL],
+    ),
     element(
         "TF",
-        "Track to fix",
+        LegChoice::Tf.label(),
         "The shortest track from the previous waypoint.",
         &[HEAD, &[TO, FLY_OVER], TAIL],
     ),
     element(
         "DF",
-        "Direct to fix",
+        LegChoice::Df.label(),
         "Straight from where the aircraft is.",
         &[
             HEAD,
@@ -112,7 +118,7 @@ pub(super) const ALL: &[Description] = &[
     ),
     element(
         "RF",
-        "Arc to fix",
+        LegChoice::Rf.label(),
         "An arc of constant radius.",
         &[
             HEAD,
@@ -127,32 +133,37 @@ pub(super) const ALL: &[Description] = &[
     ),
     element(
         "CF",
-        "Course to fix",
+        LegChoice::Cf.label(),
         "A course into a fix, intercepted and tracked.",
         &[HEAD, &[TO, FLY_OVER, COURSE], TAIL],
     ),
     element(
         "FA",
-        "Fix to altitude",
+        LegChoice::Fa.label(),
         "A track from a fix until the leg's altitude is reached.",
         &[HEAD, &[TO, FLY_OVER, COURSE], TAIL],
     ),
-    element("HF", "Hold once", "A racetrack, left at the first crossing of its fix.", &[HEAD, HOLDING, TAIL]),
+    element(
+        "HF",
+        LegChoice::Hf.label(),
+        "A racetrack, left at the first crossing of its fix.",
+        &[HEAD, HOLDING, TAIL],
+    ),
     element(
         "HA",
-        "Hold to altitude",
+        LegChoice::Ha.label(),
         "A racetrack, left at the first crossing at or beyond the leg's altitude.",
         &[HEAD, HOLDING, TAIL],
     ),
     element(
         "HM",
-        "Hold until released",
-        "A racetrack, left when its condition holds, its laps are flown or somebody says so.",
+        LegChoice::Hm.label(),
+        "A racetrack, left when its condition holds, its laps are flown or somebody releases it.",
         &[
             HEAD,
             HOLDING,
             &[
-                P(UNTIL.without("somebody says so")),
+                P(UNTIL.without("only when released")),
                 P(value("maxLaps", "Most laps", Quantity::Count, 1.0, "10")
                     .help("It is left after so many laps at the latest.")
                     .without("any number")),
@@ -162,7 +173,7 @@ pub(super) const ALL: &[Description] = &[
     ),
     element(
         "iterative",
-        "Loop",
+        LegChoice::Iterative.label(),
         "Flies the legs inside it again and again.",
         &[
             HEAD,
@@ -180,7 +191,7 @@ pub(super) const ALL: &[Description] = &[
     ),
     element(
         "intersection",
-        "Fork",
+        LegChoice::Intersection.label(),
         "Ways part here, or come together.",
         &[
             HEAD,
@@ -206,7 +217,7 @@ pub(super) const ALL: &[Description] = &[
     ),
     element(
         "call",
-        "Call",
+        LegChoice::Call.label(),
         "A procedure, flown here.",
         &[
             HEAD,

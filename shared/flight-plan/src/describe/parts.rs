@@ -2,6 +2,7 @@
 
 use super::Row::Property as P;
 use super::{Children, Description, Kind, OneOf, Property, Quantity, Range, Row, Sort, Way, Word};
+use crate::model::Cause;
 
 const ANY: f64 = f64::MAX;
 
@@ -256,22 +257,21 @@ pub(super) const EMERGENCY: Row = P(property(
     Kind::Reference(Sort::EmergencyPlan),
 )
 .without("inherited"));
-const CAUSES: &[Word] = &[
-    ("engine", "engine failure"),
-    ("energy", "energy too low"),
-    ("gps", "position unknown"),
-    ("link", "link lost"),
-    ("traffic", "traffic"),
-    ("payload", "payload failed"),
-    ("operator", "operator's decision"),
-];
+const CAUSES: [Word; Cause::ALL.len()] = {
+    let (mut words, mut of) = ([("", ""); Cause::ALL.len()], 0);
+    while of < words.len() {
+        words[of] = (Cause::ALL[of].word(), Cause::ALL[of].name());
+        of += 1;
+    }
+    words
+};
 const BY_CAUSE: Description = Description {
     element: "emergency",
     label: "Alternate by cause",
     help: "The emergency plan for one cause.",
     alike: &[],
     groups: &[&[
-        P(property("cause", "Cause", "Why the emergency was raised.", Kind::Choice(CAUSES)).first("engine")),
+        P(property("cause", "Cause", "Why the emergency was raised.", Kind::Choice(&CAUSES)).first("engine")),
         P(property(
             "plan",
             "Plan",

@@ -6,6 +6,7 @@ use super::parts::{
     property, text,
 };
 use super::{Children, Description, Kind, OneOf, Property, Quantity, Row, Sort, Way, Word};
+use crate::words;
 
 const PLAN: Description = element(
     "flightPlan",
@@ -96,7 +97,7 @@ const VARIABLE: Description = element(
             help: "What its values are.",
             ways: &[
                 Way {
-                    label: "number",
+                    label: words::NUMBER,
                     fixed: &[("type", "number")],
                     rows: &[
                         initial(NUMBER, "0"),
@@ -106,22 +107,22 @@ const VARIABLE: Description = element(
                     ],
                 },
                 Way {
-                    label: "true or false",
+                    label: words::YES_OR_NO,
                     fixed: &[("type", "bool")],
                     rows: &[initial(Kind::Flag, "false")],
                 },
                 Way {
-                    label: "text",
+                    label: words::TEXT,
                     fixed: &[("type", "text")],
                     rows: &[initial(Kind::Text, ""), MAX_LENGTH],
                 },
                 Way {
-                    label: "position",
+                    label: words::POSITION,
                     fixed: &[("type", "position")],
                     rows: &[initial(Kind::Position, "")],
                 },
                 Way {
-                    label: "polygon",
+                    label: words::AREA,
                     fixed: &[("type", "polygon")],
                     rows: &[initial(Kind::Positions, ""), MAX_LENGTH],
                 },

@@ -351,17 +351,9 @@ impl<'a> Document<'a> {
 
     /// `<emergency cause="…" plan="…"/>`.
     pub fn emergency_child(&mut self, element: Element<'a>, into: &mut EmergencyChoice) {
-        const CAUSES: [(&str, Cause); 7] = [
-            ("operator", Cause::Operator),
-            ("payload", Cause::Payload),
-            ("traffic", Cause::Traffic),
-            ("link", Cause::Link),
-            ("gps", Cause::Gps),
-            ("energy", Cause::Energy),
-            ("engine", Cause::Engine),
-        ];
+        let causes = Cause::ALL.map(|cause| (cause.word(), cause));
         self.require(&element, "cause");
-        let cause = self.choice(&element, "cause", &CAUSES);
+        let cause = self.choice(&element, "cause", &causes);
         let plan = self.reference(&element, "plan").unwrap_or_else(|| self.missing(&element, "plan"));
         into.by_cause.push((cause, plan));
         self.cursor.close(element);

@@ -220,25 +220,13 @@ impl Writer {
     /// Everything but the fallback, which is the `emergency` attribute.
     pub(super) fn emergencies(&mut self, choice: &EmergencyChoice) {
         for (cause, plan) in choice.by_cause.iter().filter(|(cause, _)| cause.is_some()) {
-            self.leaf(Tag::new("emergency").maybe("cause", cause.map(cause_name)).with("plan", plan));
+            self.leaf(Tag::new("emergency").maybe("cause", cause.map(Cause::word)).with("plan", plan));
         }
     }
 }
 
 pub(super) fn fallback(tag: Tag, choice: &EmergencyChoice) -> Tag {
     tag.maybe("emergency", choice.by_cause.iter().find(|(cause, _)| cause.is_none()).map(|(_, plan)| plan))
-}
-
-fn cause_name(cause: Cause) -> &'static str {
-    match cause {
-        Cause::Operator => "operator",
-        Cause::Payload => "payload",
-        Cause::Traffic => "traffic",
-        Cause::Link => "link",
-        Cause::Gps => "gps",
-        Cause::Energy => "energy",
-        Cause::Engine => "engine",
-    }
 }
 
 pub(super) fn lat_lon(p: LatLon) -> String {
