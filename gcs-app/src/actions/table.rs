@@ -147,6 +147,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::WhatIf, "what-if-reset", "Back to the plan's own world", &[], |_| preview(PreviewCommand::Reset)),
     entry(Group::Maps, "maps", "Maps and elevations…", &[], |_| view(ViewCommand::Maps(true))),
     choice(Group::Maps, "graticule", "Graticule", |s| Kind::Switch(s.view.edge.graticule), |s| view(ViewCommand::Edge(Edge { graticule: !s.view.edge.graticule, ..s.view.edge }))),
+    choice(Group::Maps, "legend", "Legend of the lines", |s| Kind::Switch(!s.view.edge.no_legend), |s| view(ViewCommand::Edge(Edge { no_legend: !s.view.edge.no_legend, ..s.view.edge }))),
     choice(Group::Maps, "rings", "Range rings", |s| Kind::Switch(s.view.edge.rings), |s| view(ViewCommand::Edge(Edge { rings: !s.view.edge.rings, ..s.view.edge }))),
     entry(Group::Panel, "next-panel", "Keyboard to the next panel", &[plain(Key::F6)], |_| view(ViewCommand::StepPanel(1))),
     entry(Group::Panel, "previous-panel", "Keyboard to the panel before", &[with_shift(Key::F6)], |_| view(ViewCommand::StepPanel(-1))),

@@ -84,7 +84,7 @@ impl App {
                 floating(ui, "recover", floor, Align2::CENTER_CENTER, ask);
             }
             notice(ui, floor, &scene, queue);
-            toasts::show(ui, floor, &scene, queue);
+            toasts::show(ui, tool_chip::above(ui.ctx(), floor), &scene, queue);
         });
         dialogs(ui, &scene, queue);
         help.show(ui, &scene, queue);

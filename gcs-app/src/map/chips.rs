@@ -1,12 +1,13 @@
 //! Chips at the map's lower right: in which world the path is flown, whether it is up to date, and what its colours mean.
 
-use super::furniture::NARROW;
 use super::marks;
 use crate::command::{PreviewCommand, Queue, ViewCommand};
+use crate::forecast::Coverage;
 use crate::map::{coverage, view::View};
 use crate::panels::{Scene, problems, what_if};
 use crate::theme::{self, Palette};
 use egui::{Align2, Area, Id, Margin, Rect, RichText, Ui, vec2};
+use flight_plan::Problem;
 
 /// Widest chip, the room below for the sources of the map and the one beside for the arrow to the north, screen points.
 const WIDTH: f32 = 330.0;
@@ -21,7 +22,7 @@ pub fn show(ui: &Ui, view: &View, scene: &Scene<'_>, queue: &mut Queue) {
     area.constrain_to(view.rect).show(ui.ctx(), |ui| {
         ui.set_max_width(width);
         let p = theme::of(ui);
-        colours(ui, scene, view.rect.width() < NARROW);
+        colours(ui, scene, queue);
         world(ui, scene, queue);
         standing(ui, scene, p, queue);
     });
@@ -48,16 +49,27 @@ fn row(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 fn standing(ui: &mut Ui, scene: &Scene<'_>, p: &Palette, queue: &mut Queue) {
     let Some(why) = scene.out_of_date() else { return };
     let error = marks::first_error(scene);
-    row(ui, |ui| {
-        let place = error.and_then(|e| problems::find(scene.document, e.subject.as_ref()?));
-        if let Some(place) = place
-            && ui.small_button("Show the error").clicked()
-        {
-            queue.view(ViewCommand::JumpTo(place));
-        }
-        let text = RichText::new(format!("◌ {why}")).color(p.caution).size(12.0);
-        ui.add(egui::Label::new(text).truncate()).on_hover_text(why);
+    // on a small map the sentence takes several lines: cut, it would say nothing
+    chip(ui, |ui| {
+        ui.horizontal_wrapped(|ui| standing_words(ui, scene, (why, error), p, queue));
     });
+}
+
+fn standing_words(
+    ui: &mut Ui,
+    scene: &Scene<'_>,
+    (why, error): (&str, Option<&Problem>),
+    p: &Palette,
+    queue: &mut Queue,
+) {
+    let place = error.and_then(|e| problems::find(scene.document, e.subject.as_ref()?));
+    if let Some(place) = place
+        && ui.small_button("Show the error").clicked()
+    {
+        queue.view(ViewCommand::JumpTo(place));
+    }
+    let text = RichText::new(format!("◌ {why}")).color(p.caution).size(12.0);
+    ui.add(egui::Label::new(text).wrap());
 }
 
 fn world(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -81,14 +93,51 @@ fn world(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     });
 }
 
-fn colours(ui: &mut Ui, scene: &Scene<'_>, is_narrow: bool) {
+fn colours(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(known) = scene.analysis.coverage().filter(|_| scene.view.coverage) else { return };
     chip(ui, |ui| {
-        // on a small map the lines say enough
-        if !is_narrow {
-            let title = format!("Coverage, worst alarm ({:.0} %)", known.progress() * 100.0);
-            ui.label(RichText::new(title).size(11.5));
-        }
+        ui.horizontal(|ui| {
+            let name = "Put the coverage away";
+            let button = ui.small_button("✖");
+            button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+            if button.on_hover_text(name).clicked() {
+                queue.preview(PreviewCommand::Coverage(false));
+            }
+            ui.add(egui::Label::new(RichText::new(title(known)).size(11.5)).wrap());
+        });
         coverage::legend(ui, known);
     });
+}
+
+/// What the colours tell; how far that has got is told until it is there.
+fn title(known: &Coverage) -> String {
+    let what = "How the worst alarm would end";
+    match known.is_complete() {
+        true => what.to_owned(),
+        false => format!("{what}: {:.0} % worked out", known.progress() * 100.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forecast::{Forecast, Point};
+
+    #[test]
+    fn a_coverage_that_is_all_there_names_no_percentage_of_its_own() {
+        let point = |time_s| Point {
+            time_s,
+            distance_m: 0.0,
+            position: geometry::LatLon::new(0.0, 0.0),
+            altitude_amsl_m: 0.0,
+            ground_amsl_m: None,
+            passage: 0,
+        };
+        let forecast = Forecast { points: vec![point(0.0), point(9.0)], ..Forecast::default() };
+        let mut coverage = Coverage::of(&forecast);
+        coverage.push(None);
+        assert_eq!(title(&coverage), "How the worst alarm would end: 50 % worked out");
+        coverage.push(None);
+        assert_eq!(title(&coverage), "How the worst alarm would end");
+    }
 }

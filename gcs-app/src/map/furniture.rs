@@ -21,6 +21,9 @@ pub struct Edge {
     pub graticule: bool,
     /// Rings around the aircraft, or else around home.
     pub rings: bool,
+    /// The legend was put away: it is behind a button, as where there is no room for it.
+    #[serde(default)]
+    pub no_legend: bool,
 }
 
 /// On a map that is narrower the legend is behind a button: the commands take several lines there, screen points.
@@ -49,12 +52,12 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, nam
     for taken in [named, scale, toolbar, buttons] {
         names.keep_clear(taken);
     }
-    if map.width() >= NARROW {
-        // beside the tools where they reach down to it
-        let lines = lines(scene);
-        let is_beside = toolbar.bottom() > map.bottom() - LEGEND - size_of(lines.len()).y;
-        let aside = if is_beside { toolbar.right() - 4.0 - map.left() } else { 0.0 };
-        names.keep_clear(legend(painter, map.with_min_x(map.left() + aside), &lines, p));
+    let plate = legend_at(view.rect, lift, tools, scene);
+    painter.ctx().data_mut(|data| data.insert_temp(legend_id(), plate));
+    if let Some(plate) = plate {
+        painter.rect_filled(plate, 4.0, p.panel.gamma_multiply(0.8));
+        draw_lines(painter, plate.min + LEGEND_EDGE, &lines(scene), p);
+        names.keep_clear(plate);
     }
     let needle = view.rect.right_bottom() - vec2(26.0, 44.0);
     let north_at = Rect::from_min_max(needle - vec2(8.0, 30.0), needle + vec2(8.0, 0.0));
@@ -86,7 +89,7 @@ fn columns(map: Rect, tools: usize, scene: &Scene<'_>) -> impl Iterator<Item = R
 
 /// What the buttons at the right edge take of it.
 fn buttons_at(map: Rect, scene: &Scene<'_>) -> Rect {
-    let more = usize::from(map.width() < NARROW) + usize::from(scene.vehicle.position.is_some());
+    let more = usize::from(is_legend_folded(map, scene)) + usize::from(scene.vehicle.position.is_some());
     Rect::from_min_size(map.right_top() + vec2(-44.0, 12.0), vec2(34.0, TOOL * (3 + more) as f32))
 }
 
@@ -184,14 +187,40 @@ fn size_of(lines: usize) -> Vec2 {
     vec2(112.0, 16.0 * lines as f32)
 }
 
-/// Returns where it is.
-fn legend(painter: &Painter, map: Rect, lines: &[(&str, Line)], p: &Palette) -> Rect {
-    let size = size_of(lines.len());
-    let origin = map.left_bottom() + vec2(12.0, -30.0 - size.y);
-    let plate = Rect::from_min_size(origin, size).expand2(vec2(6.0, 2.0));
-    painter.rect_filled(plate, 4.0, p.panel.gamma_multiply(0.8));
-    draw_lines(painter, origin, lines, p);
-    plate
+/// Around the lines, screen points.
+const LEGEND_EDGE: Vec2 = vec2(6.0, 2.0);
+
+/// Where the legend lies on the map, above its scale; `None`: there is no room for it, or it was put away.
+fn legend_at(map: Rect, lift: f32, tools: usize, scene: &Scene<'_>) -> Option<Rect> {
+    if is_legend_folded(map, scene) {
+        return None;
+    }
+    let (toolbar, bottom) = (toolbar_at(map, tools, scene), map.bottom() - lift);
+    let size = size_of(lines(scene).len());
+    // beside the tools where they reach down to it
+    let left = if toolbar.bottom() > bottom - LEGEND - size.y { toolbar.right() - 4.0 } else { map.left() };
+    let origin = pos2(left + 12.0, bottom - 30.0 - size.y);
+    Some(Rect::from_min_size(origin, size).expand2(LEGEND_EDGE))
+}
+
+fn legend_id() -> egui::Id {
+    egui::Id::unique("legend of the map")
+}
+
+fn is_legend_folded(map: Rect, scene: &Scene<'_>) -> bool {
+    map.width() < NARROW || scene.view.edge.no_legend
+}
+
+/// What lies under the legend can't be seen, and so not be clicked. Its mark puts it away.
+fn legend_over(ui: &mut Ui, plate: Rect, scene: &Scene<'_>, queue: &mut Queue) {
+    ui.interact(plate, legend_id(), Sense::click());
+    let mark = Rect::from_min_size(plate.right_top() - vec2(18.0, 0.0), vec2(18.0, 18.0));
+    let close = ui.put(mark, egui::Button::new(egui::RichText::new("✖").size(10.0)).frame(false));
+    let name = "Put the legend away";
+    close.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+    if close.on_hover_text(name).clicked() {
+        queue.view(ViewCommand::Edge(Edge { no_legend: true, ..scene.view.edge }));
+    }
 }
 
 fn draw_lines(painter: &Painter, origin: Pos2, lines: &[(&str, Line)], p: &Palette) {
@@ -203,10 +232,13 @@ fn draw_lines(painter: &Painter, origin: Pos2, lines: &[(&str, Line)], p: &Palet
     }
 }
 
-/// On a map without room for it the legend is behind a button.
-fn legend_button(ui: &mut Ui, scene: &Scene<'_>) {
+/// Where the legend does not lie on the map it is behind a button.
+fn legend_button(ui: &mut Ui, has_room: bool, scene: &Scene<'_>, queue: &mut Queue) {
     let response = button(ui, "☰", "What the lines mean", false);
     Popup::menu(&response).show(|ui| {
+        if has_room && ui.button("Leave it on the map").clicked() {
+            queue.view(ViewCommand::Edge(Edge { no_legend: false, ..scene.view.edge }));
+        }
         let lines = lines(scene);
         let (rect, shown) = ui.allocate_exact_size(size_of(lines.len()), Sense::hover());
         draw_lines(ui.painter(), rect.min, &lines, theme::of(ui));
@@ -231,8 +263,11 @@ pub fn buttons(ui: &mut Ui, memory: &mut MapMemory, scene: &Scene<'_>, queue: &m
     if button(&mut column, "⛶", "Show the whole plan (F)", false).clicked() {
         queue.view(ViewCommand::Fit);
     }
-    if map.width() < NARROW {
-        legend_button(&mut column, scene);
+    if is_legend_folded(map, scene) {
+        legend_button(&mut column, map.width() >= NARROW, scene, queue);
+    }
+    if let Some(plate) = ui.data(|data| data.get_temp::<Option<Rect>>(legend_id())).flatten() {
+        legend_over(ui, plate, scene, queue);
     }
     let follow = |ui: &mut Ui| button(ui, "✈", "Follow the aircraft", scene.view.follow).clicked();
     if scene.vehicle.position.is_some() && follow(&mut column) {

@@ -16,7 +16,7 @@ use geometry::LatLon;
 use std::collections::HashSet;
 
 /// Longest text beside a mark, characters.
-const LONGEST: usize = 70;
+const LONGEST: usize = 110;
 
 /// The first error of a plan that can't be flown.
 pub fn first_error<'a>(scene: &Scene<'a>) -> Option<&'a Problem> {

@@ -13,6 +13,8 @@ const MOST: usize = 400;
 const GAP: f32 = 1.0;
 /// Around the text on a plate, screen points.
 const PLATE: Vec2 = vec2(4.0, 1.0);
+/// A sentence on a plate takes several lines rather than more of the map's width, screen points.
+const WIDEST: f32 = 240.0;
 
 /// What a name is of, the most important first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -157,7 +159,11 @@ impl Names {
 }
 
 fn laid_out_by(painter: &Painter, name: &Name) -> Arc<Galley> {
-    painter.layout_no_wrap(name.text.clone(), FontId::proportional(name.size), Color32::PLACEHOLDER)
+    let wrap_width = match name.ground {
+        Ground::Halo => f32::INFINITY,
+        Ground::Plate => WIDEST,
+    };
+    painter.layout(name.text.clone(), FontId::proportional(name.size), Color32::PLACEHOLDER, wrap_width)
 }
 
 /// How large it is with its plate, screen points.

@@ -1,5 +1,5 @@
-//! What the tool in use says, and the choices that it offers. On a small map that is one line at the lower edge, its choices
-//! behind a button, and while something is drawn it is where the pointer is not.
+//! What the tool in use says, and the choices that it offers. On a small map that is at the lower edge, in as few lines as it takes,
+//! its choices behind a button, and while something is drawn it is where the pointer is not.
 
 use super::chips;
 use super::furniture::NARROW;
@@ -7,12 +7,16 @@ use super::tools::Toolbox;
 use crate::panels::{Scene, start};
 use crate::theme;
 use egui::{
-    Context, Id, Label, Margin, Popup, PopupCloseBehavior, Rangef, Rect, RichText, Role, Ui, UiBuilder,
-    WidgetInfo, pos2, vec2,
+    Context, FontId, Id, Label, Margin, Popup, PopupCloseBehavior, Rangef, Rect, Role, Ui, UiBuilder,
+    WidgetInfo, pos2, text::LayoutJob, vec2,
 };
 
-/// Height of the line on a small map, screen points.
+/// Least height of the line on a small map, and most of what it says there, screen points.
 const LINE: f32 = 28.0;
+const ROWS: usize = 3;
+/// Beside and around the text, and the button before it.
+const EDGES: f32 = 18.0;
+const BUTTON: f32 = 24.0;
 /// From its lower edge to that of the map: the scale, the sources and the place of the pointer stand there.
 const BELOW: f32 = 36.0;
 /// From the map's edge, and from the tools.
@@ -57,36 +61,53 @@ fn whole(ui: &mut Ui, tools: &mut Toolbox, status: String, columns: &[Rect], sce
 
 fn line(ui: &mut Ui, tools: &mut Toolbox, status: &str, columns: &[Rect], scene: &Scene<'_>) -> Rect {
     let map = ui.min_rect();
-    let room = place(ui.ctx(), map, columns, tools.is_drawing());
+    let text = status.strip_suffix(ENDING).unwrap_or(status);
+    let with_choices = tools.has_options() && tools.takes_places();
+    let letters = |width: f32| {
+        let font = FontId::proportional(12.0);
+        let mut job = LayoutJob::simple(text.to_owned(), font, theme::of(ui).text, width - EDGES);
+        job.wrap.max_rows = ROWS;
+        job
+    };
+    let button = if with_choices { BUTTON } else { 0.0 };
+    let height = |width: f32| ui.fonts_mut(|fonts| fonts.layout_job(letters(width - button))).size().y;
+    let room = place(ui.ctx(), map, columns, tools.is_drawing(), &height);
+    let letters = letters(room.width() - button);
     let mut chip = ui.new_child(UiBuilder::new().max_rect(room).id_salt("tool status"));
     theme::card(&chip).inner_margin(Margin::symmetric(8, 4)).show(&mut chip, |ui| {
         ui.set_width(ui.available_width());
         ui.horizontal(|ui| {
             ui.spacing_mut().button_padding.x = 3.0;
-            if tools.has_options() && tools.takes_places() {
+            if with_choices {
                 choices(ui, tools, scene);
             }
-            let text = RichText::new(status.strip_suffix(ENDING).unwrap_or(status)).size(12.0);
-            ui.add(Label::new(text).selectable(false).truncate()).on_hover_text(status);
+            ui.add(Label::new(letters).selectable(false)).on_hover_text(status);
         });
     });
     chip.min_rect()
 }
 
 /// At the map's lower edge; at the upper one while something is drawn and the pointer is near.
-fn place(ctx: &Context, map: Rect, columns: &[Rect], is_drawing: bool) -> Rect {
+fn place(ctx: &Context, map: Rect, columns: &[Rect], is_drawing: bool, height: &dyn Fn(f32) -> f32) -> Rect {
     let lower = chips::shown(ctx).map_or(map.bottom(), |chips| chips.top() + BELOW - 4.0).min(map.bottom());
-    let low = beside(map, lower - BELOW - LINE, BESIDE, columns);
+    // how wide it is depends on the tools beside it, and how high on how wide
+    let lowest = beside(map, (lower - BELOW - LINE, LINE), BESIDE, columns);
+    let tall = (height(lowest.width()) + 8.0).max(LINE);
+    let low = beside(map, (lower - BELOW - tall, tall), BESIDE, columns);
     let pointer = ctx.pointer_hover_pos().filter(|_| is_drawing);
     match pointer.is_some_and(|at| at.y > low.top() - CLEAR) {
-        true => beside(map, map.top() + BESIDE, BUTTONS, columns),
+        true => {
+            let high = beside(map, (map.top() + BESIDE, LINE), BUTTONS, columns);
+            let tall = (height(high.width()) + 8.0).max(LINE);
+            beside(map, (map.top() + BESIDE, tall), BUTTONS, columns)
+        }
         false => low,
     }
 }
 
-/// The line at a height, right of those columns of the tools that reach there.
-fn beside(map: Rect, top: f32, right: f32, columns: &[Rect]) -> Rect {
-    let rows = Rangef::new(top, top + LINE);
+/// From so far down and so tall, right of those columns of the tools that reach there.
+fn beside(map: Rect, (top, tall): (f32, f32), right: f32, columns: &[Rect]) -> Rect {
+    let rows = Rangef::new(top, top + tall);
     let taken = columns.iter().filter(|column| column.y_range().intersection(rows).span() > 0.0);
     let left = taken.map(|column| column.right()).fold(map.left() + BESIDE - 4.0, f32::max) + 4.0;
     Rect::from_x_y_ranges(left..=(map.right() - right).max(left), rows)
@@ -120,6 +141,12 @@ fn said_id() -> Id {
 pub fn below(ctx: &Context, map: Rect) -> Rect {
     let above = shown(ctx, map).filter(|said| said.center().y < map.center().y);
     above.map_or(map, |said| map.with_min_y(said.bottom()))
+}
+
+/// What is left of the map above it, where that is at its lower edge.
+pub fn above(ctx: &Context, map: Rect) -> Rect {
+    let low = shown(ctx, map).filter(|said| said.center().y > map.center().y);
+    low.map_or(map, |said| map.with_max_y(said.top() + BELOW - 4.0))
 }
 
 /// Where it was on the map in the last frame.

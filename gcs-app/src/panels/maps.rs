@@ -39,8 +39,12 @@ fn edge(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     ui.horizontal(|ui| {
         let graticule = ui.checkbox(&mut edge.graticule, "Graticule").clicked();
         let rings = ui.checkbox(&mut edge.rings, "Range rings");
+        let mut legend = !edge.no_legend;
+        let put_away = ui.checkbox(&mut legend, "Legend").on_hover_text("What the lines mean").clicked();
+        edge.no_legend = !legend;
         if rings.on_hover_text("Around the aircraft, or else around the runway of departure").clicked()
             || graticule
+            || put_away
         {
             queue.view(ViewCommand::Edge(edge));
         }

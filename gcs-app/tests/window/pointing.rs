@@ -192,6 +192,15 @@ fn on_a_narrow_map_the_legend_is_behind_a_button() {
     let mut wide = Window::open(SQUARE);
     wide.until_analysed();
     assert!(wide.colour_within("Map", "alternate").is_some() && !wide.shows("What the lines mean"));
+    // what it lies over can't be seen there, and its mark puts it away
+    let close = wide.centre("Put the legend away");
+    wide.click_at(close + egui::vec2(-60.0, 60.0));
+    assert_eq!(wide.selected(), "");
+    wide.click("Put the legend away");
+    assert_eq!(wide.colour_within("Map", "alternate"), None);
+    wide.click("What the lines mean");
+    wide.click("Leave it on the map");
+    assert!(wide.colour_within("Map", "alternate").is_some() && !wide.shows("What the lines mean"));
 }
 
 #[test]
