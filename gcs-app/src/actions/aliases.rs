@@ -5,7 +5,7 @@ use super::fuzzy::{self, Score};
 /// Words that mean the same elsewhere, and what they mean here.
 struct Alias {
     words: &'static [&'static str],
-    /// Actions by their identifiers.
+    /// Actions by their identifiers; one that says of what it is (`…: Scan the area`) without that.
     actions: &'static [&'static str],
     /// Rows of the plan's tree by their tags.
     tags: &'static [&'static str],
@@ -30,6 +30,7 @@ const TABLE: &[Alias] = &[
     alias(&["waypoint", "WP", "mission item", "add point"], &["tool-track"], &["IF", "TF", "DF", "RF", "CF"]),
     alias(&["survey grid", "survey", "lawnmower", "photogrammetry", "mapping", "transect"], &["tool-area"], &["SCAN"]),
     alias(&["corridor scan", "polyline", "route"], &["tool-line"], &["CORR", "TRACK"]),
+    alias(&["camera", "overlap", "photo", "picture", "trigger", "shutter"], &["tool-area", "Edit Take pictures along it", "Edit Take no pictures along it"], &["SCAN"]),
     alias(&["orbit", "point of interest", "POI", "ROI"], &["tool-circle"], &["ORB"]),
     alias(&["loiter", "hover", "brake", "pause mission"], &["hold", "tool-track", "tool-circle"], &["HF", "HA", "HM", "ORB"]),
     alias(&["marker", "placemark", "pin"], &["tool-fix"], &["FIX"]),
@@ -53,7 +54,9 @@ const TABLE: &[Alias] = &[
 
 /// How well the words of others for an action answer a query: only side by side, and less than its own words would.
 pub fn score(query: &str, action: &str) -> Option<Score> {
-    let of = TABLE.iter().filter(|alias| alias.actions.contains(&action));
+    let is_it =
+        |known: &&str| action.strip_prefix(*known).is_some_and(|of| of.is_empty() || of.starts_with(": "));
+    let of = TABLE.iter().filter(|alias| alias.actions.iter().any(|known| is_it(&known)));
     of.flat_map(|alias| alias.words).filter_map(|word| fuzzy::words(query, word)).max().map(Score::of_another)
 }
 
@@ -72,16 +75,18 @@ pub fn tags() -> impl Iterator<Item = &'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::actions::table;
+    use crate::actions::{Group, table};
     use crate::map::tools::Toolbox;
+    use crate::panels::tree::menu;
     use std::collections::BTreeSet;
 
     #[test]
     fn every_word_means_something_that_is_there() {
         let toolbox = Toolbox::default();
         let tools = toolbox.cards().map(|(card, _)| format!("tool-{}", card.id));
+        let pictures = menu::PICTURES.map(|name| format!("{} {name}", Group::Edit.name()));
         let there: BTreeSet<String> =
-            table::ENTRIES.iter().map(|entry| entry.id.to_owned()).chain(tools).collect();
+            table::ENTRIES.iter().map(|entry| entry.id.to_owned()).chain(tools).chain(pictures).collect();
         for alias in TABLE {
             assert!(!alias.words.is_empty() && !alias.actions.is_empty(), "{:?}", alias.words);
             for action in alias.actions {
@@ -106,6 +111,10 @@ mod tests {
     fn words_of_others_are_found_whole_and_by_their_beginnings() {
         for (query, action) in [("rtl", "emergency"), ("return to la", "abort"), ("Upload", "push")] {
             assert!(score(query, action).is_some(), "{query}");
+        }
+        for word in ["camera", "overlap", "photo"] {
+            assert!(score(word, "Edit Take pictures along it: Scan the area").is_some(), "{word}");
+            assert!(score(word, "tool-area").is_some() && means(word, "SCAN"), "{word}");
         }
         for (query, action) in [("rl", "emergency"), ("upload", "save"), ("uload", "push")] {
             assert!(score(query, action).is_none(), "{query}");

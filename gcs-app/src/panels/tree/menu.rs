@@ -231,12 +231,16 @@ fn of_legs(plan: &FlightPlan, legs: &[Id]) -> Vec<Entry> {
     ]
 }
 
+/// What begins and ends the taking of pictures along a leg.
+pub const PICTURES: [&str; 2] = ["Take pictures along it", "Take no pictures along it"];
+
 /// Of a leg that is flown.
 fn pictures(scene: &Scene<'_>, leg: &Id) -> Option<Entry> {
     let leg = scene.document.plan().any_leg(leg)?;
     let choice = LegChoice::of(&leg.kind);
     let (takes, edit) = footprints::toggled(scene, leg);
-    let name = if takes { "Take no pictures along it" } else { "Take pictures along it" };
+    let [take, take_none] = PICTURES;
+    let name = if takes { take_none } else { take };
     let is_flown = is_flown_itself(choice) && choice != LegChoice::Call;
     is_flown.then(|| Entry::new(name, "", edit))
 }
