@@ -245,7 +245,8 @@ fn unsettled(ui: &mut Ui, scene: &Scene<'_>, problem: &Problem) -> Response {
     let response = ui.add(label);
     let name = format!("Being checked: {}", told(scene.document, problem));
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-    response.on_hover_text(format!("{}\nFound before the last change; it is being checked.", problem.message))
+    let message = scene.document.in_names(&problem.message);
+    response.on_hover_text(format!("{message}\nFound before the last change; it is being checked."))
 }
 
 fn symbol(problem: &Problem) -> &'static str {

@@ -157,13 +157,13 @@ fn a_refused_push_is_one_line_that_moves_nothing_and_goes_with_an_edit_or_when_i
         window.answer(ticket, Err(why.clone()));
     };
     refuse(&mut window);
-    let told = window.harness.get_by_label_contains("refused, `side2`: climb earlier; `side2`").rect();
+    let told = window.harness.get_by_label_contains("refused, “side2”: climb earlier; “side2”").rect();
     assert!(told.height() < 30.0 && told.right() <= 960.0, "{told}");
     assert_eq!(window.harness.get_by_label("⏸ Hold").rect(), hold);
     window.click("Put this answer aside");
     assert!(!window.shows("refused"));
     refuse(&mut window);
-    assert!(window.shows("refused, `side2`"));
+    assert!(window.shows("refused, “side2”"));
     window.click("TF side2");
     window.press(Key::Delete);
     assert!(!window.shows("refused"), "it was said of another plan");

@@ -41,7 +41,8 @@ impl FlightPlan {
         self.name_of(id).unwrap_or(id.as_str())
     }
 
-    /// A sentence about the plan, with names in the place of the identifiers that stand in it as `` `id` ``.
+    /// A sentence about the plan, with names in the place of the identifiers that stand in it as `` `id` ``; what else stands there
+    /// is quoted alike.
     pub fn in_names(&self, sentence: &str) -> String {
         in_names(sentence, |id| self.name_of(id))
     }
@@ -55,7 +56,7 @@ pub fn in_names<'a>(sentence: &str, name_of: impl Fn(&Id) -> Option<&'a str>) ->
         told.push_str(before);
         match name_of(&Id::new(id)) {
             Some(name) => told.extend(["“", name, "”"]),
-            None => told.extend(["`", id, "`"]),
+            None => told.extend(["“", id, "”"]),
         }
         rest = after;
     }
@@ -82,6 +83,6 @@ mod tests {
         .plan;
         assert_eq!((plan.label(&"s".into()), plan.label(&"a".into())), ("Round the tower", "a"));
         let told = plan.in_names("`a` of `s` goes to `A`, set `altitude`, and a single ` stays");
-        assert_eq!(told, "`a` of “Round the tower” goes to “Tower”, set `altitude`, and a single ` stays");
+        assert_eq!(told, "“a” of “Round the tower” goes to “Tower”, set “altitude”, and a single ` stays");
     }
 }
