@@ -231,7 +231,7 @@ fn an_emergency_plan_is_dropped_on_a_stage() {
     let mut window = opened(SQUARE);
     let before = window.plan();
     window.drop_row("ALT return", "ENR circuit", 0.5);
-    assert!(window.shows("for which cause?"));
+    assert!(window.shows("return for circuit: for which cause?"));
     window.click("Engine failure");
     let stage = window.plan().stage(&"circuit".into()).unwrap().clone();
     assert_eq!(stage.emergency.by_cause, [(Some(Cause::Engine), Id::new("return"))]);

@@ -208,11 +208,20 @@ impl Asking {
             .gap(0.0)
             .open_bool(&mut open)
             .show(|ui| {
-                let name = alternates::plan_name(plan, &self.alternate);
-                ui.label(RichText::new(format!("{name} for which cause?")).color(theme::of(ui).weak));
+                ui.label(RichText::new(self.question(plan)).color(theme::of(ui).weak));
                 alternates::causes_menu(ui, plan, &self.of, &self.alternate, queue);
             });
         open
+    }
+
+    /// `Return to R20 for Survey: for which cause?`
+    fn question(&self, plan: &FlightPlan) -> String {
+        let whose = match self.of.as_slice() {
+            [Some(id)] => plan.label(id).to_owned(),
+            [None] => "the plan".into(),
+            several => format!("{} legs", several.len()),
+        };
+        format!("{} for {whose}: for which cause?", alternates::plan_name(plan, &self.alternate))
     }
 }
 
