@@ -1,6 +1,8 @@
 //! The altitudes of several legs and stages, raised together; those that say none stay as they are.
 
+use super::together::whose;
 use crate::command::Queue;
+use crate::document::Document;
 use crate::panels::{Scene, field};
 use crate::theme;
 use crate::units::Unit;
@@ -53,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue
     }
     let p = theme::of(ui);
     let told = Done::told(ui.ctx(), scene).map(|text| (format!("✔ {text}"), p.good));
-    let stays = Raised::of(scene.document.plan(), &set).stays(scene).map(|text| (text, p.weak));
+    let stays = Raised::of(scene.document.plan(), &set).stays(scene.document).map(|text| (text, p.weak));
     for (text, colour) in told.into_iter().chain(stays) {
         ui.add(Label::new(RichText::new(text).size(12.0).color(colour)).wrap());
     }
@@ -192,12 +194,10 @@ impl<'a> Raised<'a> {
     }
 
     /// Which stay as they are, and why.
-    fn stays(&self, scene: &Scene<'_>) -> Option<String> {
-        let mut names: Vec<&str> =
-            self.without.iter().take(NAMED).map(|id| scene.document.label(id)).collect();
+    fn stays(&self, document: &Document) -> Option<String> {
+        let mut names: Vec<String> = self.without.iter().take(NAMED).map(|id| whose(document, id)).collect();
         let rest = self.without.len() - names.len();
-        let rest = if rest > 0 { format!("{rest} more") } else { String::new() };
-        names.extend(Some(rest.as_str()).filter(|rest| !rest.is_empty()));
+        names.extend((rest > 0).then(|| format!("{rest} more")));
         let mut sentences = Vec::new();
         if !names.is_empty() {
             let say = if self.without.len() == 1 {
@@ -232,6 +232,14 @@ mod tests {
         let sides = ["side1", "side2", "side3", "side4"];
         assert_eq!(raised(&plan, &sides), ["circuit", "side1", "side4"]);
         assert_eq!(raised(&plan, &sides[..3]), ["side1", "side2", "side3"], "side4 stays where it is");
+    }
+
+    #[test]
+    fn what_stays_as_it_is_is_told_with_the_emergency_plan_that_it_is_of() {
+        let document = Document::read(PLAN, None);
+        let ids = ["land", "r-land"].map(Id::new);
+        let stays = Raised::of(document.plan(), &ids.iter().collect()).stays(&document).unwrap();
+        assert_eq!(stays, "land, r-land of return stay as they are: they say no altitude.");
     }
 
     #[test]

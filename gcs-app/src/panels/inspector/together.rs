@@ -3,12 +3,13 @@
 use super::page::Page;
 use super::{raise, value};
 use crate::command::{Queue, ViewCommand};
+use crate::document::Document;
 use crate::panels::{Scene, field};
 use crate::theme;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, RichText, Ui};
 use flight_plan::describe::{Kind, Property, Range, add as add_to};
-use flight_plan::{FlightPlan, Id, create};
+use flight_plan::{FlightPlan, Id, Stage, create};
 
 /// Of more than so many together the properties are not shown.
 pub const MOST: usize = 300;
@@ -25,9 +26,18 @@ pub fn head(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
 }
 
 fn named(ui: &Ui, scene: &Scene<'_>, set: &[Id]) -> egui::Label {
-    let mut names: Vec<&str> = set.iter().take(NAMED).map(|id| scene.document.label(id)).collect();
-    names.extend(Some("…").filter(|_| set.len() > NAMED));
+    let mut names: Vec<String> = set.iter().take(NAMED).map(|id| whose(scene.document, id)).collect();
+    names.extend((set.len() > NAMED).then(|| "…".into()));
     egui::Label::new(RichText::new(names.join(", ")).color(theme::of(ui).weak))
+}
+
+/// A name; of a part of an emergency plan, which may be called as one of the main plan, with that.
+pub(super) fn whose(document: &Document, id: &Id) -> String {
+    let plan = document.plan();
+    let is_its = |stage: &Stage| stage.id == *id || plan.leg(id).is_some_and(|leg| leg.stage.id == stage.id);
+    let of = plan.emergency_plans.iter().find(|emergency| emergency.stages.iter().any(is_its));
+    let name = document.label(id);
+    of.map_or_else(|| name.to_owned(), |of| format!("{name} of {}", document.label(&of.id)))
 }
 
 /// Of legs, stages, fixes, zones and runways, or of very many legs.
