@@ -2,7 +2,7 @@
 
 use super::super::{Scene, field};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
-use flight_plan::describe::{Change, Draft, Kind, Property, Row, Subject};
+use flight_plan::describe::{Change, Draft, Kind, Property, Quantity, Row, Subject};
 use flight_plan::{Edit, Element, FlightPlan, Id, create};
 
 /// A part of the plan, down to one of its elements.
@@ -145,7 +145,9 @@ impl<'a, 's> Page<'a, 's> {
     /// A new variable with a number's value, which gives it from then on.
     pub fn bind_to_new(&mut self, property: &Property, value: f64) {
         let of = self.element().attribute("id").unwrap_or(&self.element().name);
-        let (name, add) = create::named_variable(self.plan(), &format!("{of}_{}", property.attribute), value);
+        let unit = property.quantity().map_or("", Quantity::unit);
+        let of = format!("{of}_{}", property.attribute);
+        let (name, add) = create::named_variable(self.plan(), &of, value, unit);
         match self.edit(&Change::Set(*property, Some(format!("= {name}")))) {
             Ok(bind) => {
                 self.queue.edit(Edit::All(vec![add, bind]));

@@ -3,8 +3,8 @@
 
 use super::Inspection;
 use super::step::Step;
-use crate::expression::Type;
-use crate::{Edit, Id, Problem, Use};
+use crate::expression::{ExpressionError, Type};
+use crate::{Edit, Id, Problem, Thing, Use, Variable, VariableValue};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
@@ -35,13 +35,14 @@ fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, prob
     match compiled {
         Err(error) => {
             let problem = Problem::error(error.code, error.to_string()).of(of);
+            let declared = || declared(view, error, used);
             let correction = error.correction.clone();
             let fix = correction.map(|(from, to)| {
                 // a name is misspelt wherever it stands; the same number may be right elsewhere
                 let is_number = from.as_str().starts_with(|c: char| c.is_ascii_digit());
                 Edit::CorrectName { of: of.clone(), within: is_number.then(|| source.clone()), from, to }
             });
-            problems.push(problem.perhaps_fixed_by(fix));
+            problems.push(problem.perhaps_fixed_by(fix.or_else(declared)));
         }
         Ok(compiled) if wanted.is_some_and(|wanted| !compiled.gives(wanted)) => {
             let wanted = wanted.map_or_else(String::new, |wanted| wanted.to_string());
@@ -64,9 +65,40 @@ fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, prob
     }
 }
 
+/// The variable that is missing, where it can only be one that is true or false: at first it is false.
+fn declared(view: &Inspection, error: &ExpressionError, used: Use) -> Option<Edit> {
+    let whole = (error.code == "unknown-name" && used == Use::Condition && is_name(&error.source_text))
+        .then(|| Id::new(&error.source_text));
+    let name = error.undeclared_flag.clone().or(whole)?;
+    let is_free = view.plan.unique_id(name.as_str()) == name;
+    is_free.then(|| Edit::Add(Box::new(Thing::Variable(Variable::new(name, VariableValue::Bool(false))))))
+}
+
+fn is_name(source: &str) -> bool {
+    source.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{codes, document_with, fixed};
+    use crate::checks::testing::{codes, document_with, fixed, plan_with};
+
+    #[test]
+    fn a_flag_that_nobody_declared_is_declared_by_the_fix() {
+        let legs = |until: &str| {
+            format!(
+                r#"<iterative id="loop" form="forward" until="{until}"><TF id="t" lat="36.32" lon="-84.16"/></iterative>"#
+            )
+        };
+        for until in ["found", "!found", "found || iteration &gt;= 3"] {
+            let declared = fixed(&plan_with(&legs(until)), "unknown-name");
+            let variable = declared.variable(&"found".into()).map(|variable| &variable.initial);
+            assert_eq!(variable, Some(&crate::VariableValue::Bool(false)), "{until}");
+        }
+        let plan = crate::read(plan_with(&legs("found &lt; 3.0"))).plan;
+        let problems = crate::check(&plan, &aircraft::Profile::default(), &terrain::Flat(300.0));
+        let unknown = problems.iter().find(|problem| problem.code == "unknown-name").unwrap();
+        assert_eq!(unknown.fix, None, "that may be any number");
+    }
 
     /// Wherever the leg, or the stage, reads it; a text that says the same is no name.
     #[test]

@@ -1,6 +1,7 @@
 //! Places that become variables, so that whoever writes the variable in flight moves what is there.
 
 use super::thing::replace_fix;
+use crate::describe::{self, Quantity, Row};
 use crate::edit::lists;
 use crate::edit::shape::{area_mut, place_mut};
 use crate::{
@@ -28,6 +29,8 @@ pub fn variable_of_leg(plan: &FlightPlan, leg: &Id) -> Option<(Id, Edit)> {
             VariableValue::Polygon(corners.clone())
         }
         (_, Some(Place::Position(Value::Constant(at)))) => VariableValue::Position(*at),
+        // the fix stays where it is, for others
+        (_, Some(Place::Fix(fix))) => VariableValue::Position(plan.fix(fix)?.position),
         _ => return None,
     };
     let name = variable_name(plan, &leg.id);
@@ -106,9 +109,19 @@ impl Numeric {
     pub fn make_variable(self, plan: &FlightPlan, leg: &Leg) -> Option<(Id, Edit)> {
         let (_, value) = Self::of(leg).into_iter().find(|(number, _)| *number == self)?;
         let Value::Constant(now) = value else { return None };
-        let (name, add) = named_variable(plan, &format!("{}_{}", leg.id, self.0), *now);
+        let (name, add) = named_variable(plan, &format!("{}_{}", leg.id, self.0), *now, self.unit(leg));
         let bind = self.bind(leg, &name);
         Some((name, Edit::All(vec![add, bind])))
+    }
+
+    /// In which unit the plan writes it.
+    fn unit(self, leg: &Leg) -> &'static str {
+        let rows = describe::of(leg.kind_name()).map(|described| described.deep_rows()).unwrap_or_default();
+        let quantity = rows.iter().find_map(|row| match row {
+            Row::Property(property) if property.attribute == self.0 => property.quantity(),
+            _ => None,
+        });
+        quantity.map_or("", Quantity::unit)
     }
 
     /// The edit that gives it a value of its own again: what its variable says at the start. `None`: it is not bound to one.
@@ -121,11 +134,12 @@ impl Numeric {
     }
 }
 
-/// A new number variable, called after what it is for.
-pub fn named_variable(plan: &FlightPlan, of: &str, initial: f64) -> (Id, Edit) {
+/// A new number variable in a unit, called after what it is for.
+pub fn named_variable(plan: &FlightPlan, of: &str, initial: f64, unit: &str) -> (Id, Edit) {
     let name = plan.unique_id(&plain(of));
-    let add = add(&name, VariableValue::Number(initial));
-    (name, add)
+    let variable =
+        Variable { unit: unit.into(), ..Variable::new(name.clone(), VariableValue::Number(initial)) };
+    (name, Edit::Add(Box::new(Thing::Variable(variable))))
 }
 
 fn is_name(source: &str) -> bool {

@@ -244,6 +244,7 @@ fn a_number_becomes_a_variable_and_comes_back() {
     let bound = edit.apply(&plan).unwrap();
     assert_eq!((name.as_str(), errors(&bound)), ("orbit1_radius", Vec::new()));
     assert_eq!(Numeric::bound_to(&radius(&bound).1), Some(name.clone()));
+    assert_eq!(bound.variable(&name).unwrap().unit, "m", "as the field that it was");
     let moved = Edit::SetVariable { name, value: VariableValue::Number(950.0) }.apply(&bound).unwrap();
     let own = number.unbind(&moved, &radius(&moved).0).unwrap().apply(&moved).unwrap();
     assert_eq!(radius(&own).1, Value::Constant(950.0));
@@ -432,6 +433,25 @@ fn a_place_or_area_becomes_a_variable_and_comes_back() {
     let again = bind(&back, &scan, &name).unwrap().apply(&back).unwrap();
     assert_eq!(again, bound);
     assert!(unbind(&plan, &scan).is_none() && bind(&plan, &scan, &"nothing".into()).is_none());
+}
+
+#[test]
+fn a_leg_that_goes_to_a_fix_becomes_one_that_goes_to_a_variable_and_the_fix_stays() {
+    let plan = made(Template::Patrol);
+    let (leg, fix) = plan
+        .all_legs()
+        .iter()
+        .find_map(|c| match c.leg.place() {
+            Some(Place::Fix(fix)) => Some((c.leg.id.clone(), fix.clone())),
+            _ => None,
+        })
+        .unwrap();
+    let (name, edit) = variable_of_leg(&plan, &leg).unwrap();
+    let bound = edit.apply(&plan).unwrap();
+    assert_eq!(bound_to(bound.leg(&leg).unwrap().leg), Some(name.clone()));
+    let place = VariableValue::Position(plan.fix(&fix).unwrap().position);
+    assert_eq!(bound.variable(&name).unwrap().initial, place);
+    assert_eq!((errors(&bound), bound.fix(&fix)), (Vec::new(), plan.fix(&fix)));
 }
 
 #[test]

@@ -49,6 +49,7 @@ pub fn look(plan: &FlightPlan, of: &Subject, source: &str, used: Use) -> Result<
             source_text: source.into(),
             message: format!("this is {}, but {wanted} is needed here", compiled.kind),
             correction: None,
+            undeclared_flag: None,
         });
     }
     let mut variables = Variables::initial(plan);

@@ -72,6 +72,16 @@ pub struct Property {
     pub first: &'static str,
 }
 
+impl Property {
+    /// What it measures, if it is a number.
+    pub const fn quantity(&self) -> Option<Quantity> {
+        match self.kind {
+            Kind::Number(range) | Kind::Value(range) => Some(range.quantity),
+            _ => None,
+        }
+    }
+}
+
 /// What a value may be. Values are texts as in the document.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
@@ -139,6 +149,19 @@ pub enum Quantity {
     Share,
     /// In a unit that the plan names, or none.
     Plain,
+}
+
+impl Quantity {
+    /// The unit in which a plan writes it; empty: it has none.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Length | Self::Height => "m",
+            Self::Speed => "m/s",
+            Self::Angle => "°",
+            Self::Time => "s",
+            Self::Count | Self::Rank | Self::Share | Self::Plain => "",
+        }
+    }
 }
 
 /// What a reference names.

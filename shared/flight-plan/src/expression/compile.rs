@@ -55,6 +55,7 @@ pub fn compile_with(source: &str, names: &Names) -> Result<Expression, Expressio
         source_text: shorten(source),
         message,
         correction: None,
+        undeclared_flag: None,
     };
     if source.len() > MAX_LENGTH || bracket_depth(source) > MAX_DEPTH {
         return Err(at_start(
@@ -111,6 +112,7 @@ fn syntax_error(source: &str, errors: cel::ParseErrors) -> ExpressionError {
         source_text: shorten(source),
         message: format!("this is not a CEL expression, correct it: {complaint}"),
         correction: None,
+        undeclared_flag: None,
     }
 }
 
@@ -134,6 +136,7 @@ impl Checker<'_> {
             source_text: shorten(self.source),
             message: message.into(),
             correction: None,
+            undeclared_flag: None,
         }
     }
 
@@ -233,7 +236,10 @@ impl Checker<'_> {
     }
 
     fn bool(&mut self, at: &IdedExpr, depth: usize) -> Result<Box<Node>, ExpressionError> {
-        self.expect(at, Type::Bool, depth)
+        self.expect(at, Type::Bool, depth).map_err(|error| match &at.expr {
+            Expr::Ident(name) => error.of_flag(name),
+            _ => error,
+        })
     }
 
     fn expect(&mut self, at: &IdedExpr, wanted: Type, depth: usize) -> Result<Box<Node>, ExpressionError> {

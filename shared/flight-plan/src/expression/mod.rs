@@ -66,6 +66,17 @@ pub struct ExpressionError {
     pub message: String,
     /// A name that nobody knows, and the one that was probably meant; or a whole number where a double is needed, and that one.
     pub correction: Option<(Id, Id)>,
+    /// A name that nobody knows, where something is needed that is true or false.
+    pub undeclared_flag: Option<Id>,
+}
+
+impl ExpressionError {
+    /// The expression, or a part of it that has to be true or false, is this name.
+    pub(crate) fn of_flag(self, name: &str) -> Self {
+        let undeclared_flag =
+            (self.code == "unknown-name" && self.correction.is_none()).then(|| Id::new(name));
+        Self { undeclared_flag, ..self }
+    }
 }
 
 /// A checked expression.
