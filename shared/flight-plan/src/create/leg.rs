@@ -199,10 +199,11 @@ impl<'a> Maker<'a> {
         })
     }
 
-    /// The way the path would arrive at a place, whole degrees.
+    /// The way the path would arrive at a place, whole degrees; where it is there already, the way it goes.
     fn course_to(&self, end: Option<LatLon>) -> f64 {
         let way = self.at.zip(end).map(|(at, end)| at.from.inverse(end)).filter(|way| way.distance_m > 1.0);
-        way.map_or(0.0, |way| geometry::geodesy::normalise_360(way.bearing_end_deg.round()))
+        let course_deg = way.map(|way| way.bearing_end_deg).or_else(|| self.at?.course_deg);
+        course_deg.map_or(0.0, |course_deg| geometry::geodesy::normalise_360(course_deg.round()))
     }
 
     fn holding(&self, place: Place) -> Holding {

@@ -455,6 +455,15 @@ fn a_leg_that_goes_to_a_fix_becomes_one_that_goes_to_a_variable_and_the_fix_stay
 }
 
 #[test]
+fn a_holding_where_the_path_is_already_goes_the_way_that_the_path_goes() {
+    let plan = made(Template::Patrol);
+    let there = Some(Approach { from: HOME, course_deg: Some(51.6) });
+    let hold = leg(&plan, &Profile::default(), LegChoice::Hm, &Drawn::Place(at(HOME)), there, None).unwrap();
+    let LegKind::Hm { holding, .. } = hold.kind else { panic!("no holding") };
+    assert_eq!(holding.inbound_course_deg, Some(Value::Constant(52.0)));
+}
+
+#[test]
 fn a_fix_becomes_a_variable_with_every_leg_that_goes_there() {
     let plan = made(Template::Patrol);
     let fix = fix(&plan, HOME.destination(180.0, 2000.0));
