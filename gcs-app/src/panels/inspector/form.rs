@@ -10,7 +10,7 @@ use flight_plan::describe::{Change, Kind, OneOf, Property, Row};
 pub fn show(ui: &mut Ui, page: &mut Page<'_, '_>) {
     kind(ui, page);
     let description = page.draft().description();
-    for row in description.rows().filter(|row| page.is_common(row)).collect::<Vec<_>>() {
+    for row in description.rows().filter(|row| page.is_common(row) && page.applies(row)).collect::<Vec<_>>() {
         self::row(ui, page, row);
     }
 }

@@ -311,20 +311,20 @@ const STAGE: Description = element(
         ],
         &[
             Row::OneOf(OneOf {
-                label: "Energy after",
-                help: "Of a landing before another flight: what the next flight begins with.",
+                label: "Next begins",
+                help: "Of a landing before another flight: with how much energy that one begins.",
                 ways: &[
-                    Way { label: "what is left", fixed: &[("turnaroundEnergy", "kept")], rows: &[] },
+                    Way { label: "with what is left", fixed: &[("turnaroundEnergy", "kept")], rows: &[] },
                     Way {
-                        label: "a share",
+                        label: "with a share",
                         fixed: &[],
                         rows: &[P(number("turnaroundEnergy", "Share", Quantity::Share, 0.05, "1")
                             .help("Of the energy that the aircraft holds."))],
                     },
-                    Way { label: "all of it", fixed: &[], rows: &[] },
+                    Way { label: "with a full battery", fixed: &[], rows: &[] },
                 ],
             }),
-            P(number("turnaroundTime", "Time on the ground", Quantity::Time, 0.0, "600")
+            P(number("turnaroundTime", "Ground time", Quantity::Time, 0.0, "600")
                 .help("Of a landing before another flight: how long it is expected to stand until it is started again.")
                 .without("none")),
         ],
