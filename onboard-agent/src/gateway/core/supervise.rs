@@ -183,15 +183,16 @@ impl Gateway {
         self.ended || self.buffer.last().is_some_and(|w| w.end_of_plan)
     }
 
-    /// High enough to turn: a take-off is not interrupted before, unless it circles already, and no higher. What still stands has no
-    /// need of a way home: it would take off for it.
+    /// High enough to turn: a take-off is not interrupted before, unless it circles already, and no higher.
     pub(super) fn is_clear_of_ground(&self) -> bool {
-        if self.telemetry.on_ground == Some(true) && !self.may_be_up(self.now) {
-            return false;
-        }
         let climbs = self.telemetry.fix.is_none_or(|(_, f)| f.down_mps < -CLIMBING_MPS);
         let takes_off = self.took_off.is_some() || self.state == GatewayState::TakeOff;
         !takes_off || self.telemetry.is_above_home(CLEAR_M) || (self.is_dry() && !climbs)
+    }
+
+    /// It has not left the ground, and would take off to fly home.
+    fn still_stands(&self) -> bool {
+        self.telemetry.on_ground == Some(true) && !self.may_be_up(self.now)
     }
 
     /// The end loiter is circled although the plan did not end.
@@ -202,7 +203,7 @@ impl Gateway {
     /// Safe.Hold, if the state allows it.
     pub(super) fn enter_safe(&mut self, now: Time, cause: &str, out: &mut Vec<Output>) {
         let before = self.state;
-        if !self.is_clear_of_ground() {
+        if !self.is_clear_of_ground() || self.still_stands() {
             return;
         }
         self.change(Trigger::SafeNeeded, cause, out);
