@@ -51,7 +51,7 @@ const PLAYED: [(GatewayState, Intent, u64); 13] = [
 fn in_state(state: GatewayState, intent: Intent, steers_to: u64) -> Core {
     let mut core = Core::new();
     core.step(Input::Report(Report::Capability(Ok(PLANE))));
-    core.run(1, &reports(GatewayState::Stop, Loss::Nothing));
+    core.run(1, &reports(GatewayState::Stop, Mode::Hold, Loss::Nothing));
     let join = Join { plan: Some("plan".into()), earlier: vec![], last_token: Token(0) };
     core.step(Input::Join(1, join, fp_manager()));
     let runways = vec![runway_at(LatLon::new(36.3190, -84.1730))];
@@ -62,26 +62,38 @@ fn in_state(state: GatewayState, intent: Intent, steers_to: u64) -> Core {
     assert_eq!(core.answer(Input::Feed(3, fed, fp_manager())), Answer::Feed(FeedAnswer::Accepted));
     let target = Target::Waypoint(Serial(steers_to));
     core.step(Input::Report(Report::Course(Course { aboard: true, ready: true, target })));
+    // what still stood would have landed
+    core.run(1, &reports(state, mode_in(state), Loss::Nothing));
     core.gateway.state = state;
     core.gateway.control.set_intent(intent, core.gateway.telemetry.mode);
     core.gateway.control.safe_since = Some(core.now);
     core.gateway.control.way_home_glides = Some(false);
-    core.run(1, &reports(state, Loss::Nothing));
+    core.run(1, &reports(state, mode_in(state), Loss::Nothing));
     assert_eq!(core.gateway.state(), state);
     core.done();
     core
 }
 
-/// What the autopilot says of itself there.
-fn reports(state: GatewayState, loss: Loss) -> Vec<Report> {
+/// The mode that the autopilot is in there.
+fn mode_in(state: GatewayState) -> Mode {
     use GatewayState::{Directed, Hold, Manual, SafeHold, Stop, Terminate};
-    let mode = match state {
-        _ if loss == Loss::Command => Mode::Other(7),
+    match state {
         Stop | Hold | SafeHold => Mode::Hold,
         Directed => Mode::Direct,
         Manual | Terminate => Mode::Other(5),
         _ => Mode::Waypoints,
-    };
+    }
+}
+
+/// The mode that it was ordered to last, which it obeys.
+fn obeyed(core: &Core) -> Option<Mode> {
+    let steered = |(_, order)| if let Order::Steer(aim) = order { Some(aim.mode()) } else { None };
+    core.orders().into_iter().filter_map(steered).next_back()
+}
+
+/// What the autopilot says of itself there.
+fn reports(state: GatewayState, mode: Mode, loss: Loss) -> Vec<Report> {
+    use GatewayState::{Stop, Terminate};
     let stands = state == Stop;
     let rpm = if loss == Loss::Engine || stands || state == Terminate { 0.0 } else { 5000.0 };
     let throttle = if stands { 0.0 } else { 0.6 };
@@ -90,11 +102,17 @@ fn reports(state: GatewayState, loss: Loss) -> Vec<Report> {
     vec![
         beat(mode, !stands && state != Terminate),
         Report::OnGround(stands),
-        fix(if stands { 0.0 } else { 25.0 }),
+        high(if stands { 0.0 } else { 25.0 }),
         Report::Gps(gps),
         Report::Power(Power { voltage_v: 24.0, current_a: 10.0, battery, fuel: None }),
         Report::Engine(Engine { rpm, temperature_c: 80.0, throttle }),
     ]
+}
+
+/// So high that a runway is in reach of a glide.
+fn high(north_mps: f64) -> Report {
+    let Report::Fix(fix) = fix(north_mps) else { unreachable!() };
+    Report::Fix(Fix { altitude_amsl_m: 650.0, altitude_home_m: 300.0, ..fix })
 }
 
 /// The states that follow, and the alarms that are raised.
@@ -111,7 +129,9 @@ fn played(
             core.step(Input::Heartbeat { count, plan, from });
         }
         if loss != Loss::Autopilot {
-            reports(state, loss).into_iter().for_each(|report| core.step(Input::Report(report)));
+            let by_pilot = (loss == Loss::Command).then_some(Mode::Other(7));
+            let mode = by_pilot.or(obeyed(&core)).unwrap_or(mode_in(state));
+            reports(state, mode, loss).into_iter().for_each(|report| core.step(Input::Report(report)));
         }
         core.step(Input::Tick);
     }
@@ -138,7 +158,7 @@ fn outcome(state: (GatewayState, Intent, u64), loss: Loss) -> String {
 /// The table for people.
 pub fn markdown() -> String {
     let mut text = format!(
-        "\n## What it does on a loss\n\nPlayed through for {LASTS_S} s each: the state that follows, and the alarms. An alarm with a \
+        "\n## What it does on a loss\n\nPlayed through for {LASTS_S} s each, with the plan aboard to its landing: the state that follows, and the alarms. An alarm with a \
          cause (GPS, energy,\nengine) makes the FP Manager fly the plan's emergency for it, or ask for Safe mode. Of the ground \
          station's link the\ngateway needs nothing: in every state it goes on, and the plan's emergency `link` is the FP \
          Manager's. Safe mode that\nhas lasted T2 returns, see above.\n\n| state |"
