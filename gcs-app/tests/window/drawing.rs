@@ -54,7 +54,7 @@ fn every_kind_of_leg_is_drawn_on_the_map() {
             let mut window = window();
             window.click("TF side4");
             window.click(tool);
-            choose(&mut window, list, choice.name());
+            choose(&mut window, list, &choice.name());
             let at = free(&window);
             for offset in figure(shape) {
                 window.click_at(at + *offset);

@@ -21,7 +21,7 @@ fn with(tool: Key, figure: &[Vec2], choice: LegChoice) -> (Window, Id) {
     let mut window = window();
     window.click("TF side4");
     window.press(tool);
-    choose(&mut window, "Kind: ", choice.name());
+    choose(&mut window, "Kind: ", &choice.name());
     let at = window.centre("Map") + vec2(60.0, 40.0);
     figure.iter().for_each(|offset| window.click_at(at + *offset));
     if figure.len() > 2 {

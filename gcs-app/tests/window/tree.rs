@@ -145,7 +145,7 @@ fn leg_becomes_every_kind_that_its_menu_offers() {
         window.click_at(kinds);
         let offered = choice != LegChoice::Tf && window.is_enabled(&choice.name());
         if offered {
-            let at = window.harness.get_by_label(choice.name()).rect().center();
+            let at = window.harness.get_by_label(&choice.name()).rect().center();
             window.click_at(at);
             assert_eq!(LegChoice::of(&window.plan().leg(&"side2".into()).unwrap().leg.kind), choice);
             window.until_analysed();

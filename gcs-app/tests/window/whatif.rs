@@ -10,7 +10,7 @@ use flight_exec::{Command, preview};
 use flight_plan::{Cause, Id, VariableValue, compile};
 use gcs_app::app::App;
 use gcs_app::forecast::Coverage;
-use gcs_app::panels::what_if::{CAUSES, cause_name};
+use gcs_app::panels::what_if::CAUSES;
 use std::sync::Arc;
 
 pub const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
@@ -263,10 +263,10 @@ fn the_cursor_runs_as_fast_as_chosen() {
 fn each_cause_is_raised_in_the_panel_and_in_the_palette() {
     let mut window = opened(SQUARE);
     for (cause, letters) in CAUSES.into_iter().zip(["engine", "energy", "link", "gps", "operator"]) {
-        choose(&mut window, cause_name(cause));
+        choose(&mut window, cause.name());
         let found = |app: &App| app.analysis().diversion().is_some_and(|found| found.cause == cause);
         window.until("the way out", found);
-        assert!(window.shows(&format!("{}: R05 is reached ", cause_name(cause))), "{cause:?}");
+        assert!(window.shows(&format!("{}: R05 is reached ", cause.name())), "{cause:?}");
         window.click("Back to the plan's own world");
         assert!(window.app().view().alarm.is_none());
         window.ask_for(&format!("what if {letters} here"));
@@ -398,7 +398,7 @@ fn what_stands_below_an_alarm_stays_in_its_place_when_it_is_raised() {
     let at = |window: &Window| window.harness.get_by_role_and_label(Role::Slider, "Wind speed").rect().min;
     let before = at(&window);
     for cause in [Cause::Engine, Cause::Operator] {
-        choose(&mut window, cause_name(cause));
+        choose(&mut window, cause.name());
         window.until("the way out", |app| app.analysis().diversion().is_some());
         assert_eq!(at(&window), before, "{cause:?}");
     }

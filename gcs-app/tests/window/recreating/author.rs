@@ -338,7 +338,7 @@ impl Author {
         };
         let at = self.outline(leg);
         self.window.click_role(Role::Button, tool);
-        self.window.choose_kind(choice.name());
+        self.window.choose_kind(&choice.name());
         self.draw(tool, figure, "", &at, closes);
     }
 
