@@ -72,7 +72,7 @@ fn line(ui: &mut Ui, tools: &mut Toolbox, status: &str, columns: &[Rect], scene:
     let button = if with_choices { BUTTON } else { 0.0 };
     let height = |width: f32| ui.fonts_mut(|fonts| fonts.layout_job(letters(width - button))).size().y;
     let room = place(ui.ctx(), map, columns, tools.is_drawing(), &height);
-    let letters = letters(room.width() - button);
+    let letters = ui.fonts_mut(|fonts| fonts.layout_job(letters(room.width() - button)));
     let mut chip = ui.new_child(UiBuilder::new().max_rect(room).id_salt("tool status"));
     theme::card(&chip).inner_margin(Margin::symmetric(8, 4)).show(&mut chip, |ui| {
         ui.set_width(ui.available_width());

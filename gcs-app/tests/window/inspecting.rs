@@ -235,6 +235,9 @@ fn there_is_a_named_widget_for_every_described_property_of_every_element() {
         let draft = Draft::of(&plan, &subject).unwrap();
         let mut expected = Vec::new();
         wanted(draft.description(), draft.element(), "", &mut expected);
+        if draft.element().name == "stage" && draft.element().attribute("type") != Some("land") {
+            expected.retain(|name| !["Next begins", "Ground time"].contains(&name.as_str()));
+        }
         let names = panels.names();
         for name in expected {
             // what is not given says what holds instead; an altitude and its reference share a row, and are left out
@@ -287,7 +290,7 @@ fn a_fault_is_said_with_its_column_while_typing() {
     panels.write(Role::TextInput, "Until", "go && side > 3.0");
     assert!(panels.shows("Column 7: "), "an unknown name");
     panels.write(Role::TextInput, "Until", "size > 3.0");
-    assert!(!panels.shows("Column ") && panels.shows("= true at the start"));
+    assert!(!panels.shows("Column ") && panels.shows("= yes at the start"));
     panels.enter();
     let LegKind::Hm { until, .. } = panels.leg_of("hm").kind else { panic!() };
     assert_eq!(until.as_deref(), Some("size > 3.0"));

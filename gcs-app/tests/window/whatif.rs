@@ -227,7 +227,7 @@ fn the_coverage_tells_parts_that_are_reached_from_parts_that_are_not() {
     }
     assert_ne!(look(Reach::Good).0.color, look(Reach::Out).0.color);
     assert_ne!(look(Reach::Good).1, look(Reach::Out).1);
-    assert!(window.shows("not reached: ") && window.shows("Coverage, worst alarm ("));
+    assert!(window.shows("not reached: ") && window.shows("How the worst alarm would end"));
 }
 
 #[test]

@@ -165,7 +165,9 @@ impl Situation {
         let is_left_early = self.guidance.habits().is_told_corners
             && target.action == aircraft::Action::Fly
             && !(waypoint.fly_over || waypoint.on_arc);
-        let from = self.guidance.target().filter(|t| is_left_early && t.action == aircraft::Action::Fly);
+        // a take-off leads onto the line that begins where it was to end
+        let leads = |action| matches!(action, aircraft::Action::Fly | aircraft::Action::TakeOff { .. });
+        let from = self.guidance.target().filter(|t| is_left_early && leads(t.action));
         let acceptance_m = from.zip(onward).and_then(|(from, onward)| {
             turn_acceptance_m(from.position, waypoint.position, onward.position, waypoint.airspeed_mps)
         });
