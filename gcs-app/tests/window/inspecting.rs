@@ -194,7 +194,7 @@ fn wanted(description: &'static Description, element: &Element, prefix: &str, in
 }
 
 fn wanted_rows(rows: &'static [Row], element: &Element, prefix: &str, into: &mut Vec<String>) {
-    for row in rows {
+    for row in rows.iter().filter(|row| row.applies(element)) {
         match row {
             Row::Property(property) => into.push(format!("{prefix}{}", property.label)),
             Row::OneOf(one) => {

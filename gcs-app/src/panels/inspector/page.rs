@@ -142,17 +142,9 @@ impl<'a, 's> Page<'a, 's> {
         self.change(&Change::Set(*property, value));
     }
 
-    /// What is said of the time behind a landing is nothing to be asked of another stage, unless it says that already.
+    /// It is something to be asked of each of the parts.
     pub fn applies(&self, row: &Row) -> bool {
-        const BEHIND_LANDING: [&str; 2] = ["turnaroundEnergy", "turnaroundTime"];
-        let is_said = |of: &&str| self.elements().any(|element| element.attribute(of).is_some());
-        let of: Vec<&str> = match row {
-            Row::Property(property) => property.attributes().collect(),
-            Row::OneOf(one) => one.ways.iter().flat_map(|way| way.fixed).map(|(name, _)| *name).collect(),
-            Row::Children(_) => Vec::new(),
-        };
-        let is_landing = || self.elements().all(|element| element.attribute("type") == Some("land"));
-        !of.iter().any(|of| BEHIND_LANDING.contains(of)) || of.iter().any(is_said) || is_landing()
+        self.elements().all(|element| row.applies(element))
     }
 
     /// A new variable with a number's value, which gives it from then on.

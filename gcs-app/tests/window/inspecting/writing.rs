@@ -59,7 +59,7 @@ impl<'a> Wishes<'a> {
     }
 
     fn rows(&mut self, rows: &'static [Row], at: At<'_>) {
-        for row in rows {
+        for row in rows.iter().filter(|row| row.applies(at.element)) {
             match row {
                 Row::Property(property) => self.property(property, at),
                 Row::OneOf(one) => self.one_of(one, at),

@@ -288,6 +288,22 @@ fn collect(rows: &'static [Row], into: &mut Vec<&'static Row>) {
     }
 }
 
+impl Row {
+    /// What is said of the time behind a landing is nothing to be asked of another stage, unless it says that already.
+    pub fn applies(&self, element: &Element) -> bool {
+        const BEHIND_LANDING: [&str; 2] = ["turnaroundEnergy", "turnaroundTime"];
+        let of: Vec<&str> = match self {
+            Row::Property(property) => property.attributes().collect(),
+            Row::OneOf(one) => one.ways.iter().flat_map(|way| way.fixed).map(|(name, _)| *name).collect(),
+            Row::Children(_) => Vec::new(),
+        };
+        let is_said = |attribute: &&str| element.attribute(attribute).is_some();
+        !of.iter().any(|attribute| BEHIND_LANDING.contains(attribute))
+            || element.attribute("type") == Some("land")
+            || of.iter().any(is_said)
+    }
+}
+
 impl Property {
     /// The attributes that hold it.
     pub fn attributes(&self) -> impl Iterator<Item = &'static str> {
