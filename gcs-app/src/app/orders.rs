@@ -10,7 +10,7 @@ use crate::guide::Answer;
 use crate::link::Call;
 use crate::state::{LOOK_AHEAD, Level, Proposal, Vehicle, VehicleName};
 use flight_exec::Command as PlanCommand;
-use flight_plan::Id;
+use flight_plan::{FlightPlan, Id};
 
 impl App {
     /// Carries out a command; one to a vehicle goes to `shown`, the one that was drawn when it was given.
@@ -32,11 +32,25 @@ impl App {
         }
     }
 
+    /// What went out of the plan may leave behind a fix that it went to.
+    fn tell_of_unused(&mut self, before: &FlightPlan, now_s: f64) {
+        let (was, now) = (before.unused_fixes(), self.document.plan().unused_fixes());
+        let left: Vec<&str> = now.difference(&was).map(|fix| fix.as_str()).collect();
+        if !left.is_empty() {
+            let text = format!("No leg goes to {} any more", left.join(", "));
+            self.toasts.add(now_s, Level::Info, text);
+        }
+    }
+
     fn change_document(&mut self, command: DocumentCommand, now_s: f64) {
         match command {
             DocumentCommand::Edit(edit) => {
+                let before = edit.removes().then(|| self.document.plan().clone());
                 let done = self.document.edit(&edit);
                 self.tell(done);
+                if let Some(before) = before {
+                    self.tell_of_unused(&before, now_s);
+                }
             }
             DocumentCommand::DragEdit(edit) => {
                 let done = self.document.drag_edit(&edit);

@@ -289,6 +289,15 @@ fn several_legs_are_looped_raised_and_deleted_together() {
     assert!(!window.shows("2 legs"), "a click alone selects one");
 }
 
+#[test]
+fn a_fix_that_is_left_behind_by_its_last_leg_is_told_of() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.select_row(("TF side2", 0));
+    window.press(egui::Key::Delete);
+    assert!(window.shows("No leg goes to B any more"));
+}
+
 /// What is expected on the ground shows behind the landing, in the timeline, and as fields of the stage.
 #[test]
 fn a_landing_before_another_flight_shows_what_is_expected_on_the_ground() {

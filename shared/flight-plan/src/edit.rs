@@ -343,6 +343,15 @@ impl Edit {
         Self::SetAltitude { of: of.clone(), altitude: Some(Altitude { metres, reference }) }
     }
 
+    /// It takes something out of the plan.
+    pub fn removes(&self) -> bool {
+        match self {
+            Edit::DeleteLeg { .. } | Edit::Remove { .. } => true,
+            Edit::All(edits) => edits.iter().any(Edit::removes),
+            _ => false,
+        }
+    }
+
     /// The plan with this edit made. The old one is untouched.
     ///
     /// # Errors

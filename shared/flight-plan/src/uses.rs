@@ -4,8 +4,10 @@ mod slots;
 
 pub(crate) use slots::{Slot, SlotMut};
 
-use crate::{Leg, Place, Stage, Value};
+use crate::create::every_leg;
+use crate::{FlightPlan, Id, Leg, Place, Stage, Value, expression};
 use geometry::LatLon;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// What an expression is used as.
@@ -114,10 +116,53 @@ impl Leg {
     }
 }
 
+impl FlightPlan {
+    /// Fixes that no leg goes to and no expression names.
+    pub fn unused_fixes(&self) -> BTreeSet<&Id> {
+        let mut unused: BTreeSet<&Id> = self.fixes.iter().map(|fix| &fix.id).collect();
+        let mut named = |source: &Arc<str>, _: Use| {
+            let fixes = expression::compile(source, self).map(|compiled| compiled.fixes).unwrap_or_default();
+            fixes.iter().for_each(|fix| _ = unused.remove(fix));
+        };
+        self.all_stages().for_each(|(_, stage)| stage.for_each_expression(&mut named));
+        for leg in every_leg(self) {
+            leg.for_each_expression(&mut named);
+        }
+        for leg in every_leg(self) {
+            leg.for_each_part(&mut |part| {
+                if let Part::Place(Place::Fix(fix)) = part {
+                    unused.remove(fix);
+                }
+            });
+        }
+        unused
+    }
+}
+
 impl Stage {
     /// Every expression of the stage itself (not of its legs), with what it is used as.
     pub fn for_each_expression(&self, visit: &mut dyn FnMut(&Arc<str>, Use)) {
         let numbers = self.altitude.iter().map(|a| &a.metres).chain(&self.speed_mps);
         numbers.filter_map(|x| Part::Number(x).expression()).for_each(|(source, used)| visit(source, used));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::checks::testing::{document_with, plan_with};
+    use crate::{Edit, Id};
+
+    #[test]
+    fn a_fix_is_used_by_a_leg_or_a_formula_and_unused_once_they_are_gone() {
+        let legs = r#"<TF id="t" fix="B"/>
+            <HM id="o" fix="B" course="90" turn="left" length="900" until="distance_to('C') &lt; 300.0"/>"#;
+        let plan = crate::read(plan_with(legs)).plan;
+        let unused = |plan: &crate::FlightPlan| plan.unused_fixes().into_iter().cloned().collect::<Vec<Id>>();
+        assert_eq!(unused(&plan), [Id::new("GATE")]);
+        let edit = Edit::All(vec![Edit::DeleteLeg { leg: "o".into() }]);
+        assert!(edit.removes());
+        assert_eq!(unused(&edit.apply(&plan).unwrap()), [Id::new("C"), Id::new("GATE")]);
+        let empty = crate::read(document_with("", "", "")).plan;
+        assert_eq!(unused(&empty).len(), empty.fixes.len());
     }
 }
