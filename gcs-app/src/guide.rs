@@ -4,6 +4,7 @@
 
 use crate::airfields::{self, Landing};
 use flight_plan::Runway;
+use flight_plan::figures;
 use flight_plan::template::{Extent, Outline, Template};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
@@ -204,7 +205,7 @@ impl Guide {
     fn take_runway(&mut self, threshold: LatLon, end: LatLon) {
         let way = threshold.inverse(end);
         self.threshold = Some(threshold);
-        self.heading_deg = way.bearing_start_deg.rem_euclid(360.0);
+        self.heading_deg = figures::direction_deg(way.bearing_start_deg.rem_euclid(360.0));
         self.length_m = way.distance_m.clamp(LENGTH_M.0, LENGTH_M.1).round();
         self.drawing = None;
     }

@@ -124,9 +124,9 @@ impl View {
         self.screen(p.into())
     }
 
-    /// The position under a point of the screen.
+    /// The position under a point of the screen, in round figures: it may become one of a plan.
     pub fn geo(&self, at: Pos2) -> LatLon {
-        self.unit(at).to_geo()
+        flight_plan::figures::place(self.unit(at).to_geo())
     }
 
     /// The place in the unit square under a point of the screen.

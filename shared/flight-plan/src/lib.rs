@@ -9,6 +9,7 @@ pub mod describe;
 pub mod diff;
 pub mod edit;
 pub mod expression;
+pub mod figures;
 pub mod history;
 mod ids;
 pub mod legible;

@@ -13,9 +13,12 @@ pub use extent::Extent;
 pub(crate) use frame::climb_out;
 pub(crate) use home::bring_home;
 
+use crate::figures;
+use crate::uses::SlotMut;
 use crate::{
     Altitude, AltitudeReference, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Holding, HoldingLength, Id,
     Leg, LegKind, Place, PlanWaypoint, Runway, Stage, StageKind, TurnDirection, Turnaround, Value,
+    VariableValue,
 };
 use aircraft::Profile;
 use frame::Frame;
@@ -121,7 +124,25 @@ impl Outline {
             runway: self.runway.id.clone(),
             stages: frame.way_home("r-", &[]),
         }];
+        in_round_figures(&mut plan);
         plan
+    }
+}
+
+/// Where its legs and variables are was worked out.
+fn in_round_figures(plan: &mut FlightPlan) {
+    for variable in &mut plan.variables {
+        if let VariableValue::Position(at) = &mut variable.initial {
+            *at = figures::place(*at);
+        }
+    }
+    for leg in plan.stages.iter_mut().flat_map(|stage| &mut stage.legs) {
+        Arc::make_mut(leg).for_each_slot_mut(&mut |slot| match slot {
+            SlotMut::Place(Place::Position(Value::Constant(at))) | SlotMut::Corner(at) => {
+                *at = figures::place(*at)
+            }
+            _ => {}
+        });
     }
 }
 
@@ -134,6 +155,7 @@ fn to(fix: &str) -> PlanWaypoint {
 }
 
 fn fix(id: &str, position: LatLon) -> Fix {
+    let position = figures::place(position);
     Fix { id: Id::new(id), position, name: String::new(), description: String::new() }
 }
 

@@ -1,5 +1,6 @@
 //! Legs, fixes, zones and runways moved, turned and scaled together, about a pivot.
 
+use crate::figures;
 use crate::uses::SlotMut;
 use crate::{Edit, FlightPlan, Id, Leg, Part, Place, Runway, Thing, Value, Zone, ZoneShape};
 use geometry::LatLon;
@@ -40,7 +41,9 @@ impl Motion {
             return from;
         }
         let way = self.pivot.inverse(from);
-        self.to.destination(way.bearing_start_deg + self.turn_deg, way.distance_m * self.scale)
+        figures::place(
+            self.to.destination(way.bearing_start_deg + self.turn_deg, way.distance_m * self.scale),
+        )
     }
 
     /// A leg of the set; a place that is a fix is where `fix` says, `None` keeps it.
@@ -65,7 +68,7 @@ impl Motion {
     fn number(&self, name: &str, value: &mut Value<f64>) {
         let Value::Constant(number) = value else { return };
         if DIRECTIONS.contains(&name) && self.turn_deg != 0.0 {
-            *number = normalise_360(*number + self.turn_deg);
+            *number = figures::direction_deg(normalise_360(*number + self.turn_deg));
         }
         if SIZES.contains(&name) {
             *number *= self.scale;

@@ -1,6 +1,7 @@
 //! Where legs and zones go and what they cover.
 
 use super::{EditError, leg_mut, not_applicable, set_variable};
+use crate::figures;
 use crate::{Area, FlightPlan, Id, Leg, LegKind, Pattern, Place, Value, VariableValue, Zone, ZoneShape};
 use geometry::LatLon;
 use std::sync::Arc;
@@ -134,7 +135,7 @@ fn shift<'a>(points: impl Iterator<Item = &'a mut LatLon>, to: LatLon) {
     let from = std::mem::replace(first, to);
     for point in points {
         let way = from.inverse(*point);
-        *point = to.destination(way.bearing_start_deg, way.distance_m);
+        *point = figures::place(to.destination(way.bearing_start_deg, way.distance_m));
     }
 }
 
