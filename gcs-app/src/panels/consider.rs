@@ -8,7 +8,7 @@ use crate::theme;
 use crate::units;
 use egui::{RichText, ScrollArea, Ui};
 use flight_exec::{Command, Foresight};
-use flight_plan::Id;
+use flight_plan::{Id, Value};
 use usal::contract::GatewayState;
 
 /// Room for the button: what it does is known in more words a moment later, and nothing below moves for that, screen points.
@@ -209,5 +209,24 @@ fn facts(considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) -> V
         units.distance().show(foresight.distance_m),
         foresight.battery_left * 100.0
     );
-    next.into_iter().chain([left_out]).chain(clearance).chain([end]).collect()
+    let rounds = begun_anew(&considered.command, vehicle);
+    next.into_iter().chain(rounds).chain([left_out]).chain(clearance).chain([end]).collect()
+}
+
+/// `Rounds over the fire begins its rounds anew: 1 of 3`: an emergency ends the loops in which it was raised, and a loop that is entered
+/// counts from one.
+fn begun_anew(command: &Command, vehicle: &Vehicle) -> Vec<String> {
+    let Command::ReturnToMain { leg } = command else { return Vec::new() };
+    let Some(context) = vehicle.aboard.as_ref().and_then(|aboard| aboard.plan.leg(leg)) else {
+        return Vec::new();
+    };
+    let entered = context.loops.iter().copied().chain([context.leg]);
+    let told = entered.filter_map(|leg| Some((leg, leg.as_loop()?))).map(|(leg, of)| {
+        let count = match of.count {
+            Some(Value::Constant(count)) => format!("1 of {count}"),
+            _ => "from 1".to_owned(),
+        };
+        format!("{} begins its rounds anew: {count}", vehicle.name_of(&leg.id))
+    });
+    told.collect()
 }

@@ -3,6 +3,7 @@
 use super::emergency::{in_emergency, raised};
 use super::flying::{fly_its_plan, flying, flying_its_plan};
 use super::vehicle::{place, position, status};
+use super::whatif::FIRE_WATCH;
 use super::{SQUARE, Window};
 use egui_kittest::kittest::Queryable;
 use flight_exec::{Command, Foresight, PathPoint, Phase};
@@ -111,6 +112,28 @@ fn what_follows_is_asked_behind_what_the_window_wanted_to_know_for_itself() {
     assert!(window.asked().is_none(), "the first one is still being answered");
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(back))));
+}
+
+/// In round 2 of 3 the emergency was raised; the way back flew all three again.
+#[test]
+fn the_way_back_into_a_loop_says_that_its_rounds_begin_anew() {
+    let mut window = Window::open(FIRE_WATCH);
+    window.until_analysed();
+    fly_its_plan(&mut window);
+    let mut value = window.app().vehicle().status.as_ref().unwrap().value.clone();
+    value.emergency = Some("return".into());
+    window.receive_status(value);
+    window.leave_open();
+    for (leg, begins_anew) in [("Sweep the fire", true), ("To the mountain front", false)] {
+        window.ask_for(&format!("return to the main plan at {leg}"));
+        window.press(egui::Key::Enter);
+        let (ticket, _) = window.asked().unwrap();
+        window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+        assert!(window.shows("Flies next: "), "{leg}");
+        assert_eq!(window.shows("Rounds over the fire begins its rounds anew: 1 of 3"), begins_anew, "{leg}");
+        window.click("Cancel");
+        window.leave_open();
+    }
 }
 
 /// Nobody decides by a height of a minute ago: it is looked at again by itself.
