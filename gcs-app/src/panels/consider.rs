@@ -8,13 +8,12 @@ use crate::theme;
 use crate::units;
 use egui::{RichText, ScrollArea, Ui};
 use flight_exec::{Command, Foresight};
+use flight_plan::checks::CLEARANCE_M;
 use flight_plan::{Id, Value};
 use usal::contract::GatewayState;
 
 /// Room for the button: what it does is known in more words a moment later, and nothing below moves for that, screen points.
 const BUTTON: f32 = 2.0 * 17.0 + 12.0;
-/// Nearer to the ground is a caution, metres.
-const LOW_M: f64 = 30.0;
 /// What was told so long ago, by the aircraft's clock, is of another place, seconds.
 const OLD_S: f64 = 20.0;
 /// So many legs are named.
@@ -139,9 +138,12 @@ fn cautions(considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) -
     let end = foresight.cut_short.clone();
     let unfinished = (end.is_none() && !foresight.landed).then(|| "It does not end on the ground".to_owned());
     let height = height(considered, foresight);
-    let low = height.filter(|height| height.least_m < LOW_M).map(|height| {
-        let least = units.altitude().show(height.least_m);
-        format!("Only {least} above the ground where it is lowest{}", height.by())
+    let low = height.filter(|height| height.least_m < CLEARANCE_M).map(|height| {
+        let [least, kept] = [height.least_m, CLEARANCE_M].map(|m| units.altitude().show(m));
+        format!(
+            "Only {least} above the ground where it is lowest{}: a plan is written to keep {kept}",
+            height.by()
+        )
     });
     climb
         .into_iter()

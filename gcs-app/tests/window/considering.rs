@@ -194,8 +194,10 @@ fn who_is_in_a_hurry_holds_the_button_before_the_answer() {
 fn a_climb_that_is_not_done_or_a_low_way_is_a_caution() {
     let low = Foresight { clearance_m: Some(12.0), ..foresight() };
     let late = Foresight { short_of_altitude_m: Some(120.0), ..foresight() };
-    for (foresight, text) in [(low, "Only 12 m above the ground"), (late, "Climb not done: it arrives 120 m")]
-    {
+    for (foresight, text) in [
+        (low, "Only 12 m above the ground where it is lowest: a plan is written to keep 50 m"),
+        (late, "Climb not done: it arrives 120 m"),
+    ] {
         let (mut window, ticket) = considered();
         window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight))));
         assert!(window.shows(text), "{text}");
