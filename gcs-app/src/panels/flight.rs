@@ -10,8 +10,8 @@ use flight_exec::{Command, IterationPlace, Phase};
 use flight_plan::{Cause, Id};
 use usal::contract::GatewayState;
 
-/// Below the primary flight display there is room for an alarm and the vital values, points.
-const ROOM_BELOW: f32 = 140.0;
+/// Below the primary flight display there is room for alarms and the vital values, points.
+const ROOM_BELOW: f32 = 2.0 * 80.0;
 
 /// The panel: the primary flight display, alarms, and every value with its age.
 #[derive(Debug)]
@@ -36,26 +36,23 @@ impl Panel for Flight {
         scene.vehicle.received_s.is_some()
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
-        // where the display takes all the room, alarms and the vital values come first: nobody scrolls for what he does not expect
+        // where the display takes all the room it comes last: nobody scrolls for what he does not expect
         let is_low = ui.available_height() < pfd::HEIGHT + ROOM_BELOW;
-        if is_low {
-            raised(ui, scene);
-            dense(ui);
-            VITAL.iter().for_each(|row| row(ui, scene));
-            ui.add_space(4.0);
-        } else {
+        if !is_low {
             pfd::show(ui, scene, pfd::HEIGHT);
             ui.add_space(4.0);
         }
+        raised(ui, scene);
+        dense(ui);
+        VITAL.iter().for_each(|row| row(ui, scene));
+        ui.add_space(4.0);
         let room = ui.available_height();
         ScrollArea::vertical().id_salt("flight values").auto_shrink(false).show(ui, |ui| {
             if is_low {
                 pfd::show(ui, scene, room);
-            } else {
-                alarms::show(ui, scene);
+                ui.add_space(4.0);
             }
-            ui.add_space(4.0);
-            values(ui, scene, is_low);
+            values(ui, scene);
         });
     }
 }
@@ -65,7 +62,7 @@ type Row = fn(&mut Ui, &Scene<'_>);
 /// What nobody flies without: in sight at every size. That of the link is in the bar.
 const VITAL: [Row; 4] = [leg, next, above_ground, battery];
 
-/// The alarms, in a part of a low panel.
+/// The alarms, in a part of what is left of the panel.
 fn raised(ui: &mut Ui, scene: &Scene<'_>) {
     let most = ui.available_height() * 0.5;
     ScrollArea::vertical().id_salt("raised alarms").max_height(most).show(ui, |ui| alarms::show(ui, scene));
@@ -78,27 +75,18 @@ fn dense(ui: &mut Ui) {
     ui.spacing_mut().interact_size.y = 17.0;
 }
 
-/// What the vehicle does now; without the vital rows where they stand above.
-fn values(ui: &mut Ui, scene: &Scene<'_>, is_low: bool) {
+/// What the vehicle does now, besides what is vital.
+fn values(ui: &mut Ui, scene: &Scene<'_>) {
     dense(ui);
-    let unless_above = |ui: &mut Ui, row: Row| {
-        if !is_low {
-            row(ui, scene);
-        }
-    };
-    unless_above(ui, leg);
     iterations(ui, scene);
     alternate(ui, scene);
-    unless_above(ui, next);
     off_track(ui, scene);
     ui.add_space(4.0);
     buffer(ui, scene);
     ui.add_space(4.0);
     above_home(ui, scene);
-    unless_above(ui, above_ground);
     over_ground(ui, scene);
     climb(ui, scene);
-    unless_above(ui, battery);
     engine(ui, scene);
     gps(ui, scene);
 }
@@ -224,12 +212,15 @@ fn gps(ui: &mut Ui, scene: &Scene<'_>) {
     value_with_age(ui, "GPS", &text.unwrap_or_default(), age_of(gps, scene.now_s));
 }
 
+/// Why no command can be given.
+pub const NOT_CONNECTED: &str = "Not connected: no command reaches the aircraft";
+
 /// The strip of commands; each is there when it makes sense. Without a link none of them would arrive.
 pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.spacing_mut().interact_size.y = field::HOLD_HEIGHT;
     if scene.vehicle.open_link().is_none() {
-        ui.label(RichText::new("Not connected: no command reaches the aircraft").color(p.caution));
+        ui.label(RichText::new(NOT_CONNECTED).color(p.caution));
         ui.disable();
     }
     let phase = scene.vehicle.phase();

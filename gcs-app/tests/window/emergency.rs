@@ -5,7 +5,7 @@ use super::flying::{flying, flying_its_plan};
 use super::vehicle::{place, position, status};
 use super::{SQUARE, Window};
 use egui_kittest::kittest::Queryable;
-use flight_exec::{Branching, Command, Event, Phase};
+use flight_exec::{Branching, Command, Event, Foresight, Phase};
 use flight_plan::Cause;
 use gcs_app::link::{Call, LinkEvent, Numbered, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Ticket};
@@ -66,7 +66,11 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     assert!(window.shows("EMERGENCY: flying") && !window.shows("lands in"), "it is no longer heard");
     window.click("Return to the main plan at side3");
     let back = Command::ReturnToMain { leg: "side3".into() };
-    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(back))));
+    let (ticket, call) = window.asked().unwrap();
+    assert_eq!(call, Call::Foresee(Some(back)));
+    let without_landing = Foresight { left_out: vec!["r-land".into()], ..foresight() };
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(without_landing))));
+    assert!(window.shows("Left out: Landing"), "not by its identifier");
 }
 
 /// Who is about to press something presses that: the banner has its room before.
@@ -82,8 +86,10 @@ fn nothing_moves_when_an_emergency_begins_and_its_red_banner_changes() {
             "the plan aboard is not known"
         );
         let where_it_is = |window: &Window| {
-            ["Map", "Zoom in", "⏸ Hold", "⏭ Skip leg", "TF side3", "Hide Flight"]
-                .map(|label| window.harness.get_by_label(label).rect())
+            let display = window.harness.get_by_label_contains("Primary flight display").rect();
+            let others = ["Map", "Zoom in", "⏸ Hold", "⏭ Skip leg", "TF side3", "Hide Flight"]
+                .map(|label| window.harness.get_by_label(label).rect());
+            (display, others)
         };
         let before = where_it_is(&window);
         value.emergency = Some("return".into());

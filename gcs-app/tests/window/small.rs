@@ -12,7 +12,7 @@ use super::whatif::FIRE_WATCH;
 use super::{SQUARE, Window};
 use egui::{Key, Rect, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
-use flight_exec::Foresight;
+use flight_exec::{Foresight, IterationPlace};
 use gcs_app::link::{Reply, Telemetry};
 use usal::contract::{Alarm, Power, Severity, Stamped};
 
@@ -39,6 +39,29 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
         assert!(!window.shows("Coverage of the whole path"), "{size}");
         window.click("What if");
         assert!(window.shows("Coverage of the whole path"), "{size}: it was asked for");
+    }
+}
+
+/// The battery was below the fold, and so was the height above the ground in a loop.
+#[test]
+fn below_the_horizon_the_vital_values_come_first() {
+    let (mut window, mut value) = flying();
+    value.emergency_in_force = Some("return".into());
+    if let Some(place) = &mut value.place {
+        place.iterations =
+            vec![IterationPlace { leg: "rounds".into(), iteration: 2, of: Some(3), reverse: false }];
+    }
+    window.receive_status(value);
+    let power = Power { voltage_v: 24.1, current_a: 9.0, battery: 0.71, fuel: None };
+    window.receive(Telemetry::Power(Stamped { time_s: 1.0, validity_s: 5.0, value: power }));
+    window.harness.set_size(vec2(1280.0, 800.0));
+    window.steps(3);
+    let end = rect(&window, "⏸ Hold").top();
+    let horizon = said(&window, "Primary flight display");
+    let vital = ["circuit ▸ side2", "above the ground", "71 % · 24.1 V"];
+    for text in vital {
+        let found = window.harness.get_all_by_label_contains(text).last().unwrap().rect();
+        assert!(found.top() > horizon.bottom() && found.bottom() < end, "{text} is at {found}");
     }
 }
 
