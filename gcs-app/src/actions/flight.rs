@@ -14,7 +14,11 @@ use usal::contract::{GatewayRequest, GatewayState};
 pub fn of(scene: &Scene<'_>) -> Vec<Action> {
     let mut actions = Vec::new();
     let mut add = |kind: Kind, name: String, command: Command| {
-        actions.push(Action { kind, ..Action::now(Group::Flight, name, Ok(command)) });
+        let command = match command {
+            Command::Fly(_) => linked(scene).map(|()| command),
+            _ => Ok(command),
+        };
+        actions.push(Action { kind, ..Action::now(Group::Flight, name, command) });
     };
     let fly = |command: PlanCommand| Command::Fly(FlyCommand::Plan(command));
     if let Some((request, _)) = decision::open(scene) {
@@ -23,7 +27,7 @@ pub fn of(scene: &Scene<'_>) -> Vec<Action> {
             add(Kind::Do, format!("Decide: {}", option.label), fly(command));
         }
     }
-    if in_the_air(scene, PlanCommand::Hold).is_ok() {
+    if is_in_the_air(scene) {
         let aboard = scene.vehicle.aboard.as_ref();
         for alternate in aboard.map(|aboard| aboard.plan.emergency_plans.as_slice()).unwrap_or_default() {
             let name = format!("Emergency: fly {}", scene.vehicle.name_of(&alternate.id));
@@ -82,7 +86,13 @@ pub(super) fn connect(scene: &Scene<'_>) -> Asked {
     Ok(Command::Link(link::connecting(&made)))
 }
 
+/// Without a link no command arrives.
+fn linked(scene: &Scene<'_>) -> Result<(), &'static str> {
+    scene.vehicle.open_link().map(drop).ok_or(panel::NOT_CONNECTED)
+}
+
 pub(super) fn commit(scene: &Scene<'_>) -> Asked {
+    linked(scene)?;
     let proposal = scene.vehicle.proposal.as_ref().ok_or(NOT_PUSHED)?;
     if !proposal.report.acceptable {
         Err("What was pushed can't be flown: it stays a draft")
@@ -101,6 +111,7 @@ pub(super) fn keep_as_draft(scene: &Scene<'_>) -> Asked {
 const NOT_PUSHED: &str = "Push a plan first";
 
 pub(super) fn rewind(scene: &Scene<'_>) -> Asked {
+    linked(scene)?;
     let why_not = "A vehicle that stands disarmed with a plan that was begun can be rewound";
     if panel::can_rewind(scene) { plan(PlanCommand::Rewind) } else { Err(why_not) }
 }
@@ -112,6 +123,7 @@ pub(super) fn skip(scene: &Scene<'_>) -> Asked {
 
 /// Where the banner of the emergency leads back to.
 pub(super) fn return_to_main(scene: &Scene<'_>) -> Asked {
+    linked(scene)?;
     let leg = banner::way_back_to(scene).ok_or("No emergency plan is being flown")?;
     Ok(consider(PlanCommand::ReturnToMain { leg }))
 }
@@ -127,16 +139,26 @@ fn consider(command: PlanCommand) -> Command {
 
 const NOT_FLYING: &str = "No plan is being flown";
 
+fn is_flying(scene: &Scene<'_>) -> bool {
+    matches!(scene.vehicle.phase(), Phase::Flying | Phase::AwaitingDecision)
+}
+
+fn is_in_the_air(scene: &Scene<'_>) -> bool {
+    scene.vehicle.phase() == Phase::Holding || is_flying(scene)
+}
+
 pub(super) fn flying(scene: &Scene<'_>, command: PlanCommand) -> Asked {
-    let flying = matches!(scene.vehicle.phase(), Phase::Flying | Phase::AwaitingDecision);
-    if flying { plan(command) } else { Err(NOT_FLYING) }
+    linked(scene)?;
+    if is_flying(scene) { plan(command) } else { Err(NOT_FLYING) }
 }
 
 pub(super) fn in_the_air(scene: &Scene<'_>, command: PlanCommand) -> Asked {
-    if scene.vehicle.phase() == Phase::Holding { plan(command) } else { flying(scene, command) }
+    linked(scene)?;
+    if is_in_the_air(scene) { plan(command) } else { Err(NOT_FLYING) }
 }
 
 pub(super) fn resume(scene: &Scene<'_>) -> Asked {
+    linked(scene)?;
     if panel::can_resume(scene) {
         plan(PlanCommand::Resume)
     } else {
@@ -145,6 +167,7 @@ pub(super) fn resume(scene: &Scene<'_>) -> Asked {
 }
 
 pub(super) fn start(scene: &Scene<'_>) -> Asked {
+    linked(scene)?;
     let why_not = "A vehicle on the ground with a plan aboard can be started";
     if panel::can_launch(scene) { Ok(Command::Fly(FlyCommand::Launch)) } else { Err(why_not) }
 }
@@ -154,6 +177,7 @@ pub(super) fn emergency(scene: &Scene<'_>) -> Asked {
 }
 
 pub(super) fn leave_safe(scene: &Scene<'_>) -> Asked {
+    linked(scene)?;
     let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
     if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn)) {
         Ok(Command::Fly(FlyCommand::Gateway(GatewayRequest::Recover)))

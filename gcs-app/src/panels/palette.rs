@@ -7,9 +7,9 @@ use crate::actions::{
 };
 use crate::command::{Queue, ViewCommand};
 use crate::theme;
-use egui::text::{CCursor, CCursorRange};
+use egui::text::{CCursor, CCursorRange, LayoutJob, TextFormat};
 use egui::text_edit::TextEditState;
-use egui::{Align2, Area, Id, Key, Modifiers, Order, RichText, ScrollArea, Ui, vec2};
+use egui::{Align2, Area, FontId, Id, Key, Modifiers, Order, RichText, ScrollArea, TextStyle, Ui, vec2};
 use std::cmp::Reverse;
 
 const WIDTH: f32 = 460.0;
@@ -193,23 +193,34 @@ fn score(query: &str, action: &Action) -> Option<Score> {
     own.max(aliases::score(query, &action.id))
 }
 
+/// At the ends of a row, and between a name and what stands beside it, screen points.
+const BETWEEN: f32 = 32.0;
+
+fn width_of(ui: &Ui, text: &LayoutJob) -> f32 {
+    ui.painter().layout_job(text.clone()).size().x
+}
+
 fn row(ui: &mut Ui, action: &Action, current: bool) -> egui::Response {
     let p = theme::of(ui);
     let colour = if action.command.is_ok() { p.text } else { p.weak };
     let on = matches!(action.kind, Kind::Switch(true) | Kind::Choice(true));
     let mark = if on { " ✔" } else { "" };
-    let text = RichText::new(format!("{}  ▸  {}{mark}", action.group.name(), action.name)).color(colour);
+    let text = format!("{}  ▸  {}{mark}", action.group.name(), action.name);
     let aside = match &action.command {
         Ok(_) => action.caution.map(Into::into).or(action.key(ui.ctx())).unwrap_or_default(),
         Err(why_not) => why_not.to_string(),
     };
-    let button = egui::Button::new(text)
-        .selected(current)
-        .frame_when_inactive(current)
-        .right_text(RichText::new(&aside).color(p.weak).size(11.5))
-        .truncate()
-        .min_size(vec2(ui.available_width(), ROW_HEIGHT));
-    let response = ui.add(button);
+    let small = TextFormat::simple(FontId::proportional(11.5), p.weak);
+    let mut text = LayoutJob::simple(text, TextStyle::Button.resolve(ui.style()), colour, f32::INFINITY);
+    let beside = LayoutJob::single_section(aside.clone(), small.clone());
+    let has_room = width_of(ui, &text) + width_of(ui, &beside) < ui.available_width() - BETWEEN;
+    // else below it: neither pushes the other out
+    if !has_room && !aside.is_empty() {
+        text.append(&format!("\n{aside}"), 0.0, small);
+    }
+    let button = egui::Button::new(text).wrap().selected(current).frame_when_inactive(current);
+    let button = if has_room { button.right_text(beside) } else { button };
+    let response = ui.add(button.min_size(vec2(ui.available_width(), ROW_HEIGHT)));
     let name = format!("{} {}", action.group.name(), action.name);
     let enabled = action.command.is_ok();
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, enabled, current, &name));

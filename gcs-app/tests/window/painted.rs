@@ -71,6 +71,12 @@ impl Window {
         self.colour_of(words).is_some()
     }
 
+    /// The same, with all of their line.
+    pub fn paints_whole(&self, words: &str) -> bool {
+        let mut all = self.harness.output().shapes.iter().flat_map(|clipped| texts(&clipped.shape));
+        all.any(|text| text.galley.text().contains(words) && !text.galley.elided)
+    }
+
     /// The colour of words that are painted somewhere.
     pub fn colour_of(&self, words: &str) -> Option<Color32> {
         self.colour_in(Rect::EVERYTHING, words)

@@ -1,11 +1,12 @@
 //! The command palette, and the keys: everything that can be done, without the pointer.
 
+use super::flying::flying;
 use super::vehicle::{place, status};
 use super::{SQUARE, Window};
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::{Command, Phase};
-use gcs_app::link::Call;
+use gcs_app::link::{Call, LinkEvent, LinkState};
 use gcs_app::units::Units;
 
 impl Window {
@@ -110,6 +111,32 @@ fn what_is_not_possible_says_why_and_does_nothing() {
     assert!(egui_kittest::kittest::NodeT::accesskit_node(&row).is_disabled());
     window.press(Key::Enter);
     assert!(window.app().view().palette.is_some() && window.asked().is_none());
+}
+
+/// They were offered, and refused: no command reaches an aircraft without a link.
+#[test]
+fn what_the_link_carries_is_not_offered_without_one() {
+    let (mut window, _) = flying();
+    window.leave_open();
+    window.send(LinkEvent::Link(LinkState::Off));
+    window.harness.set_size(egui::vec2(960.0, 600.0));
+    for name in [
+        "Hold now: the aircraft circles where it is",
+        "Skip the leg…",
+        "Emergency: fly the alternate in force",
+        "Abort: Safe mode flies home",
+        "Rewind to the start",
+    ] {
+        window.ask_for(name);
+        assert!(!window.is_enabled(&format!("Flight {name}")), "{name}");
+        // the reason pushed the name out
+        for words in [name, "Not connected: no command reaches the aircraft"] {
+            assert!(window.paints_whole(words), "{words}");
+        }
+        window.press(Key::Enter);
+        assert!(window.far.orders.try_recv().is_err() && !window.shows("refused"), "{name}");
+        window.press(Key::Escape);
+    }
 }
 
 #[test]
