@@ -72,8 +72,8 @@ fn fire_watch() -> Vec<Step> {
             acts: vec![set("fire_radius", VariableValue::Number(430.0))],
         },
         Step {
-            name: "another round",
-            story: "The demo decided at the fork: another round",
+            name: "back to the watch point",
+            story: "The demo decided at the fork: back to the watch point, for another round",
             when: asked(1),
             acts: vec![decide("again")],
         },
@@ -87,8 +87,8 @@ fn fire_watch() -> Vec<Step> {
             ],
         },
         Step {
-            name: "a closer look",
-            story: "The demo decided at the fork: a closer look, in circles above the fire",
+            name: "a close look",
+            story: "The demo decided at the fork: a close look, in circles above the fire",
             when: asked(2),
             acts: vec![decide("close")],
         },
@@ -297,6 +297,24 @@ mod tests {
         })
     }
 
+    /// The card called the same branch otherwise.
+    #[test]
+    fn a_decision_is_told_by_the_name_of_its_branch() {
+        let plan = flight_plan::read(crate::assets::FIRE_WATCH).plan;
+        let mut told = 0;
+        for step in fire_watch() {
+            for act in &step.acts {
+                let Act::Command(Command::Decide { leg, branch }) = act else { continue };
+                let label = plan.branch_label(leg, branch).to_lowercase();
+                for words in [step.name, step.story] {
+                    assert!(words.to_lowercase().contains(&label), "{words}: {label}");
+                }
+                told += 1;
+            }
+        }
+        assert_eq!(told, 2);
+    }
+
     #[test]
     fn steps_come_once_and_at_their_place() {
         let mut script = Script::new(fire_watch());
@@ -315,12 +333,12 @@ mod tests {
         assert!(fly(&mut script, "sweep", 1, 4).is_empty(), "three are flown");
         assert_eq!(fly(&mut script, "sweep", 1, 1), ["the fire grows"]);
         script.hear(&ask(), 0.0);
-        assert_eq!(fly(&mut script, "sweep", 1, 20), ["another round"]);
+        assert_eq!(fly(&mut script, "sweep", 1, 20), ["back to the watch point"]);
         assert!(fly(&mut script, "regroup", 1, 9).is_empty());
         assert_eq!(fly(&mut script, "sweep", 2, 9), ["the fire moves"]);
         assert_eq!(
             script.missing().map(|s| s.name).collect::<Vec<_>>(),
-            ["a closer look", "the fire is out", "another way home"]
+            ["a close look", "the fire is out", "another way home"]
         );
     }
 
@@ -336,7 +354,7 @@ mod tests {
         let mut script = waiting();
         assert!(script.next_due(114.0, 15.0).is_none() && script.is_waiting());
         let step = script.next_due(115.0, 15.0).unwrap();
-        assert_eq!(step.name, "another round");
+        assert_eq!(step.name, "back to the watch point");
         assert!(step.story.starts_with("The demo decided"), "nobody else did: {}", step.story);
         let mut script = waiting();
         let taken = Event::DecisionTaken { leg: "ask".into(), branch: "close".into(), by: "operator".into() };
