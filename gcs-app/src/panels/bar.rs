@@ -205,7 +205,9 @@ pub fn plan_state(scene: &Scene<'_>) -> (&'static str, Standing) {
             _ => ("active", Standing::Active),
         };
     }
-    if status.proposed.as_deref() == Some(hash) {
+    // what was checked aboard once and is kept as a draft is nothing but that
+    let is_open = scene.vehicle.proposal.as_ref().is_some_and(|proposal| *proposal.report.hash == *hash);
+    if is_open && status.proposed.as_deref() == Some(hash) {
         return ("proposed", Standing::Proposed);
     }
     if status.plan.is_some() { ("edited ≠ aboard", Standing::Draft) } else { ("draft", Standing::Draft) }

@@ -1,10 +1,11 @@
 //! What stands in the panel of a proposal, and where the button is.
 
 use super::flying::{connected, flying, report};
+use super::vehicle::status;
 use super::{SQUARE, Window};
 use egui::Key;
 use egui_kittest::kittest::Queryable;
-use flight_exec::ProposalReport;
+use flight_exec::{Phase, ProposalReport};
 use gcs_app::link::{Reply, Telemetry};
 use usal::contract::{Air, Stamped};
 
@@ -179,6 +180,43 @@ fn push_is_not_the_thing_to_do_with_a_plan_that_cannot_be_flown() {
         window.colour_of("⬆ Push").unwrap()
     };
     assert_ne!(colour(SQUARE), colour(&SQUARE.replace(r#"fix="B""#, r#"fix="BB""#)));
+}
+
+/// It was put aside, and the bar went on calling it proposed.
+#[test]
+fn what_is_kept_as_a_draft_is_not_called_proposed() {
+    let (mut window, hash) = connected();
+    window.leave_open();
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
+    let (plan, proposed) = (Some("another".into()), Some(hash.into()));
+    window.receive_status(flight_exec::Status { plan, proposed, ..status(Phase::Flying) });
+    assert!(window.shows("◈ proposed"));
+    window.click("Keep as draft");
+    assert!(!window.shows("◈ proposed") && window.shows("edited ≠ aboard"));
+}
+
+/// On a map that is hardly wider than its tools, too.
+#[test]
+fn the_words_of_the_aircraft_stand_clear_of_the_tools_while_a_proposal_is_read() {
+    for size in [egui::vec2(960.0, 600.0), egui::vec2(1200.0, 750.0), egui::vec2(1280.0, 800.0)] {
+        let (mut window, value) = flying();
+        window.harness.set_size(size);
+        let hash = window.app().analysis().hash.clone();
+        window.receive_status(flight_exec::Status { plan: Some("another".into()), ..value });
+        window.leave_open();
+        window.click("Push");
+        let (ticket, _) = window.asked().unwrap();
+        window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
+        window.steps(30);
+        let words = window.places_of(|text| text.contains(" AMSL · "));
+        assert!(!words.is_empty(), "{size}");
+        for tool in window.harness.query_all_by_role(egui::Role::Button).filter(|b| b.rect().width() < 40.0) {
+            let over = words.iter().find(|words| words.intersects(tool.rect()));
+            assert!(over.is_none(), "{size}: {words:?} over {tool:?} at {}", tool.rect());
+        }
+    }
 }
 
 /// The panel takes the map's right part, and with it half of what is to be decided about.

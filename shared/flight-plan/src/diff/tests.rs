@@ -56,7 +56,10 @@ fn each_change_is_told_in_words() {
         ),
         (
             Edit::MoveFix { fix: "COVE".into(), to: LatLon::new(36.542, -84.232) },
-            &["fix COVE changed: lat 36.541 → 36.542", "leg if changed: its fix COVE moved by 111 m"],
+            &[
+                "fix COVE changed: moved by 111 m to 36.542, -84.232",
+                "leg if changed: its fix COVE moved by 111 m",
+            ],
         ),
         (
             Edit::SetSpeed { of: "patterns".into(), speed_mps: Some(Value::Constant(20.0)) },

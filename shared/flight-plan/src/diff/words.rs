@@ -1,6 +1,7 @@
 //! What changed in one part, as phrases: its attributes, then what stands inside it.
 
 use crate::xml::{self, Element, Piece};
+use geometry::LatLon;
 use std::collections::HashMap;
 
 /// Up to so many changes inside a part are listed one by one, more only by their number.
@@ -9,6 +10,8 @@ const MOST: usize = 4;
 const LONGEST: usize = 120;
 /// Of a number that is told.
 const DECIMALS: usize = 6;
+/// The attributes of a position.
+const POSITION: [&str; 2] = ["lat", "lon"];
 /// Attributes that distinguish elements of one name: branches, parameters and arguments, emergencies by cause.
 const KEYS: [&str; 3] = ["id", "name", "cause"];
 
@@ -67,6 +70,20 @@ fn attribute(name: &str, old: &Element, new: &Element) -> Option<String> {
     }
 }
 
+/// `moved by 340 m to 36.26656, -84.16964`: two attributes are one place.
+fn moved(old: &Element, new: &Element) -> Option<String> {
+    let (was, now) = (position(old)?, position(new)?);
+    let LatLon { lat_deg, lon_deg } = now;
+    let of_digits = |degrees: f64| (degrees * 1e5).round() / 1e5;
+    let to = format!("{}, {}", of_digits(lat_deg), of_digits(lon_deg));
+    (was != now).then(|| format!("moved by {:.0} m to {to}", was.distance_m(now)))
+}
+
+fn position(of: &Element) -> Option<LatLon> {
+    let [lat, lon] = POSITION.map(|name| of.attribute(name)?.parse().ok());
+    Some(LatLon::new(lat?, lon?)).filter(|at| at.is_valid())
+}
+
 /// What a number counts in, and an altitude from; nothing for a formula.
 fn measure(name: &str, of: &Element) -> &'static str {
     let is_number = of.attribute(name).is_some_and(|value| value.parse::<f64>().is_ok());
@@ -87,10 +104,14 @@ fn measure(name: &str, of: &Element) -> &'static str {
 
 /// Of two elements: their attributes and what is in them.
 fn inside(old: &Element, new: &Element) -> Vec<String> {
-    let changed = new.attributes.iter().map(|(name, _)| attribute(name, old, new));
+    let moved = moved(old, new);
+    let is_told = |name: &str| moved.is_some() && POSITION.contains(&name);
+    let names = new.attributes.iter().filter(|(name, _)| !is_told(name));
+    let changed = names.map(|(name, _)| attribute(name, old, new));
     let gone = old.attributes.iter().filter(|(name, _)| new.attribute(name).is_none());
     let gone = gone.map(|(name, _)| attribute(name, old, new));
-    let mut words: Vec<String> = changed.chain(gone).flatten().collect();
+    let changed = changed.chain(gone).flatten();
+    let mut words: Vec<String> = moved.iter().cloned().chain(changed).collect();
     if let ([was], [now]) = (&old.children[..], &new.children[..])
         && was.name != now.name
     {
