@@ -96,6 +96,8 @@ pub struct App {
     /// What happens when all that is to be saved is saved.
     after_saving: Option<Replacement>,
     screenshot: Option<Screenshot>,
+    /// What the next run finds, if this one is ended by force.
+    stored: Remembered,
     /// The tour has been offered, in this window or an earlier one.
     tour_seen: bool,
     /// What a demo tells, and where it had come to in the last frame.
@@ -133,6 +135,7 @@ impl App {
             Arc::new(move || ctx.request_repaint())
         };
         let remembered = creation.storage.map(Remembered::read).unwrap_or_default();
+        let stored = remembered.clone();
         let panels = panels::all();
         let mut app = Self {
             document,
@@ -166,6 +169,7 @@ impl App {
             leaving: false,
             after_saving: None,
             screenshot: None,
+            stored,
             tour_seen: remembered.tour_seen,
             story: None,
             looked_through: 0,
@@ -327,7 +331,7 @@ impl eframe::App for App {
         }
     }
 
-    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let now = self.now(&ctx);
         let typed_ahead = std::mem::take(&mut self.typed_ahead);
@@ -351,6 +355,12 @@ impl eframe::App for App {
         }
         self.queue = queue;
         self.look(&ctx);
+        // what is dragged still is not decided yet
+        if let Some(storage) = frame.storage_mut()
+            && !ctx.input(|i| i.pointer.any_down())
+        {
+            Remembered::of(self).keep(&mut self.stored, storage);
+        }
         if let Some(screenshot) = &mut self.screenshot {
             screenshot.run(&ctx, now.window_s);
         }
