@@ -4,6 +4,7 @@ use super::considering::foresight;
 use super::flying::{flying, flying_its_plan};
 use super::vehicle::{place, position, status};
 use super::{SQUARE, Window};
+use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use flight_exec::{Branching, Command, Event, Foresight, Phase};
 use flight_plan::Cause;
@@ -182,7 +183,7 @@ fn there_is_no_banner_without_an_emergency() {
 #[test]
 fn who_holds_the_way_back_has_pressed_it() {
     let mut window = in_emergency();
-    let back = window.harness.get_all_by_label_contains("Return to the main plan at").next().unwrap().rect();
+    let back = window.harness.get_by_role_and_label(Role::Button, "Return to the main plan at side3").rect();
     window.harness.hover_at(back.center());
     window.harness.drag_at(back.center());
     window.steps(120);

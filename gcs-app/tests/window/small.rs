@@ -103,7 +103,7 @@ fn on_a_small_map_a_tool_says_all_of_it_and_gives_way_to_what_is_drawn() {
     window.press(Key::A);
     let map = rect(&window, "Map");
     let line = said(&window, "Scan ");
-    assert!((20.0..60.0).contains(&line.height()), "in more than one line, {line}");
+    assert!((12.0..60.0).contains(&line.height()), "in as few lines as it takes, {line}");
     assert!(line.bottom() > map.bottom() - 60.0, "{line}, the map {map}");
     for beside in ["Measure (M)", "Zoom in"] {
         assert!(!line.intersects(rect(&window, beside)), "{beside}");
