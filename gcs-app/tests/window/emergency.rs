@@ -4,7 +4,6 @@ use super::considering::foresight;
 use super::flying::{flying, flying_its_plan};
 use super::vehicle::{place, position, status};
 use super::{SQUARE, Window};
-use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use flight_exec::{Branching, Command, Event, Foresight, Phase};
 use flight_plan::Cause;
@@ -183,11 +182,6 @@ fn there_is_no_banner_without_an_emergency() {
 #[test]
 fn who_holds_the_way_back_has_pressed_it() {
     let mut window = in_emergency();
-    let back = window.harness.get_by_role_and_label(Role::Button, "Return to the main plan at side3").rect();
-    window.harness.hover_at(back.center());
-    window.harness.drag_at(back.center());
-    window.steps(120);
-    window.harness.drop_at(back.center());
-    window.steps(3);
+    window.hold("Return to the main plan at side3", 120);
     assert!(window.shows("Looking ahead"), "a long press counts");
 }

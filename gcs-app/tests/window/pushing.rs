@@ -197,28 +197,6 @@ fn what_is_kept_as_a_draft_is_not_called_proposed() {
     assert!(!window.shows("◈ proposed") && window.shows("edited ≠ aboard"));
 }
 
-/// On a map that is hardly wider than its tools, too.
-#[test]
-fn the_words_of_the_aircraft_stand_clear_of_the_tools_while_a_proposal_is_read() {
-    for size in [egui::vec2(960.0, 600.0), egui::vec2(1200.0, 750.0), egui::vec2(1280.0, 800.0)] {
-        let (mut window, value) = flying();
-        window.harness.set_size(size);
-        let hash = window.app().analysis().hash.clone();
-        window.receive_status(flight_exec::Status { plan: Some("another".into()), ..value });
-        window.leave_open();
-        window.click("Push");
-        let (ticket, _) = window.asked().unwrap();
-        window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
-        window.steps(30);
-        let words = window.places_of(|text| text.contains(" AMSL · "));
-        assert!(!words.is_empty(), "{size}");
-        for tool in window.harness.query_all_by_role(egui::Role::Button).filter(|b| b.rect().width() < 40.0) {
-            let over = words.iter().find(|words| words.intersects(tool.rect()));
-            assert!(over.is_none(), "{size}: {words:?} over {tool:?} at {}", tool.rect());
-        }
-    }
-}
-
 /// The panel takes the map's right part, and with it half of what is to be decided about.
 #[test]
 fn what_is_proposed_is_seen_while_one_decides() {
