@@ -27,6 +27,8 @@ pub const SCENARIOS: &[Scenario] = &[
 
 /// Lower nothing but the climb straight ahead is flown, metres; less what two altimeters may differ.
 const CLEAR_M: f64 = 35.0;
+/// Nobody doubts any more that it has taken off, metres.
+const UP_M: f64 = 8.0;
 /// A climb straight ahead, in gusts: bank and course, degrees.
 const STRAIGHT_DEG: f64 = 20.0;
 
@@ -63,6 +65,8 @@ fn height_m(rig: &Rig) -> Option<f64> {
 }
 
 async fn asked_low(rig: &mut Rig, command: Command) -> anyhow::Result<()> {
+    let is_up = |rig: &Rig| height_m(rig).is_some_and(|m| m > UP_M);
+    rig.until("a few metres up", 60.0, |rig, _| is_up(rig)).await?;
     rig.command(command).await?;
     let height_m = height_m(rig);
     ensure!(height_m.is_some_and(|m| m < CLEAR_M), "asked too late, {height_m:?} m above the ground");
