@@ -66,8 +66,8 @@ impl Gateway {
             return None;
         }
         // one that was met on its way has no other state to stay in
-        let is_led_away =
-            matches!(self.control.intent, Intent::Hold | Intent::Direct) && is_flying(self.state);
+        let is_led_away = matches!(self.control.intent, Intent::Hold | Intent::Direct | Intent::Return)
+            && is_flying(self.state);
         if is_led_away && self.control.mode_pending() {
             return None;
         }

@@ -253,3 +253,19 @@ fn a_return_that_nobody_remembers_is_somebody_elses() {
         assert_eq!(core.gateway.state(), GatewayState::Manual);
     }
 }
+
+/// It hears nothing of the order to circle, and goes on to the landing that it has aboard.
+#[test]
+fn what_is_to_return_by_its_own_means_is_not_approaching_while_it_still_flies_its_list() {
+    let mut core = Core::in_nav();
+    let plan = crate::gateway::tests::flights::landing();
+    let waypoints = (11..).zip(plan).map(|(token, waypoint)| Waypoint { token: Token(token), ..waypoint });
+    let feed = Feed { cancel_after: Some(Token(0)), waypoints: waypoints.collect() };
+    assert_eq!(core.answer(Input::Feed(4, feed, fp_manager())), Answer::Feed(FeedAnswer::Accepted));
+    core.step(Input::Request(5, GatewayRequest::Safe));
+    let approaching = Target::Waypoint(crate::gateway::order::Serial(12));
+    core.step(Input::Report(Report::Course(Course { target: approaching, ..course(true) })));
+    core.run(core.gateway.safe.t2_s as u64 + 2, &flying(25.0, 25.0));
+    assert_eq!(core.gateway.control.intent, Intent::Return, "there is no runway");
+    assert_eq!(core.gateway.state(), GatewayState::SafeReturn);
+}
