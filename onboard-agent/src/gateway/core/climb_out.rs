@@ -5,10 +5,11 @@ use super::Gateway;
 use super::io::Output;
 use super::states::is_flying;
 use crate::gateway::order::Mode;
+use serde::{Deserialize, Serialize};
 use usal::contract::{Action, Feed, GatewayRequest, Token};
 
 /// What waits until it is clear of the ground.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClimbOut {
     /// A hold, or a direct command.
     pub asked: Option<GatewayRequest>,
@@ -29,7 +30,16 @@ impl Gateway {
         let what = if asked == GatewayRequest::Hold { "held" } else { "directed as asked" };
         self.cause = format!("climbing straight ahead: {what} once it is clear of the ground");
         self.control.climb_out.asked = Some(asked);
+        out.push(Output::Save);
         Ok(())
+    }
+
+    /// What an earlier gateway let wait goes on to. How high it is since when, nobody knows any more: it has the whole time to get clear.
+    pub(super) fn go_on_waiting(&mut self, waits: &ClimbOut) {
+        if *waits != ClimbOut::default() {
+            self.control.climb_out = waits.clone();
+            self.took_off = Some(self.now);
+        }
     }
 
     /// What a batch cancels; not the climb that is flown.
@@ -58,6 +68,7 @@ impl Gateway {
             && let Err(why) = self.lead(&asked, out)
         {
             self.cause = why;
+            out.push(Output::Save);
         }
         self.leave_climb(out);
     }

@@ -1,5 +1,6 @@
 //! What goes into the gateway's core and what comes out of it.
 
+use super::climb_out::ClimbOut;
 use crate::gateway::order::{Order, OrderId, Report};
 use aircraft::Profile;
 use serde::{Deserialize, Serialize};
@@ -125,6 +126,9 @@ pub struct Snapshot {
     /// The alarm of an engine that has failed, or seemed to.
     #[serde(default)]
     pub engine: Option<String>,
+    /// What was asked for in the climb, and waits for its end.
+    #[serde(default)]
+    pub climb_out: ClimbOut,
 }
 
 impl Snapshot {

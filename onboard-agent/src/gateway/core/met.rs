@@ -128,6 +128,9 @@ impl Gateway {
                 self.take_up(known, out);
             }
             self.control.set_intent(wanted, self.telemetry.mode);
+            if let Some(known) = known.filter(|_| wanted == Intent::Fly) {
+                self.go_on_waiting(&known.climb_out);
+            }
             self.is_met(wanted, out);
             out.push(Output::Save);
         } else if self.state == GatewayState::Manual {

@@ -181,6 +181,7 @@ impl Gateway {
             terminated: self.forced_end.is_wanted,
             terminated_unix_s: self.forced_end.unix_s,
             engine: self.alarms.of_engine(),
+            climb_out: self.control.climb_out.clone(),
         }
     }
 

@@ -80,6 +80,20 @@ fn a_direct_command_in_the_climb_waits_and_one_who_resumes_meanwhile_is_not_led_
 }
 
 #[test]
+fn a_hold_in_the_climb_waits_on_when_the_gateway_starts_anew() {
+    for personality in AUTOPILOTS {
+        let mut flight = lifted_off(personality);
+        flight.ask(GatewayRequest::Hold).unwrap();
+        flight.run(0.5);
+        flight.station = station(Some(flight.station.gateway().snapshot()));
+        flight.run_until(60.0, "Hold", |f| {
+            assert!(height_m(f) > CLEAR_M - 2.0 || runs_straight(f), "{personality}: at {} m", height_m(f));
+            f.state() == GatewayState::Hold
+        });
+    }
+}
+
+#[test]
 fn another_way_in_the_climb_is_flown_once_it_is_clear() {
     for personality in AUTOPILOTS {
         let mut flight = lifted_off(personality);
