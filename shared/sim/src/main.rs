@@ -47,8 +47,8 @@ struct Options {
     /// Let the partner on the link drive time (TIMESYNC before every step).
     #[arg(long)]
     lockstep: bool,
-    /// A fault: packet-loss=SHARE, duplicate=SHARE, reorder=SHARE, bandwidth=BITS-PER-SECOND, gps-loss, engine-out, low-battery, silence, no-rpm,
-    /// no-stream=MESSAGE-NUMBER, ice, crash, reboot or flies-on, with @SECOND and +SECONDS; may be given often.
+    /// A fault: packet-loss=SHARE, duplicate=SHARE, reorder=SHARE, bandwidth=BITS-PER-SECOND, gps-loss, engine-out, low-battery,
+    /// silence, no-rpm, no-stream=MESSAGE-NUMBER, ice, crash, reboot, flies-on or jammed, with @SECOND and +SECONDS; may be given often.
     #[arg(long, value_name = "FAULT")]
     fault: Vec<FaultRequest>,
     /// Seed of the faults' dice.

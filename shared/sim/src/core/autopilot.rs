@@ -69,6 +69,8 @@ pub struct Autopilot {
     pub iced: bool,
     /// It accepts that its flight is ended, and flies on.
     pub flies_on: bool,
+    /// It does not bank.
+    pub jammed: bool,
     /// The aircraft lies where it came down, and its autopilot does not know.
     pub is_down: bool,
     /// Its own fence.
@@ -102,6 +104,7 @@ impl Autopilot {
             gps_ok: true,
             iced: false,
             flies_on: false,
+            jammed: false,
             is_down: false,
             fence: Fence::default(),
             rules,
@@ -310,6 +313,9 @@ impl Autopilot {
         }
         if self.iced {
             demand.airspeed_mps = demand.airspeed_mps.min(self.aircraft.profile().min_airspeed_mps);
+        }
+        if self.jammed {
+            demand.bank_rad = 0.0;
         }
         if self.is_down {
             self.aircraft.come_down();

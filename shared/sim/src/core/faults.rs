@@ -44,10 +44,12 @@ pub enum Fault {
     Reboot,
     /// It accepts that its flight is ended by force, and flies on.
     FliesOn,
+    /// Its ailerons are jammed level: it flies straight on, wherever it steers to.
+    Jammed,
 }
 
 /// One of each kind.
-const KINDS: [Fault; 14] = [
+const KINDS: [Fault; 15] = [
     Fault::PacketLoss(0.0),
     Fault::Duplicate(0.0),
     Fault::Reorder(0.0),
@@ -62,6 +64,7 @@ const KINDS: [Fault; 14] = [
     Fault::Crash,
     Fault::Reboot,
     Fault::FliesOn,
+    Fault::Jammed,
 ];
 
 impl Fault {
@@ -91,6 +94,7 @@ impl Fault {
             Fault::Crash => "crash",
             Fault::Reboot => "reboot",
             Fault::FliesOn => "flies-on",
+            Fault::Jammed => "jammed",
         }
     }
 }
@@ -135,7 +139,7 @@ impl fmt::Display for FaultRequest {
 #[error(
     "{0:?} is no fault; write one of packet-loss=SHARE, duplicate=SHARE, reorder=SHARE (shares from 0 to 1), \
      bandwidth=BITS-PER-SECOND, gps-loss, engine-out, low-battery, silence, no-rpm, no-stream=MESSAGE-NUMBER, ice, crash, reboot, \
-     flies-on, then @SECOND and +SECONDS if it has its time, as in silence@120+10"
+     flies-on, jammed, then @SECOND and +SECONDS if it has its time, as in silence@120+10"
 )]
 pub struct FaultSyntax(String);
 
@@ -174,6 +178,7 @@ impl FromStr for FaultRequest {
             ("crash", _, None) => Fault::Crash,
             ("reboot", _, None) => Fault::Reboot,
             ("flies-on", _, None) => Fault::FliesOn,
+            ("jammed", _, None) => Fault::Jammed,
             _ => return Err(bad()),
         };
         Ok(Self { fault, at_s, for_s })
@@ -211,6 +216,8 @@ pub struct Effects {
     pub reboot: bool,
     /// It accepts that its flight is ended, and flies on.
     pub flies_on: bool,
+    /// It does not bank.
+    pub jammed: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -269,6 +276,7 @@ impl Schedule {
                 Fault::Crash => effects.crash = true,
                 Fault::Reboot => effects.reboot = true,
                 Fault::FliesOn => effects.flies_on = true,
+                Fault::Jammed => effects.jammed = true,
             }
         }
         effects
@@ -410,6 +418,7 @@ mod tests {
             "crash@60",
             "reboot@60",
             "flies-on",
+            "jammed@60+20",
         ] {
             let request: FaultRequest = text.parse().unwrap();
             assert_eq!(request.to_string(), text);

@@ -228,6 +228,7 @@ impl Simulator {
         self.autopilot.aircraft.set_engine_healthy(!new.engine_out);
         self.autopilot.iced = new.ice;
         self.autopilot.flies_on = new.flies_on;
+        self.autopilot.jammed = new.jammed;
         self.autopilot.is_down = new.crash;
         if new.reboot && !old.reboot {
             self.booted_ns = self.now_ns;

@@ -316,7 +316,9 @@ fn is_had(fault: Fault) -> bool {
         | Fault::Bandwidth(_)
         | Fault::Silence => true,
         Fault::GpsLoss | Fault::EngineOut | Fault::LowBattery | Fault::NoRpm => true,
-        Fault::NoStream(_) | Fault::Ice | Fault::Crash | Fault::Reboot | Fault::FliesOn => false,
+        Fault::NoStream(_) | Fault::Ice | Fault::Crash | Fault::Reboot | Fault::FliesOn | Fault::Jammed => {
+            false
+        }
     }
 }
 

@@ -182,6 +182,17 @@ fn a_list_that_is_unfit_in_flight_is_accepted_and_ends_in_holding_until_there_is
 }
 
 #[test]
+fn one_whose_ailerons_are_jammed_flies_straight_on() {
+    let mut ground = Ground::px4_airborne(&circuit(Config::default().home.position));
+    let heading_deg = |ground: &Ground| ground.sim.autopilot.aircraft.state().heading_deg();
+    assert!(ground.sim.inject("jammed".parse().unwrap()));
+    ground.fly_until(5.0, |_| false);
+    let before_deg = heading_deg(&ground);
+    ground.fly_until(90.0, |_| false);
+    assert!((heading_deg(&ground) - before_deg).abs() < 1.0);
+}
+
+#[test]
 fn an_endless_circle_at_the_end_stays_the_mission() {
     let home = Config::default().home.position;
     let mut ground = Ground::px4();
