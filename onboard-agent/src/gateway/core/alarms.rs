@@ -3,6 +3,7 @@
 mod climb;
 mod watches;
 
+use super::off_path::{Beside, OFF_PATH_M};
 use super::telemetry::{FRESH, Telemetry};
 use crate::gateway::order::Time;
 use climb::Climb;
@@ -43,6 +44,8 @@ pub struct AlarmInputs {
     pub fast: bool,
     /// It is far from the altitude that it was told to fly at, and comes no nearer; `None`: that is not known.
     pub off_altitude: Option<bool>,
+    /// Where it is beside its way; `None`: that is not known.
+    pub beside_path: Option<Beside>,
     /// It ought to fly, and does not move; `None`: that is not known.
     pub stands_still: Option<bool>,
     /// It flies, and is not armed.
@@ -169,6 +172,10 @@ impl Alarms {
             Watch::Slow => inputs.slow,
             Watch::Fast => inputs.fast,
             Watch::OffAltitude => inputs.off_altitude.unwrap_or(raised),
+            Watch::OffPath => inputs.beside_path.map_or(raised, |beside| match raised {
+                true => beside.metres > OFF_PATH_M.1,
+                false => beside.metres > OFF_PATH_M.0 && !beside.returns,
+            }),
             Watch::StandsStill => inputs.stands_still.unwrap_or(raised),
             Watch::Disarmed => inputs.disarmed,
             Watch::FliesOn => inputs.flies_on,

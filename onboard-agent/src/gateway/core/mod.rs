@@ -17,6 +17,7 @@ mod io;
 mod launch;
 mod met;
 mod observe;
+mod off_path;
 mod pilot;
 mod requests;
 mod safe;
@@ -38,6 +39,7 @@ use buffer::Buffer;
 use control::Control;
 use forced_end::ForcedEnd;
 use geometry::LatLon;
+use off_path::Way;
 use states::{Trigger, is_flying, is_safe};
 use std::time::Duration;
 use supervise::FpManager;
@@ -85,6 +87,8 @@ pub struct Gateway {
     list_lost: bool,
     /// The driver was told to change nothing aboard.
     hands_off: bool,
+    /// What is flown between waypoints.
+    way: Way,
     /// Of the last step.
     now: Time,
 }
@@ -119,6 +123,7 @@ impl Gateway {
             took_off: None,
             list_lost: false,
             hands_off: false,
+            way: Way::default(),
             now: Time::ZERO,
         }
     }
@@ -240,6 +245,7 @@ impl Gateway {
             slow: self.is_slow(now),
             fast: self.is_fast(now),
             off_altitude: self.is_off_altitude(now),
+            beside_path: self.beside_path(now),
             stands_still: self.stands_still(now),
             disarmed: is_flying(self.state) && self.telemetry.flies_disarmed(now),
             flies_on: self.telemetry.armed && self.state == GatewayState::Terminate,

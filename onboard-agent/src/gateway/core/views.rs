@@ -1,6 +1,7 @@
 //! What the gateway publishes about itself.
 
 use super::buffer::CAPACITY;
+use super::off_path::right_of_way_m;
 use super::telemetry::Telemetry;
 use super::{Gateway, seconds};
 use crate::gateway::order::Time;
@@ -102,9 +103,7 @@ impl Gateway {
     fn cross_track_m(&self, to: Option<LatLon>) -> f64 {
         let (Some(to), Some(from), Some(here)) = (to, self.buffer.passed(), self.place()) else { return 0.0 };
         let frame = LocalFrame::new(here);
-        let (a, b) = (frame.to_local(from), frame.to_local(to));
-        let along = b - a;
-        if along.length() < 1.0 { 0.0 } else { along.cross(a) / along.length() }
+        right_of_way_m(frame.to_local(from), frame.to_local(to))
     }
 }
 

@@ -30,6 +30,8 @@ pub enum Watch {
     Fast,
     /// It is far above or below what was commanded.
     OffAltitude,
+    /// It is far beside the way that was commanded.
+    OffPath,
     /// It ought to fly and does not move.
     StandsStill,
     /// It flies, and its engine may not run.
@@ -69,7 +71,7 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 24] = [
+pub const WATCHES: [Watch; 25] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
@@ -82,6 +84,7 @@ pub const WATCHES: [Watch; 24] = [
     Watch::Slow,
     Watch::Fast,
     Watch::OffAltitude,
+    Watch::OffPath,
     Watch::StandsStill,
     Watch::Disarmed,
     Watch::FliesOn,
@@ -203,6 +206,15 @@ const WORDS: [Words; WATCHES.len()] = [
         severity: Severity::Warning,
         source: "autopilot",
         advice: "The aircraft is more than 50 m above or below the altitude that it was told to fly at, and comes no nearer. Look at engine, ice and altimeter; be ready to take over by hand.",
+        cause: None,
+        patience: Duration::from_secs(10),
+    },
+    Words {
+        watch: Watch::OffPath,
+        id: "off-path",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "The aircraft is more than 100 m beside the way that it was told to fly, and comes no nearer. Look at wind, controls and compass; be ready to take over by hand.",
         cause: None,
         patience: Duration::from_secs(10),
     },

@@ -388,6 +388,7 @@ mod late;
 mod met_in_flight;
 mod million;
 mod narrow;
+mod off_path;
 mod px4;
 mod refused;
 mod replaced;
