@@ -11,6 +11,13 @@ pub struct Fence {
     is_crossed: bool,
 }
 
+impl Fence {
+    /// The aircraft is outside.
+    pub fn is_broken(&self) -> bool {
+        self.is_crossed
+    }
+}
+
 impl Autopilot {
     /// It acts once on each crossing: whoever leads it elsewhere then is obeyed.
     pub(super) fn watch_fence(&mut self) {

@@ -10,6 +10,9 @@ pub fn problem(a: &Autopilot, items: &[Item], is_vtol: bool) -> Option<&'static 
     if items.is_empty() {
         return Some("there is no mission");
     }
+    if a.fence.is_broken() {
+        return Some("the fence is broken");
+    }
     if !is_vtol && items.iter().any(is_for_vtol) {
         return Some("it has items for a VTOL");
     }

@@ -182,6 +182,29 @@ fn a_list_that_is_unfit_in_flight_is_accepted_and_ends_in_holding_until_there_is
 }
 
 #[test]
+fn a_list_that_comes_while_the_fence_is_broken_is_unfit_and_stays_so_behind_it() {
+    let home = Config::default().home.position;
+    let items = circuit(home);
+    let mut other = items.clone();
+    other[2] = waypoint(home.destination(90.0, 3000.0));
+    let mut ground = Ground::px4_airborne(&items);
+    ground.sim.autopilot.fence.radius_m = Some(1.0);
+    ground.fly_until(1.0, |_| false);
+    assert_eq!(ground.mode_now(), Mode::ReturnToLaunch);
+    ground.px4_upload(&other);
+    ground.settle();
+    assert_eq!(ground.mission_state(), MissionState::MISSION_STATE_NO_MISSION);
+    ground.sim.autopilot.fence.radius_m = None;
+    ground.fly_until(1.0, |_| false);
+    ground.px4_upload(&other);
+    ground.settle();
+    assert_eq!(ground.enter(MISSION), MavResult::MAV_RESULT_TEMPORARILY_REJECTED, "it judges none twice");
+    ground.px4_upload(&items);
+    ground.settle();
+    assert_eq!(ground.enter(MISSION), MavResult::MAV_RESULT_ACCEPTED);
+}
+
+#[test]
 fn one_whose_ailerons_are_jammed_flies_straight_on() {
     let mut ground = Ground::px4_airborne(&circuit(Config::default().home.position));
     let heading_deg = |ground: &Ground| ground.sim.autopilot.aircraft.state().heading_deg();
