@@ -80,6 +80,8 @@ pub struct MavlinkDriver {
     /// It was sent to a place, and has not been sent elsewhere since.
     sent: bool,
     speed: speed::Speed,
+    /// It says that it can't fly the list that it has.
+    is_list_unfit: bool,
     /// Something happened that may concern the list.
     stirred: bool,
     reports: VecDeque<Report>,
@@ -197,6 +199,7 @@ impl MavlinkDriver {
             }
             Report::Fix(fix) => self.list.moved(fix),
             Report::OnGround(false) => self.keep_armed("it is in the air"),
+            Report::ListUnfit(unfit) => self.is_list_unfit = *unfit,
             Report::Rebooted => {
                 self.list.lost();
                 self.stirred = true;
@@ -263,6 +266,10 @@ impl MavlinkDriver {
         if done && aim == Aim::Hold && std::mem::take(&mut self.sent) {
             // it circles in the mode in which it was on its way
             self.dialect().into_iter().for_each(|dialect| self.report_mode(dialect));
+        }
+        if !done && aim == Aim::Waypoints && self.is_list_unfit {
+            // what it judges it by may be another by now, and it judges no list twice
+            self.list.lost();
         }
     }
 

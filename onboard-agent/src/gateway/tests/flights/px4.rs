@@ -121,6 +121,27 @@ fn a_failsafe_of_px4_is_left_alone_and_called_what_it_is() {
     assert_eq!(flight.state(), GatewayState::Nav, "overruled once, it does not begin again");
 }
 
+/// PX4 accepts no list while the aircraft is outside of its fence, and judges none twice.
+#[test]
+fn a_list_that_came_while_the_fence_was_broken_is_brought_anew_when_it_is_to_be_flown() {
+    let mut flight = Flight::in_flight(Personality::Px4, 5);
+    flight.sim.autopilot.fence.radius_m = Some(300.0);
+    flight.run_until(10.0, "its return", |f| f.state() == GatewayState::Manual);
+    flight.ask(GatewayRequest::Resume).unwrap();
+    flight.run_until(10.0, "Nav", |f| f.state() == GatewayState::Nav);
+    let after = flight.station.gateway().navigation().current.unwrap().0;
+    assert_eq!(flight.feed(Some(after), zigzag(12, 12, 300.0)), FeedAnswer::Accepted);
+    flight.run_until(30.0, "its list is refused", |f| f.state() == GatewayState::Manual);
+    let cause = flight.station.gateway().status(flight.now).cause;
+    assert!(cause.contains("does not accept its list"), "{cause}");
+    flight.sim.autopilot.fence.radius_m = None;
+    flight.run(5.0);
+    flight.ask(GatewayRequest::Resume).unwrap();
+    flight.run_until(60.0, "Nav again", |f| f.state() == GatewayState::Nav);
+    flight.run(20.0);
+    assert_eq!(flight.state(), GatewayState::Nav);
+}
+
 #[test]
 fn fp_manager_killed_the_gateway_returns_and_lands_by_itself() {
     let mut flight = flight(Personality::Px4, 2, &[]);

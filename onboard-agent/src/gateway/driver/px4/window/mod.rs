@@ -91,7 +91,9 @@ impl Feeding for Window {
     }
 
     fn invalidate(&mut self) {
-        *self = Self { chain: std::mem::take(&mut self.chain), ..Self::default() };
+        // the same list again would be no news
+        let edition = (self.edition + 1) % MOST_EDITIONS;
+        *self = Self { chain: std::mem::take(&mut self.chain), edition, ..Self::default() };
     }
 
     fn adopt(&mut self, list: &[Item], current: u16, waypoints: Vec<Fed>) -> Option<usize> {
