@@ -37,7 +37,8 @@ fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, prob
             let problem = Problem::error(error.code, error.to_string()).of(of);
             let declared = || declared(view, error, used);
             let correction = error.correction.clone();
-            let fix = correction.map(|(from, to)| {
+            let fix = correction.map(|names| {
+                let (from, to) = *names;
                 // a name is misspelt wherever it stands; the same number may be right elsewhere
                 let is_number = from.as_str().starts_with(|c: char| c.is_ascii_digit());
                 Edit::CorrectName { of: of.clone(), within: is_number.then(|| source.clone()), from, to }

@@ -188,7 +188,7 @@ impl Checker<'_> {
             let meant = self.name_meant(name);
             let asked = meant.map_or_else(String::new, question);
             let message = format!("declare the variable `{name}` or correct its name{asked}");
-            let correction = meant.map(|meant| (Id::new(name), Id::new(meant)));
+            let correction = meant.map(|meant| Box::new((Id::new(name), Id::new(meant))));
             return Err(ExpressionError { correction, ..self.error(at, "unknown-name", message) });
         };
         let kind = match variable.initial {

@@ -21,7 +21,7 @@ pub(super) fn corrected(
         return error;
     };
     let message = format!("write {from}.0 instead of {from}: both operands must be doubles");
-    let correction = Some((Id::new(&from), Id::new(&format!("{from}.0"))));
+    let correction = Some(Box::new((Id::new(&from), Id::new(&format!("{from}.0")))));
     ExpressionError { message, correction, ..error }
 }
 

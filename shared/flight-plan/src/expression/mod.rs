@@ -65,7 +65,7 @@ pub struct ExpressionError {
     /// Says what to do.
     pub message: String,
     /// A name that nobody knows, and the one that was probably meant; or a whole number where a double is needed, and that one.
-    pub correction: Option<(Id, Id)>,
+    pub correction: Option<Box<(Id, Id)>>,
     /// A name that nobody knows, where something is needed that is true or false.
     pub undeclared_flag: Option<Id>,
 }
