@@ -56,7 +56,7 @@ const TABLE: &[Alias] = &[
 pub fn score(query: &str, action: &str) -> Option<Score> {
     let is_it =
         |known: &&str| action.strip_prefix(*known).is_some_and(|of| of.is_empty() || of.starts_with(": "));
-    let of = TABLE.iter().filter(|alias| alias.actions.iter().any(|known| is_it(&known)));
+    let of = TABLE.iter().filter(|alias| alias.actions.iter().any(&is_it));
     of.flat_map(|alias| alias.words).filter_map(|word| fuzzy::words(query, word)).max().map(Score::of_another)
 }
 
