@@ -34,6 +34,8 @@ pub struct Launch {
     given_up_at: Option<Time>,
     /// The order to take that back.
     pub stand_down: Option<OrderId>,
+    /// That was taken back itself, in a silence: what comes of either is not known before it is heard again.
+    is_unheard: bool,
 }
 
 impl Launch {
@@ -62,6 +64,7 @@ impl Gateway {
     /// gone: whoever mends what is in the way stands before the propeller.
     pub(super) fn wait_for_launch(&mut self, now: Time, out: &mut Vec<Output>) {
         self.keep_armed(now, out);
+        self.stand_down_once_heard(now, out);
         self.disarm_late(now, out);
         let Some(since) = self.control.launch.since else { return };
         let on_ground = matches!(self.state, GatewayState::Stop | GatewayState::Off);
@@ -159,7 +162,8 @@ impl Gateway {
 
     /// A launch was, whose order to arm may have been carried out since.
     pub(super) fn was_given_up_lately(&self, now: Time) -> bool {
-        self.control.launch.given_up_at.is_some_and(|at| now.saturating_sub(at) < ARMS_LATE)
+        let Launch { given_up_at, is_unheard, .. } = self.control.launch;
+        is_unheard || given_up_at.is_some_and(|at| now.saturating_sub(at) < ARMS_LATE)
     }
 
     /// It has left the ground by its position, though its autopilot may not have said so yet. `None`: where it is now is not known.
@@ -182,23 +186,44 @@ impl Gateway {
 
     /// An order to disarm is sent again for many seconds: not to what may have left the ground meanwhile, nor to who has it by now.
     fn keep_armed(&mut self, now: Time, out: &mut Vec<Output>) {
-        let t = &self.telemetry;
-        let is_silent = t.last_received.is_none_or(|at| now.saturating_sub(at) >= FRESH);
-        let may_fly = t.flies(now) || self.is_seen_up(now).unwrap_or(is_silent);
+        let is_silent = self.is_silent(now);
+        let may_fly = self.telemetry.flies(now) || self.is_seen_up(now).unwrap_or(is_silent);
         if (may_fly || self.is_his())
             && let Some(id) = self.control.launch.stand_down.take()
         {
+            self.control.launch.is_unheard = is_silent;
             self.order(Order::TakeBack(id), out);
         }
     }
 
+    fn is_silent(&self, now: Time) -> bool {
+        self.telemetry.last_received.is_none_or(|at| now.saturating_sub(at) >= FRESH)
+    }
+
+    /// By what was ordered before the silence it may stand armed by now, or unarmed in the mode in which it takes off.
+    fn stand_down_once_heard(&mut self, now: Time, out: &mut Vec<Output>) {
+        if !self.control.launch.is_unheard || !self.is_idle() || self.is_silent(now) {
+            return;
+        }
+        let Some(is_up) = self.is_seen_up(now) else { return };
+        // what it obeys late it obeys from now on
+        (self.control.launch.is_unheard, self.control.launch.given_up_at) = (false, Some(now));
+        let is_pilots = matches!(self.telemetry.mode, Some(Mode::Other(_)));
+        if !is_up && !is_pilots && !self.telemetry.flies(now) {
+            self.control.launch.stand_down = Some(self.order(Order::StandDown, out));
+        }
+    }
+
+    fn is_idle(&self) -> bool {
+        self.state == GatewayState::Stop && self.control.intent == Intent::Nothing
+    }
+
     fn disarm_late(&mut self, now: Time, out: &mut Vec<Output>) {
-        let is_idle = self.state == GatewayState::Stop && self.control.intent == Intent::Nothing;
         let is_ours =
             self.telemetry.armed && self.may_arm_late(now) && !self.is_his() && !self.may_be_up(now);
         let is_due =
             self.control.launch.stand_down.is_none() && self.control.retry_at.is_none_or(|at| now >= at);
-        if is_idle && is_ours && is_due {
+        if self.is_idle() && is_ours && is_due {
             self.control.launch.stand_down = Some(self.order(Order::StandDown, out));
         }
     }

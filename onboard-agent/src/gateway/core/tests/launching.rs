@@ -317,3 +317,35 @@ fn a_launch_of_a_gateway_that_was_killed_before_the_take_off_is_given_up_and_tol
     rolls.run(60, &on_ground(Mode::Waypoints, true));
     is_told_once(&rolls, "started anew");
 }
+
+/// The order to arm may have been carried out in the silence, or that to fly its list and not that one.
+#[test]
+fn what_is_heard_again_behind_a_silence_is_made_to_stand_however_long_that_was() {
+    let (armed, disarmed) = (on_ground(Mode::Waypoints, true), on_ground(Mode::Waypoints, false));
+    let his = on_ground(Mode::Other(5), true);
+    let up = [beat(Mode::Waypoints, true), Report::OnGround(true), fix_at(15.0, 25.0)];
+    let flies = flying(25.0, 25.0);
+    let cases: [(&str, &[Report], usize); 5] = [
+        ("armed", &armed, 1),
+        ("disarmed", &disarmed, 1),
+        ("his", &his, 0),
+        ("up", &up, 0),
+        ("flies", &flies, 0),
+    ];
+    for (silent_s, (what, then, ordered)) in [3, 15, 60].into_iter().flat_map(|s| cases.map(|case| (s, case)))
+    {
+        let mut core = launched(true);
+        core.run(60 - silent_s.min(12), &ground(false));
+        core.run(silent_s.min(12), &[]);
+        core.run(silent_s, &[]);
+        assert!(!told(&core).is_empty(), "{what} after {silent_s} s");
+        core.out.clear();
+        core.run(2, then);
+        assert_eq!(stands_down(&core), ordered, "{what} after {silent_s} s: {}", core.gateway.cause);
+        core.run(1, &ground(false));
+        core.done();
+        core.out.clear();
+        core.run(5, &ground(false));
+        assert_eq!(stands_down(&core), 0, "{what} after {silent_s} s: once is enough");
+    }
+}

@@ -69,7 +69,7 @@ pub struct MavlinkDriver {
     steps: Vec<Steps>,
     /// The order to arm, while it is in flight.
     arming: Option<OrderId>,
-    /// One was not answered, and may still be carried out.
+    /// One was not answered or was taken back, and may still be carried out: until it is disarmed.
     may_arm: bool,
     /// The order to stand down, while it is in flight.
     standing_down: Option<OrderId>,
@@ -247,7 +247,9 @@ impl MavlinkDriver {
         if let Some((_, aim)) = self.steering.take_if(|(of, _)| *of == id) {
             self.steered(aim, result.is_ok());
         }
-        self.standing_down.take_if(|of| *of == id);
+        if self.standing_down.take_if(|of| *of == id).is_some() && result.is_ok() {
+            self.may_arm = false;
+        }
         let arming = self.arming.take_if(|of| *of == id).is_some();
         let report = match result {
             Ok(()) => Report::Done(id),

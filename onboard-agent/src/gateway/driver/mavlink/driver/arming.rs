@@ -14,6 +14,7 @@ impl MavlinkDriver {
         match self.dialect() {
             Some(dialect) => {
                 self.arming = Some(id);
+                self.may_arm = false;
                 self.starts_late_until = None;
                 self.give(now, id, dialect.arm.to_vec(), events);
             }
@@ -25,22 +26,24 @@ impl MavlinkDriver {
     pub(super) fn stand_down(&mut self, now: Time, id: OrderId, events: &mut Vec<SessionEvent>) {
         let Some(dialect) = self.dialect() else { return self.refuse(id) };
         self.keep_armed("ordered again");
-        let arming = self.arming.take();
-        arming.into_iter().for_each(|arming| self.take_back(arming, "the launch was given up"));
+        if let Some(arming) = self.arming.take() {
+            self.take_back(arming, "the launch was given up");
+            self.may_arm = true;
+        }
         let shows_armed = self.seen.is_some_and(|seen| seen.armed);
-        let is_armed = std::mem::take(&mut self.may_arm) || shows_armed;
         let mode = self.seen.map(|seen| (dialect.meaning)(seen.mode, false));
         let is_pilots = matches!(mode, Some(Mode::Other(_)));
-        let would_fly = arming.is_some() || mode == Some(Mode::Waypoints);
+        let would_fly = self.may_arm || mode == Some(Mode::Waypoints);
         let stands = dialect.stands.filter(|_| would_fly && !is_pilots);
-        if arming.is_some() && is_pilots {
+        if self.may_arm && mode != Some(Mode::Waypoints) {
             self.starts_late_until = Some(now + STARTS_LATE);
         }
         if is_pilots && shows_armed && dialect.arms_in_waypoints() {
             // by our order it would have armed in that mode
+            self.may_arm = false;
             return self.reports.push_back(Report::Done(id));
         }
-        if arming.is_none() && !is_armed {
+        if !self.may_arm && !shows_armed {
             self.standing_down = stands.map(|_| id);
             return self.give(now, id, stands.into_iter().collect(), events);
         }

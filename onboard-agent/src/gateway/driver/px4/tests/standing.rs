@@ -230,3 +230,30 @@ fn to_end_the_flight_by_force_waits_for_nothing() {
     let why = rig.outcome(speed).unwrap().unwrap_err();
     assert!(why.contains("Terminate") && rig.outcome(end).is_none(), "{why}");
 }
+
+/// It was to arm in Mission, which came through; the order to stand down is taken back in the silence, and given again behind it.
+#[test]
+fn what_was_silent_while_it_was_to_stand_down_does_not_stay_in_the_mode_in_which_it_takes_off() {
+    for late in [false, true] {
+        let mut rig = Rig::loaded();
+        rig.pass = Box::new(move |to, m| to == To::Driver || (!late && !is_arming(m)));
+        rig.order(Order::Arm);
+        rig.run(3);
+        assert_eq!((rig.px4.main, rig.px4.sub) == (4, 4), !late);
+        rig.pass = Box::new(|_, _| false);
+        let stand_down = rig.order(Order::StandDown);
+        rig.run(2);
+        rig.order(Order::TakeBack(stand_down));
+        rig.run(12);
+        rig.pass = Box::new(|_, _| true);
+        rig.run(2);
+        rig.order(Order::StandDown);
+        if late {
+            // what waited in the radio
+            rig.step();
+            rig.px4.mode(4, 4);
+        }
+        rig.run(10);
+        assert!(stands(&rig), "late: {late}, in {:?}", (rig.px4.main, rig.px4.sub));
+    }
+}
