@@ -20,6 +20,8 @@ pub struct ForcedEnd {
     pub unix_s: Option<i64>,
     /// When this gateway was asked for it.
     asked_at: Option<Time>,
+    /// It was ordered, perhaps before a restart.
+    was_ordered: bool,
     order: Option<OrderId>,
     /// When that is ordered again.
     again_at: Option<Time>,
@@ -28,7 +30,13 @@ pub struct ForcedEnd {
 impl ForcedEnd {
     /// As an earlier gateway knew it.
     pub fn restored(is_wanted: bool, unix_s: Option<i64>) -> Self {
-        Self { is_wanted, unix_s, ..Self::default() }
+        Self { is_wanted, unix_s, was_ordered: is_wanted, ..Self::default() }
+    }
+
+    /// It holds for a gateway that follows this one: it was ordered, or it is known when it was asked for. Else that one would end
+    /// whatever it hears first, days later perhaps.
+    pub fn outlives(&self) -> bool {
+        self.is_wanted && (self.was_ordered || self.unix_s.is_some())
     }
 
     /// An order was answered, whatever came of it.
@@ -53,8 +61,10 @@ impl Gateway {
             return Err("There is no flight to end.".into());
         }
         let unix_s = self.telemetry.unix_s(self.now);
-        let (order, asked_at) = (self.forced_end.order, Some(self.now));
-        self.forced_end = ForcedEnd { order, asked_at, ..ForcedEnd::restored(true, unix_s) };
+        // one that was ordered before, perhaps by an earlier gateway, is not forgotten for this
+        let ForcedEnd { order, was_ordered, .. } = self.forced_end;
+        let (is_wanted, asked_at, again_at) = (true, Some(self.now), None);
+        self.forced_end = ForcedEnd { is_wanted, unix_s, asked_at, was_ordered, order, again_at };
         if is_known {
             self.end_by_force("by command", out);
         } else {
@@ -102,6 +112,7 @@ impl Gateway {
     }
 
     fn order_end(&mut self, out: &mut Vec<Output>) {
+        self.forced_end.was_ordered = true;
         if self.forced_end.order.is_some() {
             return;
         }

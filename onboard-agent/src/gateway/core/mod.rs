@@ -183,7 +183,7 @@ impl Gateway {
             waypoints: self.buffer.waypoints().cloned().collect(),
             plan: self.fp_manager.plan.clone(),
             mode: self.telemetry.mode.map(|_| self.telemetry.mode_name.clone().into_owned()),
-            terminated: self.forced_end.is_wanted,
+            terminated: self.forced_end.outlives(),
             terminated_unix_s: self.forced_end.unix_s,
             engine: self.alarms.of_engine(),
             climb_out: self.control.climb_out.clone(),

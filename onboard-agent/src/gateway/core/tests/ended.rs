@@ -78,7 +78,7 @@ fn ended_unheard() -> Core {
     let mut core = Core::new();
     assert_eq!(core.answer(end_it()), Answer::Request(Ok(())));
     assert!(core.gateway.cause.contains("when the autopilot is heard"), "{}", core.gateway.cause);
-    assert!(core.gateway.snapshot().terminated && orders_to_end(&core).is_empty());
+    assert!(orders_to_end(&core).is_empty());
     core
 }
 
@@ -106,4 +106,26 @@ fn what_is_switched_on_after_an_end_that_nobody_heard_is_not_ended() {
     later.now += COME_DOWN_AFTER;
     later.run(5, &flying(25.0, 25.0));
     assert!(orders_to_end(&later).is_empty() && !later.gateway.snapshot().terminated);
+}
+
+/// Days later, perhaps: nothing says when it was asked for.
+#[test]
+fn an_end_that_nobody_heard_is_not_that_of_what_the_next_gateway_hears() {
+    let mut core = Core::started_anew(Some(ended_unheard().gateway.snapshot()));
+    core.run(15, &flying(25.0, 25.0));
+    assert!(orders_to_end(&core).is_empty() && core.gateway.state() != GatewayState::Terminate);
+}
+
+/// It was ordered, and when that was is not known: its autopilot never said what time it is.
+#[test]
+fn an_end_that_was_ordered_holds_for_each_gateway_that_follows() {
+    let mut known = ended().gateway.snapshot();
+    for _ in 0..2 {
+        let core = Core::started_anew(Some(known));
+        known = core.gateway.snapshot();
+        assert!(known.terminated && known.terminated_unix_s.is_none());
+    }
+    let mut core = Core::started_anew(Some(known));
+    core.run(2, &flying(25.0, 25.0));
+    assert_eq!(orders_to_end(&core).len(), 1);
 }
