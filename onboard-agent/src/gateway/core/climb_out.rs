@@ -1,27 +1,52 @@
 //! The climb straight ahead of a take-off: until it is clear of the ground nothing else is flown, but what the pilot wants, and the end
-//! by force. What is asked for meanwhile waits.
+//! by force. What is asked for meanwhile waits. An aircraft that does not climb any more is no more waited for.
 
 use super::Gateway;
 use super::io::Output;
 use super::states::is_flying;
-use crate::gateway::order::Mode;
+use super::telemetry::CLIMBING_MPS;
+use crate::gateway::order::{Mode, Time};
 use serde::{Deserialize, Serialize};
-use usal::contract::{Action, Feed, GatewayRequest, Token};
+use std::time::Duration;
+use usal::contract::{Action, Feed, GatewayRequest, GatewayState, Token};
 
-/// What waits until it is clear of the ground.
+/// Height above the take-off place from which a climbing aircraft may circle, metres.
+pub(super) const CLEAR_M: f64 = 40.0;
+/// Faster than this downwards it sinks, m/s, and for so long: a gust is over by then.
+const SINKING_MPS: f64 = 1.0;
+const SINKS_FOR: Duration = Duration::from_secs(3);
+
+/// A climb, and what waits for its end.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClimbOut {
     /// A hold, or a direct command.
     pub asked: Option<GatewayRequest>,
     /// The waypoint that is left then: it was cancelled, or was a take-off that was broken off.
     left: Option<Token>,
+    /// It was clear of the ground once, or does not climb any more.
+    is_over: bool,
+    /// Since when it sinks.
+    #[serde(skip)]
+    sinks_since: Option<Time>,
+}
+
+impl ClimbOut {
+    /// A take-off is flown from now on.
+    pub fn begins(&mut self) {
+        (self.is_over, self.sinks_since) = (false, None);
+    }
 }
 
 impl Gateway {
+    /// It climbs straight ahead on the waypoint of its take-off, and is not clear of the ground yet.
+    pub(super) fn climbs_out(&self) -> bool {
+        self.state == GatewayState::TakeOff && !self.control.climb_out.is_over
+    }
+
     /// Leads the aircraft away from its waypoints, once that can be done.
     pub(super) fn lead_away(&mut self, asked: GatewayRequest, out: &mut Vec<Output>) -> Result<(), String> {
         self.is_free()?;
-        if self.is_clear_of_ground() {
+        if !self.climbs_out() {
             return self.lead(&asked, out);
         }
         if let GatewayRequest::Direct { heading_deg, altitude_amsl_m, airspeed_mps } = asked {
@@ -34,17 +59,14 @@ impl Gateway {
         Ok(())
     }
 
-    /// What an earlier gateway let wait goes on to. How high it is since when, nobody knows any more: it has the whole time to get clear.
+    /// What an earlier gateway let wait goes on to.
     pub(super) fn go_on_waiting(&mut self, waits: &ClimbOut) {
-        if *waits != ClimbOut::default() {
-            self.control.climb_out = waits.clone();
-            self.took_off = Some(self.now);
-        }
+        self.control.climb_out = ClimbOut { sinks_since: None, ..waits.clone() };
     }
 
     /// What a batch cancels; not the climb that is flown.
     pub(super) fn cancels(&mut self, feed: &Feed) -> Option<Token> {
-        let climb = self.buffer.waypoints().next().map(|w| w.token).filter(|_| !self.is_clear_of_ground());
+        let climb = self.buffer.waypoints().next().map(|w| w.token).filter(|_| self.climbs_out());
         let kept =
             feed.cancel_after.zip(climb).filter(|(after, climb)| after < climb).map(|(_, climb)| climb);
         if kept.is_some() {
@@ -60,8 +82,9 @@ impl Gateway {
         if !is_flying(self.state) {
             return;
         }
+        self.note_end_of_climb();
         self.note_broken_off();
-        if !self.is_clear_of_ground() {
+        if self.climbs_out() {
             return;
         }
         if let Some(asked) = self.control.climb_out.asked.take()
@@ -71,6 +94,22 @@ impl Gateway {
             out.push(Output::Save);
         }
         self.leave_climb(out);
+    }
+
+    /// It was high enough to turn, or is not going to be: its engine has failed, it sinks, or it circles where the take-off ended.
+    fn note_end_of_climb(&mut self) {
+        let t = &self.telemetry;
+        let down_mps = t.fix_now(self.now).map(|fix| fix.down_mps);
+        let sinks = t.flies(self.now) && down_mps.is_some_and(|mps| mps > SINKING_MPS);
+        let since = sinks.then(|| self.control.climb_out.sinks_since.unwrap_or(self.now));
+        let climbs = down_mps.is_none_or(|mps| mps < -CLIMBING_MPS);
+        let is_over = t.is_above_home(CLEAR_M)
+            || self.alarms.engine_has_failed()
+            || since.is_some_and(|since| self.now.saturating_sub(since) >= SINKS_FOR)
+            || (self.is_dry() && !climbs);
+        // on the ground it has not begun
+        self.control.climb_out.is_over |= is_over && t.is_up(self.now);
+        self.control.climb_out.sinks_since = since;
     }
 
     /// Some autopilots begin a take-off anew when they come back to it, straight ahead wherever the nose points by then.

@@ -81,8 +81,6 @@ pub struct Gateway {
     adopting: Option<Snapshot>,
     /// It was seen to stand, not armed: whatever takes off since without an order to is somebody's own flight.
     stood: bool,
-    /// When it took off, until it is high enough to turn.
-    took_off: Option<Time>,
     /// Another station's list is aboard, and is not flown; until ours is.
     list_lost: bool,
     /// The driver was told to change nothing aboard.
@@ -120,7 +118,6 @@ impl Gateway {
                 .map_or_else(ForcedEnd::default, |k| ForcedEnd::restored(k.terminated, k.terminated_unix_s)),
             adopting: restored,
             stood: false,
-            took_off: None,
             list_lost: false,
             hands_off: false,
             way: Way::default(),
@@ -288,8 +285,8 @@ impl Gateway {
         let Some(to) = states::next(self.state, trigger) else { return };
         let from = std::mem::replace(&mut self.state, to);
         self.cause = cause.to_owned();
-        if from == GatewayState::Stop {
-            self.took_off = Some(self.now).filter(|_| is_flying(to));
+        if to == GatewayState::TakeOff {
+            self.control.climb_out.begins();
         }
         if !is_safe(to) {
             self.control.safe_since = None;

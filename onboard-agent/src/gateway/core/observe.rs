@@ -5,13 +5,7 @@ use super::OFF_AFTER;
 use super::io::{Intent, Output};
 use super::states::{Trigger, is_flying};
 use crate::gateway::order::{Mode, Time};
-use std::time::Duration;
 use usal::contract::{Action, GatewayEvent, GatewayState, Token, Waypoint};
-
-/// Height above the take-off place from which a climbing aircraft may circle, metres.
-pub(super) const CLEAR_M: f64 = 40.0;
-/// Whoever takes so long to get there does not climb out.
-const CLIMBS_OUT: Duration = Duration::from_secs(60);
 
 impl Gateway {
     /// What the autopilot is seen to do.
@@ -25,8 +19,6 @@ impl Gateway {
             self.forget_earlier_flight(out);
         }
         self.wait_for_earlier_launch(now, out);
-        self.took_off
-            .take_if(|at| now.saturating_sub(*at) >= CLIMBS_OUT || self.telemetry.is_above_home(CLEAR_M));
         if self.telemetry.stands(now) {
             self.change(Trigger::Heartbeat, "the autopilot is heard", out);
         } else if self.state == GatewayState::Off {

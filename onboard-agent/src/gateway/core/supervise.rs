@@ -1,10 +1,9 @@
 //! Is the FP Manager alive, has it enough waypoints aboard, and what if not: Safe mode.
 
+use super::climb_out::CLEAR_M;
 use super::io::{Intent, Output};
-use super::observe::CLEAR_M;
 use super::safe::{self, Situation};
 use super::states::Trigger;
-use super::telemetry::CLIMBING_MPS;
 use super::{Gateway, seconds};
 use crate::gateway::order::Time;
 use geometry::LatLon;
@@ -183,27 +182,20 @@ impl Gateway {
         self.ended || self.buffer.last().is_some_and(|w| w.end_of_plan)
     }
 
-    /// High enough to turn: a take-off is not interrupted before, unless it circles already, and no higher.
-    pub(super) fn is_clear_of_ground(&self) -> bool {
-        let climbs = self.telemetry.fix.is_none_or(|(_, f)| f.down_mps < -CLIMBING_MPS);
-        let takes_off = self.took_off.is_some() || self.state == GatewayState::TakeOff;
-        !takes_off || self.telemetry.is_above_home(CLEAR_M) || (self.is_dry() && !climbs)
-    }
-
     /// It has not left the ground, and would take off to fly home.
     fn still_stands(&self) -> bool {
         self.telemetry.on_ground == Some(true) && !self.may_be_up(self.now)
     }
 
     /// The end loiter is circled although the plan did not end.
-    fn is_dry(&self) -> bool {
+    pub(super) fn is_dry(&self) -> bool {
         self.buffer.at_end() && !self.ended && self.control.intent == Intent::Fly && self.flies_waypoints()
     }
 
     /// Safe.Hold, if the state allows it.
     pub(super) fn enter_safe(&mut self, now: Time, cause: &str, out: &mut Vec<Output>) {
         let before = self.state;
-        if !self.is_clear_of_ground() || self.still_stands() {
+        if self.climbs_out() || self.still_stands() {
             return;
         }
         self.change(Trigger::SafeNeeded, cause, out);

@@ -99,6 +99,10 @@ impl Core {
 
     /// On the ground, with waypoints to be flown.
     fn in_stop_with_a_plan() -> Self {
+        Self::in_stop_with(crate::gateway::tests::flights::zigzag(0, 10, 300.0))
+    }
+
+    fn in_stop_with(waypoints: Vec<Waypoint>) -> Self {
         let mut core = Self::new();
         let gps = Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: None };
         let ground = [beat(Mode::Hold, false), Report::OnGround(true), fix(0.0), Report::Gps(gps)];
@@ -107,8 +111,7 @@ impl Core {
         let join = Join { plan: Some("plan".into()), earlier: vec![], last_token: Token(0) };
         core.step(Input::Join(1, join, fp_manager()));
         let number = |(i, w): (usize, Waypoint)| Waypoint { token: Token(i as u64 + 1), ..w };
-        let waypoints =
-            crate::gateway::tests::flights::zigzag(0, 10, 300.0).into_iter().enumerate().map(number);
+        let waypoints = waypoints.into_iter().enumerate().map(number);
         let feed = Feed { cancel_after: None, waypoints: waypoints.collect() };
         core.step(Input::Feed(2, feed, fp_manager()));
         core

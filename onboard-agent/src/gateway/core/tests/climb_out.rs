@@ -4,69 +4,163 @@ use super::*;
 use crate::gateway::order::{Aim, Serial};
 use crate::gateway::tests::flights::{take_off, zigzag};
 
-/// In the air by its waypoints, so high above home.
-fn at_height_of(altitude_home_m: f64) -> [Report; 3] {
-    let Report::Fix(here) = fix(25.0) else { unreachable!() };
-    [beat(Mode::Waypoints, true), Report::OnGround(false), Report::Fix(Fix { altitude_home_m, ..here })]
+/// In the air at a height above the take-off place, metres.
+fn up(mode: Mode, altitude_home_m: f64, down_mps: f64) -> [Report; 3] {
+    at(mode, false, altitude_home_m, down_mps)
 }
 
-/// Just off the ground, the first waypoint a take-off or not, and to be held once it is clear.
-fn held_in_the_climb(takes_off: bool) -> Core {
-    let mut core = Core::in_stop_with_a_plan();
-    let [.., low] = at_height_of(10.0);
-    core.step(Input::Report(low));
-    let mut first = 1;
-    if takes_off {
-        let plan = std::iter::once(take_off()).chain(zigzag(0, 3, 300.0));
-        let waypoints =
-            (11..).zip(plan).map(|(token, waypoint)| Waypoint { token: Token(token), ..waypoint });
-        let feed = Feed { cancel_after: Some(Token(0)), waypoints: waypoints.collect() };
-        assert_eq!(core.answer(Input::Feed(2, feed, fp_manager())), Answer::Feed(FeedAnswer::Accepted));
-        first = 11;
-    }
+fn at(mode: Mode, on_ground: bool, altitude_home_m: f64, down_mps: f64) -> [Report; 3] {
+    let Report::Fix(fix) = fix(if on_ground { 0.0 } else { 25.0 }) else { unreachable!() };
+    let fix = Fix { altitude_home_m, altitude_amsl_m: 350.0 + altitude_home_m, down_mps, ..fix };
+    [beat(mode, true), Report::OnGround(on_ground), Report::Fix(fix)]
+}
+
+/// Ten metres up, on a take-off with a zigzag behind it.
+fn climbing() -> Core {
+    let mut core = Core::in_stop_with(std::iter::once(take_off()).chain(zigzag(0, 9, 300.0)).collect());
     core.step(Input::Request(3, GatewayRequest::Launch));
-    let target = Target::Waypoint(Serial(first));
-    core.step(Input::Report(Report::Course(Course { target, ..course(true) })));
-    core.run(1, &at_height_of(10.0));
-    core.out.clear();
-    assert_eq!(core.answer(Input::Request(4, GatewayRequest::Hold)), Answer::Request(Ok(())));
+    core.step(Input::Report(Report::Course(course(true))));
+    core.run(1, &at(Mode::Waypoints, true, 0.0, 0.0));
+    core.run(2, &up(Mode::Waypoints, 10.0, -3.0));
+    core.done();
+    assert_eq!(core.gateway.state(), GatewayState::TakeOff);
     core
+}
+
+fn ask(core: &mut Core, request: GatewayRequest) {
+    assert_eq!(core.answer(Input::Request(4, request)), Answer::Request(Ok(())));
+}
+
+fn is_held(core: &Core) -> bool {
+    core.was_ordered(&Order::Steer(Aim::Hold))
+}
+
+#[test]
+fn what_climbs_on_its_take_off_is_held_once_it_is_clear() {
+    let mut core = climbing();
+    ask(&mut core, GatewayRequest::Hold);
+    core.run(3, &up(Mode::Waypoints, 35.0, -3.0));
+    assert!(!is_held(&core));
+    core.run(1, &up(Mode::Waypoints, 41.0, -3.0));
+    assert!(is_held(&core));
 }
 
 #[test]
 fn what_waits_for_the_end_of_the_climb_is_known_to_a_gateway_that_starts_anew() {
-    for takes_off in [true, false] {
-        let before = held_in_the_climb(takes_off);
-        assert!(before.out.contains(&Output::Save), "takes off: {takes_off}");
-        let mut core = Core::started_anew(Some(before.gateway.snapshot()));
-        core.run(2, &at_height_of(15.0));
-        let order = core.orders().into_iter().find(|(_, order)| matches!(order, Order::Adopt(_)));
-        let Some((adopt, Order::Adopt(known))) = order else { panic!("nothing is read") };
-        core.step(Input::Report(Report::Adopted(adopt, Some(known.len()))));
-        let target = Target::Waypoint(known[0].serial);
-        core.step(Input::Report(Report::Course(Course { target, ..course(true) })));
-        core.run(3, &at_height_of(25.0));
-        let holds = Order::Steer(Aim::Hold);
-        assert!(!core.was_ordered(&holds), "takes off: {takes_off}, too low to turn");
-        core.run(1, &at_height_of(45.0));
-        assert!(core.was_ordered(&holds), "takes off: {takes_off}");
-        assert_eq!(core.gateway.snapshot().climb_out.asked, None, "it is done");
+    let mut before = climbing();
+    before.out.clear();
+    ask(&mut before, GatewayRequest::Hold);
+    assert!(before.out.contains(&Output::Save));
+    let mut core = Core::started_anew(Some(before.gateway.snapshot()));
+    core.run(2, &up(Mode::Waypoints, 15.0, -3.0));
+    let order = core.orders().into_iter().find(|(_, order)| matches!(order, Order::Adopt(_)));
+    let Some((adopt, Order::Adopt(known))) = order else { panic!("nothing is read") };
+    core.step(Input::Report(Report::Adopted(adopt, Some(known.len()))));
+    let target = Target::Waypoint(known[0].serial);
+    core.step(Input::Report(Report::Course(Course { target, ..course(true) })));
+    core.run(3, &up(Mode::Waypoints, 25.0, -3.0));
+    assert!(!is_held(&core), "too low to turn");
+    core.run(1, &up(Mode::Waypoints, 45.0, -3.0));
+    assert!(is_held(&core));
+    assert_eq!(core.gateway.snapshot().climb_out.asked, None, "it is done");
+}
+
+/// 40 m are never reached any more: it would wait for them down to the ground.
+#[test]
+fn what_does_not_climb_any_more_is_held_however_low_it_is() {
+    for what in ["engine", "sinks"] {
+        let mut core = climbing();
+        ask(&mut core, GatewayRequest::Hold);
+        core.run(2, &up(Mode::Waypoints, 30.0, -3.0));
+        assert!(!is_held(&core), "{what}");
+        if what == "engine" {
+            core.gateway.alarms.take_up("engine-out", &mut vec![]);
+            core.run(1, &up(Mode::Waypoints, 30.0, -1.0));
+        } else {
+            core.run(1, &up(Mode::Waypoints, 28.0, 2.0));
+            assert!(!is_held(&core), "a gust");
+            core.run(4, &up(Mode::Waypoints, 25.0, 2.0));
+        }
+        assert!(is_held(&core), "{what}");
     }
 }
 
 #[test]
+fn what_was_clear_of_the_ground_once_is_so_until_the_next_take_off() {
+    let mut core = climbing();
+    core.run(2, &up(Mode::Waypoints, 55.0, -3.0));
+    core.run(2, &up(Mode::Waypoints, 38.0, 0.0));
+    assert_eq!(core.gateway.state(), GatewayState::TakeOff);
+    ask(&mut core, GatewayRequest::Hold);
+    core.run(1, &up(Mode::Waypoints, 38.0, 0.0));
+    assert!(is_held(&core));
+}
+
+#[test]
 fn a_direct_command_that_can_not_be_followed_once_it_is_clear_is_told() {
-    let mut core = Core::in_stop_with_a_plan();
-    let Report::Fix(here) = fix(25.0) else { unreachable!() };
-    let low = Report::Fix(Fix { altitude_home_m: 10.0, ..here });
-    core.step(Input::Report(low.clone()));
-    core.step(Input::Request(3, GatewayRequest::Launch));
-    core.step(Input::Report(Report::Course(course(true))));
-    core.run(1, &[beat(Mode::Waypoints, true), Report::OnGround(false), low]);
-    let direct = GatewayRequest::Direct { heading_deg: 90.0, altitude_amsl_m: 500.0, airspeed_mps: 25.0 };
-    assert_eq!(core.answer(Input::Request(4, direct)), Answer::Request(Ok(())));
+    let mut core = climbing();
+    ask(&mut core, GatewayRequest::Direct { heading_deg: 90.0, altitude_amsl_m: 500.0, airspeed_mps: 25.0 });
     // nobody knows any more how high it is, nor where
-    core.run(61, &[beat(Mode::Waypoints, true), Report::OnGround(false)]);
+    let heard = [beat(Mode::Waypoints, true), Report::OnGround(false)];
+    core.run(15, &heard);
+    core.step(Input::Report(Report::Course(Course { target: Target::Waypoint(Serial(2)), ..course(true) })));
+    core.run(1, &heard);
     assert!(core.gateway.cause.contains("position is not known"), "{}", core.gateway.cause);
     assert_eq!(core.gateway.control.intent, Intent::Fly);
+}
+
+/// Its waypoints are flown there by the plan, turns too.
+#[test]
+fn behind_a_climb_that_ends_low_nothing_waits() {
+    let mut core = climbing();
+    let next = Course { target: Target::Waypoint(Serial(2)), ..course(true) };
+    core.step(Input::Report(Report::Course(next)));
+    core.run(1, &up(Mode::Waypoints, 25.0, 0.0));
+    assert_eq!(core.gateway.state(), GatewayState::Nav);
+    ask(&mut core, GatewayRequest::Hold);
+    core.run(1, &up(Mode::Waypoints, 25.0, 0.0));
+    assert!(is_held(&core));
+}
+
+/// What the driver is told to keep of what it has.
+fn kept(core: &Core) -> Option<Serial> {
+    core.orders().into_iter().rev().find_map(|(_, order)| match order {
+        Order::Feed { after, .. } => Some(after),
+        _ => None,
+    })
+}
+
+fn feeds(core: &mut Core, from: u64, waypoints: Vec<Waypoint>) {
+    let number = |(token, w): (u64, Waypoint)| Waypoint { token: Token(token), ..w };
+    let waypoints = (from..).zip(waypoints).map(number).collect();
+    let feed = Feed { cancel_after: Some(Token(0)), waypoints };
+    assert_eq!(core.answer(Input::Feed(5, feed, fp_manager())), Answer::Feed(FeedAnswer::Accepted));
+}
+
+#[test]
+fn a_changed_way_keeps_the_climb_that_is_flown_and_not_one_whose_engine_has_failed() {
+    for fails in [false, true] {
+        let mut core = climbing();
+        if fails {
+            core.gateway.alarms.take_up("engine-out", &mut vec![]);
+            core.run(1, &up(Mode::Waypoints, 30.0, -1.0));
+        }
+        feeds(&mut core, 20, zigzag(0, 5, 300.0));
+        assert_eq!(kept(&core), Some(Serial(u64::from(!fails))), "fails: {fails}");
+    }
+}
+
+/// He starts again within a minute, on another runway.
+#[test]
+fn a_take_off_that_was_broken_off_is_not_kept_on_the_ground() {
+    let mut core = climbing();
+    let mut down = at(Mode::Waypoints, true, 0.0, 0.0);
+    down[0] = beat(Mode::Waypoints, false);
+    core.run(2, &down);
+    assert_eq!(core.gateway.state(), GatewayState::Stop);
+    let plan = |n| std::iter::once(take_off()).chain(zigzag(0, n, 300.0)).collect::<Vec<_>>();
+    feeds(&mut core, 20, plan(5));
+    feeds(&mut core, 30, plan(3));
+    assert_eq!(kept(&core), Some(Serial(0)));
+    assert!(!core.gateway.cause.contains("climbing"), "{}", core.gateway.cause);
 }

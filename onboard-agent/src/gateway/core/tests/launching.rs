@@ -78,8 +78,6 @@ fn what_is_held_before_it_has_left_the_ground_stays_there_without_an_fp_manager(
     let mut core = launched(true);
     core.run(1, &on_ground(Mode::Waypoints, true));
     core.step(Input::Request(4, GatewayRequest::Hold));
-    // nothing that climbs out takes so long
-    core.run(65, &on_ground(Mode::Waypoints, true));
     core.run(1, &on_ground(Mode::Hold, true));
     assert_eq!(core.gateway.state(), GatewayState::Hold);
     core.done();

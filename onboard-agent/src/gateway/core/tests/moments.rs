@@ -25,7 +25,9 @@ fn alone(core: &mut Core, seconds: u64, reports: &[Report]) {
 /// It takes off, and the first waypoint behind the take-off is not aboard.
 fn taking_off() -> Core {
     let mut core = Core::in_nav();
+    core.run(1, &at_height_of(20.0));
     core.gateway.state = S::TakeOff;
+    core.gateway.control.climb_out.begins();
     let place = LatLon::new(36.33, -84.16);
     let take_off =
         crate::gateway::tests::flights::waypoint(place, 470.0, Action::TakeOff { heading_deg: 52.0 });

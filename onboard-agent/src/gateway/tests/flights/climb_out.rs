@@ -143,3 +143,26 @@ fn an_emergency_in_the_climb_is_flown_once_it_is_clear() {
         assert_eq!(whole.flight.state(), GatewayState::Nav, "{personality}: it does not hold");
     }
 }
+
+/// The height from which it may turn is never reached any more: the take-off was flown down to the ground.
+#[test]
+fn another_way_is_flown_at_once_when_the_engine_fails_in_the_climb() {
+    for (personality, fails_m) in AUTOPILOTS.into_iter().flat_map(|of| [30.0, 55.0].map(|m| (of, m))) {
+        let mut flight = lifted_off(personality);
+        flight.run_until(30.0, "up", |f| height_m(f) > fails_m);
+        assert!(flight.sim.inject("engine-out".parse().unwrap()));
+        let down_mps = |f: &Flight| f.station.gateway().telemetry().fix.map(|(_, fix)| fix.down_mps);
+        // as it sinks again through the height from which it may turn
+        flight.run_until(30.0, "low", |f| {
+            height_m(f) < CLEAR_M - 2.0 && down_mps(f).is_some_and(|mps| mps > 1.0)
+        });
+        flight.run(4.0);
+        assert_eq!(flight.state(), GatewayState::TakeOff, "{personality} {fails_m}");
+        let ahead = |m: f64| waypoint(HOME.destination(HEADING_DEG + 5.0, m), GROUND_M + 20.0, Action::Fly);
+        let place = ahead(2500.0).position;
+        assert_eq!(flight.feed(Some(0), vec![ahead(2500.0), ahead(3500.0)]), FeedAnswer::Accepted);
+        flight.run_until(8.0, "the other way", |f| {
+            f.steered.last().is_some_and(|to| to.distance_m(place) < 1.0)
+        });
+    }
+}
