@@ -93,7 +93,15 @@ impl Gateway {
             self.cause = why;
             out.push(Output::Save);
         }
-        self.leave_climb(out);
+        if self.control.climb_out.is_over && self.is_led_by_us() {
+            self.leave_climb(out);
+        }
+    }
+
+    /// It does what is wanted, or is being taken back. A pilot who has it may land, and start it from the ground.
+    fn is_led_by_us(&self) -> bool {
+        let Some(wanted) = self.control.wanted_mode() else { return false };
+        self.telemetry.mode == Some(wanted) || self.state == GatewayState::Manual
     }
 
     /// It was high enough to turn, or is not going to be: its engine has failed, it sinks, or it circles where the take-off ended.
@@ -114,6 +122,9 @@ impl Gateway {
 
     /// Some autopilots begin a take-off anew when they come back to it, straight ahead wherever the nose points by then.
     fn note_broken_off(&mut self) {
+        if self.state == GatewayState::Manual && self.telemetry.stands(self.now) {
+            self.control.climb_out.left = None;
+        }
         let is_elsewhere = self.telemetry.mode.is_some_and(|mode| mode != Mode::Waypoints);
         if !is_elsewhere || !self.telemetry.is_up(self.now) {
             return;

@@ -35,6 +35,10 @@ fn is_held(core: &Core) -> bool {
     core.was_ordered(&Order::Steer(Aim::Hold))
 }
 
+fn is_left(core: &Core) -> bool {
+    core.orders().iter().any(|(_, order)| matches!(order, Order::Leave(_)))
+}
+
 #[test]
 fn what_climbs_on_its_take_off_is_held_once_it_is_clear() {
     let mut core = climbing();
@@ -163,4 +167,55 @@ fn a_take_off_that_was_broken_off_is_not_kept_on_the_ground() {
     feeds(&mut core, 30, plan(3));
     assert_eq!(kept(&core), Some(Serial(0)));
     assert!(!core.gateway.cause.contains("climbing"), "{}", core.gateway.cause);
+}
+
+/// He broke it off and flew a round by hand.
+fn taken_by_its_pilot_at(height_m: f64) -> Core {
+    let mut core = climbing();
+    core.run(1, &up(Mode::Waypoints, height_m, -3.0));
+    core.run(5, &up(Mode::Other(5), height_m, 0.0));
+    assert_eq!(core.gateway.state(), GatewayState::Manual);
+    core.run(70, &up(Mode::Other(5), 60.0, 0.0));
+    assert!(!is_left(&core), "he may land and start again");
+    core
+}
+
+#[test]
+fn who_lands_by_hand_stays_armed_and_gives_it_back_takes_off_anew() {
+    for height_m in [20.0, 50.0] {
+        let mut core = taken_by_its_pilot_at(height_m);
+        core.run(5, &at(Mode::Other(5), true, 0.0, 0.0));
+        core.run(5, &at(Mode::Waypoints, true, 0.0, 0.0));
+        assert_eq!(core.gateway.state(), GatewayState::TakeOff);
+        core.run(5, &up(Mode::Waypoints, 30.0, -3.0));
+        core.run(5, &up(Mode::Waypoints, 60.0, -3.0));
+        assert!(!is_left(&core), "straight ahead, to its end");
+    }
+}
+
+#[test]
+fn who_gives_it_back_in_the_air_does_not_take_off_anew() {
+    for (asks, height_m) in [(false, 20.0), (true, 20.0), (false, 50.0), (true, 50.0)] {
+        let mut core = taken_by_its_pilot_at(height_m);
+        if asks {
+            ask(&mut core, GatewayRequest::Resume);
+            core.run(1, &up(Mode::Other(5), 60.0, 0.0));
+        } else {
+            core.run(1, &up(Mode::Waypoints, 60.0, 0.0));
+        }
+        assert!(is_left(&core), "asks: {asks}");
+    }
+}
+
+/// So low straight ahead is the better way, wherever that leads.
+#[test]
+fn who_gives_it_back_low_climbs_first() {
+    let mut core = climbing();
+    core.run(5, &up(Mode::Other(5), 20.0, 0.0));
+    ask(&mut core, GatewayRequest::Resume);
+    core.run(1, &up(Mode::Other(5), 20.0, 0.0));
+    core.run(2, &up(Mode::Waypoints, 20.0, -3.0));
+    assert!(core.gateway.state() == GatewayState::TakeOff && !is_left(&core));
+    core.run(1, &up(Mode::Waypoints, 41.0, -3.0));
+    assert!(is_left(&core));
 }
