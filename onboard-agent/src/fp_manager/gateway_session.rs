@@ -274,9 +274,12 @@ impl GatewaySession {
         if self.is_pilots() {
             return self.unwant(GatewayRequest::Hold);
         }
-        // in the climb of a take-off it may have been told to hold once it is clear of the ground
-        let led_away =
-            matches!(self.state, Some(GatewayState::Hold | GatewayState::Directed | GatewayState::TakeOff));
+        let led_away = match self.state {
+            Some(GatewayState::Hold | GatewayState::Directed) => true,
+            // it may have been told to hold once it is clear of the ground; Safe mode, too, waits for that
+            Some(GatewayState::TakeOff) => self.wanted() != Some(&GatewayRequest::Safe),
+            _ => false,
+        };
         if led_away || self.wanted() == Some(&GatewayRequest::Hold) {
             self.want(GatewayRequest::Resume);
         }
@@ -374,6 +377,19 @@ mod tests {
             Some(&GatewayRequest::Hold),
             "on the ground nobody waits for it"
         );
+    }
+
+    /// In the climb Safe mode is refused until the aircraft is clear of the ground, and an alarm comes meanwhile.
+    #[test]
+    fn an_abort_that_waits_in_the_climb_is_not_taken_back_by_what_flies_on() {
+        let mut session = GatewaySession::default();
+        session.state(Duration::ZERO, GatewayState::TakeOff);
+        session.want(GatewayRequest::Safe);
+        session.flies_on();
+        assert_eq!(session.wanted(), Some(&GatewayRequest::Safe));
+        session.unwant(GatewayRequest::Safe);
+        session.flies_on();
+        assert_eq!(session.wanted(), Some(&GatewayRequest::Resume), "it may have been told to hold");
     }
 
     #[test]
