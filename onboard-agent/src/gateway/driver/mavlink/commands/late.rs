@@ -30,9 +30,9 @@ impl Owed {
 impl LateAnswers {
     /// One with this number is over, which was sent last at this time, and is owed so many answers.
     pub fn expect(&mut self, number: MavCmd, sent_last: Time, answers: u32) {
-        let earlier = self.0.extract_if(.., |owed| owed.number == number);
-        let earlier: u32 = earlier.filter(|owed| owed.may_come(sent_last)).map(|owed| owed.answers).sum();
-        self.0.push(Owed { number, sent_last, answers: answers.saturating_add(earlier) });
+        // each for its own time: what was lost is not waited for because another one follows
+        self.0.retain(|owed| owed.may_come(sent_last));
+        self.0.push(Owed { number, sent_last, answers });
     }
 
     /// What answers this number now may answer an order that is over.

@@ -182,3 +182,13 @@ fn the_answer_to_a_second_copy_is_not_the_next_ones() {
     talk.answers(MavResult::MAV_RESULT_DENIED);
     assert!(matches!(&talk.ended[..], [_, (SECOND, Err(_))]), "its own: {:?}", talk.ended);
 }
+
+/// A launch is put off each second: each order in two copies, of which one is not answered.
+#[test]
+fn answers_that_were_lost_are_not_waited_for_as_long_as_orders_follow_each_other() {
+    let mut late = LateAnswers::default();
+    (1..=20).for_each(|second| late.expect(ARMING, Duration::from_secs(second), 1));
+    let now = Duration::from_secs(21);
+    let owed = (0..30).take_while(|_| late.takes(now, ARMING, true)).count();
+    assert_eq!(owed, 4, "those of the last five seconds");
+}
