@@ -62,7 +62,7 @@ const ADVICE: [Advice; 9] = [
     Advice::needed(
         "FS_GCS_ENABL",
         |watches| watches == 0.0,
-        "it does what FS_LONG_ACTN says when the ground station of SYSID_MYGCS is silent, where the plan and Safe mode decide: set it to 0",
+        "it does what FS_LONG_ACTN says when the ground station of MAV_GCS_SYSID (before 4.7: SYSID_MYGCS) is silent, where the plan and Safe mode decide: set it to 0",
     ),
     Advice::better(
         "FS_SHORT_ACTN",

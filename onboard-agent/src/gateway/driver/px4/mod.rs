@@ -93,16 +93,16 @@ const ADVICE: [Advice; 6] = [
         |action| action == 0.0,
         "it takes the aircraft away when its link is silent, where the plan and Safe mode decide: set it to 0",
     ),
-    // it takes a waypoint only near its altitude, and comes there no faster than these say; their defaults are 3 and 2 m/s
+    // it takes a waypoint only near its altitude, and comes there no faster than these say: who has set them knows his aircraft
     Advice::better(
         "FW_T_CLMB_R_SP",
-        |mps| mps > 3.0,
-        "it climbs no faster, and circles where a leg climbs more steeply: set it to what the aircraft climbs at in cruise, m/s",
+        |mps| mps != 3.0,
+        "at its default of 3 it climbs no faster, and circles where a leg climbs more steeply: set it to what the aircraft climbs at in cruise, m/s",
     ),
     Advice::better(
         "FW_T_SINK_R_SP",
-        |mps| mps > 2.0,
-        "it sinks no faster, and circles where a leg goes down more steeply: set it to what the aircraft sinks at in cruise, m/s",
+        |mps| mps != 2.0,
+        "at its default of 2 it sinks no faster, and circles where a leg goes down more steeply: set it to what the aircraft sinks at in cruise, m/s",
     ),
     Advice::better(
         "NAV_FW_ALT_RAD",

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::gateway::driver::examination::Degree;
+use crate::gateway::driver::{arduplane, px4};
 use autopilot_link::frame::Decoder;
 use autopilot_link::signing::{Key, Signing};
 use sim::core::{Peer as SimPeer, Simulator};
@@ -144,6 +145,24 @@ fn what_takes_the_aircraft_from_the_plan_or_off_its_path_is_told_with_what_to_do
         assert!(matches!(&told[..], [(of, says)] if *of == degree && says.contains(remedy)), "{told:?}");
         let told = said_of(personality, name, good);
         assert!(matches!(&told[..], [(Degree::Ok, _)]), "{told:?}");
+    }
+}
+
+/// The simulator does not let all of them be set.
+#[test]
+fn the_limits_of_what_is_flown_well_are_those_that_were_flown() {
+    let (plane, px4) = (&arduplane::DIALECT, &px4::FIXED_WING);
+    let cases: [(&Dialect, &str, &[f64], &[f64]); 4] = [
+        (plane, "NAVL1_PERIOD", &[8.0, 15.0, 20.0], &[7.9, 20.1]),
+        (plane, "WP_RADIUS", &[10.0, 50.0], &[2.0, 9.9]),
+        // an aircraft that climbs and sinks more slowly than by default is set so, too
+        (px4, "FW_T_CLMB_R_SP", &[2.5, 6.0], &[3.0]),
+        (px4, "FW_T_SINK_R_SP", &[1.5, 4.0], &[2.0]),
+    ];
+    for (dialect, name, good, bad) in cases {
+        let advice = dialect.advice.iter().find(|advice| advice.name == name).unwrap();
+        assert!(good.iter().all(|value| (advice.is_good)(*value)), "{name}");
+        assert!(!bad.iter().any(|value| (advice.is_good)(*value)), "{name}");
     }
 }
 
