@@ -33,8 +33,9 @@ fn a_message_can_be_put_aside_and_stays_while_it_is_read() {
     let mut window = window_on(&folder.path().join("mine.xml"), SQUARE);
     edit(&mut window);
     window.press_ctrl(Key::S);
-    window.until("the message", |app| app.toasts().iter().next().is_some());
-    let text = toasts(window.app())[0].clone();
+    let saved = |app: &App| toasts(app).into_iter().find(|toast| toast.starts_with("Saved "));
+    window.until("the message", |app| saved(app).is_some());
+    let text = saved(window.app()).unwrap();
     let close = format!("Put aside: {text}");
     let at = window.centre(&close);
     window.harness.hover_at(at);

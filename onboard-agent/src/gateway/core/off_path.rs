@@ -146,6 +146,6 @@ mod tests {
             down_mps: 0.0,
         };
         let place = HERE.destination(90.0, 500.0);
-        assert_eq!(beside(&fix, place, place, false), Beside::default());
+        assert_eq!(beside(&fix, place, place, false).metres, 0.0);
     }
 }
