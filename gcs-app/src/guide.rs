@@ -120,6 +120,8 @@ pub enum Answer {
     Runway(LatLon, LatLon),
     /// Where the mission is.
     Mission(Extent),
+    /// What is drawn of it so far, if that is enough, or else what was before: it counts if the plan is made now.
+    Begun(Option<Extent>),
     /// Whatever the card's fields say.
     Form(Box<Guide>),
     /// The next clicks on the map answer this, or nothing.
@@ -156,6 +158,7 @@ impl Guide {
             Answer::Place(at) => (self.threshold, self.drawing, self.search) = (Some(at), None, None),
             Answer::Runway(threshold, end) => self.take_runway(threshold, end),
             Answer::Mission(extent) => (self.extent, self.drawing) = (Some(extent), None),
+            Answer::Begun(extent) => self.extent = extent,
             Answer::Form(form) => *self = *form,
             Answer::Draw(drawing) => self.drawing = drawing,
             Answer::Close => (self.closed, self.drawing) = (true, None),

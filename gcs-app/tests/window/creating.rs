@@ -5,7 +5,7 @@ use super::small::tool;
 use egui::accesskit::Role;
 use egui::{Key, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
-use flight_plan::template::Template;
+use flight_plan::template::{Extent, Template};
 use flight_plan::{LegKind, Pattern, StageKind, Value};
 
 pub const EMPTY: &str = "<flightPlan xmlns='urn:legwork:flight-plan:1' name='New plan' aircraft='trainer'/>";
@@ -272,6 +272,32 @@ fn draw_runway_and_area(window: &mut Window) {
     draw(window, &[vec2(0.0, -60.0), vec2(90.0, -70.0), vec2(100.0, -150.0), vec2(10.0, -140.0)]);
     window.press(Key::Enter);
     assert!(window.shows("area of 4 points"));
+}
+
+/// Who does not end the outline means what is drawn of it, and what is drawn of another template is no outline.
+#[test]
+fn what_is_drawn_counts_without_its_end() {
+    let mut window = begun(SIZE);
+    window.click("✏ Draw the area");
+    let corners = [vec2(0.0, -60.0), vec2(90.0, -70.0), vec2(100.0, -150.0), vec2(10.0, -140.0)];
+    draw(&mut window, &corners[..2]);
+    assert_eq!(guide(&window).extent, None);
+    draw(&mut window, &corners[2..]);
+    window.press(Key::Backspace);
+    assert!(matches!(guide(&window).extent, Some(Extent::Drawn(ref drawn)) if drawn.len() == 3));
+    window.click("Create");
+    window.until_analysed();
+    let LegKind::Scan(scan) = window.plan().leg(&"scan".into()).unwrap().leg.kind.clone() else {
+        panic!("no scan")
+    };
+    assert!(matches!(scan.area, flight_plan::Area::Polygon { corners, .. } if corners.len() == 3));
+    let mut window = begun(SIZE);
+    window.click("✏ Draw the area");
+    draw(&mut window, &corners[..3]);
+    window.click(Template::Search.name());
+    window.click("✏ Draw the circle");
+    draw(&mut window, &corners[..2]);
+    assert!(matches!(guide(&window).extent, Some(Extent::Around { .. })), "{:?}", guide(&window).extent);
 }
 
 #[test]

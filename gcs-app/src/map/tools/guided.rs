@@ -17,11 +17,13 @@ pub struct Guided {
     pen: Pen,
     /// What is drawn now.
     drawing: Option<Drawing>,
+    /// Where the mission was before it is drawn anew.
+    before: Option<Extent>,
 }
 
 impl Default for Guided {
     fn default() -> Self {
-        Self { pen: Pen::new(Figure::Segment), drawing: None }
+        Self { pen: Pen::new(Figure::Segment), drawing: None, before: None }
     }
 }
 
@@ -34,15 +36,28 @@ impl Guided {
     /// Draws what is asked for now; what was drawn of something else is dropped.
     pub fn follow(&mut self, guide: &Guide) {
         if self.drawing != guide.drawing {
-            self.drawing = guide.drawing;
+            (self.drawing, self.before) = (guide.drawing, guide.extent.clone());
             self.pen.clear();
         }
-        self.pen.set_figure(match MissionFigure::of(guide.template) {
+        let figure = match MissionFigure::of(guide.template) {
             Some(MissionFigure::Area) if self.drawing == Some(Drawing::Mission) => Figure::Ring,
             Some(MissionFigure::Line) if self.drawing == Some(Drawing::Mission) => Figure::Line,
             Some(MissionFigure::Circle) if self.drawing == Some(Drawing::Mission) => Figure::Circle,
             _ => Figure::Segment,
-        });
+        };
+        if figure != self.pen.figure() && !self.pen.may_change() {
+            // it was of another template
+            self.pen.clear();
+        }
+        self.pen.set_figure(figure);
+    }
+
+    /// Who makes the plan without ending the outline means what is drawn of it.
+    fn begin(&self, queue: &mut Queue) {
+        if self.drawing == Some(Drawing::Mission) {
+            let so_far = self.pen.enough().map(Extent::Drawn).or(self.before.clone());
+            queue.view(ViewCommand::Guide(Answer::Begun(so_far)));
+        }
     }
 
     fn complete(&self, marks: &[Mark], queue: &mut Queue) {
@@ -95,6 +110,8 @@ impl Tool for Guided {
             }
         } else if let Some(marks) = self.pen.put(snap(pointer.at, canvas), canvas) {
             self.complete(&marks, queue);
+        } else {
+            self.begin(queue);
         }
     }
 
@@ -114,6 +131,8 @@ impl Tool for Guided {
             queue.view(ViewCommand::Guide(Answer::Draw(None)));
         } else if let Some(marks) = self.pen.key(key) {
             self.complete(&marks, queue);
+        } else {
+            self.begin(queue);
         }
     }
 

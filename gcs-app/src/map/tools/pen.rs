@@ -137,6 +137,11 @@ impl Pen {
         (self.len() >= self.least()).then(|| std::mem::take(&mut self.marks))
     }
 
+    /// What was clicked, if that is enough for the figure.
+    pub fn enough(&self) -> Option<Vec<LatLon>> {
+        (self.len() >= self.least()).then(|| self.marks.iter().map(|mark| mark.at).collect())
+    }
+
     fn least(&self) -> usize {
         if self.figure == Figure::Ring { 3 } else { 2 }
     }
