@@ -1,7 +1,7 @@
-//! What causes and values are called, in the document and to people: one table for every place that names them. Legs have theirs in
+//! What causes, stages and values are called, in the document and to people: one table for every place that names them. Legs have theirs in
 //! [`LegChoice`](crate::create::LegChoice).
 
-use crate::model::{Cause, VariableValue};
+use crate::model::{Cause, StageKind, VariableValue};
 
 impl Cause {
     /// In the document.
@@ -33,6 +33,21 @@ impl Cause {
     /// The first word of its name, where there is room for no more.
     pub fn short_name(self) -> &'static str {
         self.name().split(' ').next().unwrap_or_default()
+    }
+}
+
+impl StageKind {
+    /// In the document.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::TakeOff => "take-off",
+            Self::Departure => "departure",
+            Self::EnRoute => "en-route",
+            Self::Mission => "mission",
+            Self::Arrival => "arrival",
+            Self::Approach => "approach",
+            Self::Land => "land",
+        }
     }
 }
 

@@ -66,18 +66,9 @@ pub fn variable(plan: &FlightPlan, initial: VariableValue) -> Variable {
 
 /// An empty stage; one to take off or land gets the plan's first runway.
 fn stage(plan: &FlightPlan, kind: StageKind) -> Stage {
-    let stem = match kind {
-        StageKind::TakeOff => "take-off",
-        StageKind::Departure => "departure",
-        StageKind::EnRoute => "en-route",
-        StageKind::Mission => "mission",
-        StageKind::Arrival => "arrival",
-        StageKind::Approach => "approach",
-        StageKind::Land => "land",
-    };
     let on_runway = matches!(kind, StageKind::TakeOff | StageKind::Land);
     Stage {
-        id: plan.unique_id(stem),
+        id: plan.unique_id(kind.word()),
         name: kind.name().into(),
         kind,
         emergency: EmergencyChoice::default(),

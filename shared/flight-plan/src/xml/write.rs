@@ -5,7 +5,7 @@ use super::write_legs::{alone, leg};
 use super::{NAMESPACE, zone};
 use crate::{
     Altitude, Cause, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Leg, Place, PlanWaypoint, Procedure,
-    Runway, Stage, StageKind, TurnDirection, Turnaround, Value, Variable, VariableValue, Zone,
+    Runway, Stage, TurnDirection, Turnaround, Value, Variable, VariableValue, Zone,
 };
 use geometry::LatLon;
 use std::fmt::{Display, Write};
@@ -288,16 +288,8 @@ fn emergency_plan(out: &mut Writer, plan: &EmergencyPlan) {
 }
 
 fn stage_tag(stage: &Stage) -> Tag {
-    let kind = match stage.kind {
-        StageKind::TakeOff => "take-off",
-        StageKind::Departure => "departure",
-        StageKind::EnRoute => "en-route",
-        StageKind::Mission => "mission",
-        StageKind::Arrival => "arrival",
-        StageKind::Approach => "approach",
-        StageKind::Land => "land",
-    };
-    let tag = Tag::new("stage").with("id", &stage.id).text("name", &stage.name).with("type", kind);
+    let tag =
+        Tag::new("stage").with("id", &stage.id).text("name", &stage.name).with("type", stage.kind.word());
     let tag = fallback(tag, &stage.emergency).maybe("runway", stage.runway.as_ref());
     let tag = tag.altitude(stage.altitude.as_ref()).maybe_value("speed", stage.speed_mps.as_ref());
     let Turnaround { energy, time_s } = stage.turnaround;
