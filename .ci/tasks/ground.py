@@ -69,7 +69,7 @@ def procedure_at_three_pylons(trial: Trial) -> None:
     window.press("v")
     window.row_menu("ORB orbit1", "Make a procedure of it*")
     window.press("t")
-    window.choose("Kind: *", "Procedure")
+    window.choose("Kind: *", "Call of a procedure")
     window.click_map((160, 60), (200, -60))
     window.press("v")
     saved = window.save(trial.file, "(?s)<call.*<call.*<call", "<procedure ")
