@@ -42,7 +42,7 @@ def emergency_and_back(trial: Trial) -> None:
     window.click("Return to the main plan at*", BUTTON)
     # what would follow is looked at first
     window.wait_until_shown("Flies next: side")
-    window.hold("Return to the main plan at*", until="circuit ▸ side", which=-1)
+    window.hold("Return to the main plan at*", until="En route ▸ side", which=-1)
     window.kill()
     events = recorded(trial)
     started = next(event for event in events if event["event"] == "emergency-started")
@@ -67,7 +67,7 @@ def take_off(trial: Trial) -> Window:
     window.click("Push")
     window.click("Commit")
     window.hold("Start and take off*", until="Skip leg")
-    window.wait_until_shown("circuit ▸ side2")
+    window.wait_until_shown("En route ▸ side2")
     return window
 
 

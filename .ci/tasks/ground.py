@@ -130,7 +130,7 @@ def engine_fails_here(trial: Trial) -> None:
     window.click("What if")
     window.click("Timeline")
     window.ask_for("engine fails", "What if The engine fails here*")
-    window.wait_until_shown("Engine failure: return, runway R05")
+    window.wait_until_shown("Engine failure: R05 is reached without the engine on return")
     assert trial.file.read_text(encoding="utf-8") == before
 
 
