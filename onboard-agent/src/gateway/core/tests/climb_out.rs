@@ -18,6 +18,8 @@ fn at(mode: Mode, on_ground: bool, altitude_home_m: f64, down_mps: f64) -> [Repo
 /// Ten metres up, on a take-off with a zigzag behind it.
 fn climbing() -> Core {
     let mut core = Core::in_stop_with(std::iter::once(take_off()).chain(zigzag(0, 9, 300.0)).collect());
+    let [.., low] = at(Mode::Hold, true, 0.0, 0.0);
+    core.step(Input::Report(low));
     core.step(Input::Request(3, GatewayRequest::Launch));
     core.step(Input::Report(Report::Course(course(true))));
     core.run(1, &at(Mode::Waypoints, true, 0.0, 0.0));
