@@ -18,6 +18,9 @@ const MOST_CIRCLES: f64 = 20.0;
 /// An autopilot circles in a wind of up to this share of its airspeed.
 const MOST_WIND: f64 = 0.8;
 
+/// With more tailwind than this share of its airspeed a glide rolls past the end of a runway that it was not laid out for.
+const MOST_TAILWIND: f64 = 0.1;
+
 /// What is kept of the height for what a glide does not know of (gusts, the way an autopilot turns): metres, and a share of what the
 /// glide takes.
 const RESERVE_M: f64 = 15.0;
@@ -27,6 +30,12 @@ const RESERVE_SHARE: f64 = 0.1;
 /// executor and Safe mode keep the same.
 pub fn reserve_m(taken_m: f64) -> f64 {
     RESERVE_M + RESERVE_SHARE * taken_m.max(0.0)
+}
+
+/// It may land at the end of a runway that nobody has named, into this direction.
+pub fn may_land_unnamed(profile: &Profile, wind: Wind, heading_deg: f64) -> bool {
+    let tailwind_mps = wind.vector().dot(geometry::Vec2::from_bearing_rad(heading_deg.to_radians()));
+    tailwind_mps <= MOST_TAILWIND * profile.cruise_airspeed_mps
 }
 
 /// A point of a glide.

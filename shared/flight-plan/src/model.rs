@@ -114,6 +114,16 @@ impl Runway {
     pub fn strip(&self) -> aircraft::Strip {
         aircraft::Strip { threshold: self.threshold, heading_deg: self.heading_deg, length_m: self.length_m }
     }
+
+    /// The same runway from its other end, of which only the place is known.
+    pub fn from_other_end(&self) -> Self {
+        Self {
+            threshold: self.threshold.destination(self.heading_deg, self.length_m),
+            heading_deg: geometry::geodesy::normalise_360(self.heading_deg + 180.0),
+            approach_entry: None,
+            ..self.clone()
+        }
+    }
 }
 
 /// A variable's type and initial value.

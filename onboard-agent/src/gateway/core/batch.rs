@@ -74,7 +74,8 @@ mod tests {
     /// Tokens and codes of what is wrong with a batch.
     fn found(highest: u64, previous: Option<&Waypoint>, batch: &[Waypoint]) -> Vec<(u64, String)> {
         let profile = Profile::default();
-        let context = Context { profile: &profile, terrain: Some(&terrain::Flat(300.0)), wind_mps: 5.0 };
+        let terrain = terrain::Flat(300.0);
+        let context = Context { profile: &profile, terrain: Some(&terrain), wind_mps: 5.0, glides: false };
         let faults = faults(&context, Token(highest), previous, batch);
         faults.into_iter().map(|(token, code, _)| (token.0, code)).collect()
     }

@@ -181,8 +181,12 @@ impl Gateway {
 
     fn faults(&self, feed: &Feed) -> Vec<batch::Fault> {
         let terrain = self.settings.terrain.as_deref();
-        let context =
-            Context { profile: &self.settings.profile, terrain, wind_mps: self.telemetry.wind_mps() };
+        let context = Context {
+            profile: &self.settings.profile,
+            terrain,
+            wind_mps: self.telemetry.wind_mps(),
+            glides: self.alarms.engine_has_failed(),
+        };
         let here = self.here(feed);
         let previous = self.buffer.predecessor(feed.cancel_after).or(here.as_ref());
         batch::faults(&context, self.highest, previous, &feed.waypoints)

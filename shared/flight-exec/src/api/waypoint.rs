@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 
 /// Farther apart than this, two waypoints are a mistake, metres: the gateway takes none such.
 pub const FARTHEST_M: f64 = 50_000.0;
+/// Height that an en-route waypoint keeps above the ground, metres: the gateway takes none that is lower.
+pub const TERRAIN_MARGIN_M: f64 = 20.0;
 
 /// Number of a waypoint of this flight: counts up from 1 and is never used twice, across plan
 /// updates, emergencies and restarts.

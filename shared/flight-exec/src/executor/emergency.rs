@@ -43,6 +43,7 @@ impl Executor {
         (cursor.crossings, cursor.uncounted) = (before.crossings, before.uncounted);
         cursor.home = before.home;
         self.leave_hold(out);
+        let cursor = self.begun_in_reach(cursor, out);
         self.jump(cursor, out);
     }
 

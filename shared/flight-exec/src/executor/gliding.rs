@@ -4,7 +4,8 @@
 
 use super::Executor;
 use crate::api::{AircraftState, Event, Output};
-use crate::layout::homeward::{Arrival, Halt, halts};
+use crate::layout::cursor::Cursor;
+use crate::layout::homeward::{Arrival, GlideIn, Halt, halts};
 use crate::layout::touch_down::TouchDown;
 use aircraft::glide::GlideStart;
 use flight_plan::{Id, Runway};
@@ -13,6 +14,8 @@ use flight_plan::{Id, Runway};
 struct Shortcut {
     to: Id,
     arrival: Option<Arrival>,
+    /// It lands on the runway from its other end.
+    from_other_end: bool,
 }
 
 impl Executor {
@@ -27,11 +30,11 @@ impl Executor {
             return;
         }
         // perhaps a while ago: it was held, or somebody else flew
-        if self.flight.emergencies.is_laid_out() {
-            self.replan(out);
-        }
-        if let Some(shortcut) = self.shortcut(&state) {
-            self.take(shortcut, out);
+        let stopped_since = self.flight.emergencies.is_laid_out();
+        match self.shortcut(&state) {
+            Some(shortcut) => self.take(shortcut, out),
+            None if stopped_since => self.replan(out),
+            None => {}
         }
         self.tell_long_landing(&state, out);
     }
@@ -63,14 +66,38 @@ impl Executor {
         (end.beyond_m > 0.0).then(|| (landing.place.leg.clone(), runway.id.clone(), end))
     }
 
-    /// Where to go at once, if the height does not suffice for all that is ahead: the first part from which it does, else the landing.
+    /// The beginning of an emergency plan, or with the engine out the first part of it that the height suffices for: what is out of reach
+    /// is not handed out.
+    pub(super) fn begun_in_reach(&self, begin: Cursor, out: &mut Vec<Output>) -> Cursor {
+        let glides = self.life.aircraft().filter(|state| state.engine_out && !self.is_muted());
+        let shortcut =
+            glides.zip(begin.section).and_then(|(s, section)| self.shortcut_from(s, section, (0, 0), false));
+        let target = shortcut.as_ref().and_then(|shortcut| self.setup.program.path(&shortcut.to));
+        let Some((shortcut, target)) = shortcut.zip(target) else { return begin };
+        out.push(shortcut.told());
+        begin.moved_to(&target, &self.world())
+    }
+
+    /// Where to go at once, if the height does not suffice for all that is ahead.
     fn shortcut(&self, state: &AircraftState) -> Option<Shortcut> {
         let front = self.flight.horizon.front()?;
         let path = self.setup.program.path(&front.place.leg)?;
-        let section = path.emergency_plan?;
+        let leg = (path.stage, path.indices.first().copied().unwrap_or(0));
+        self.shortcut_from(state, path.emergency_plan?, leg, front.waypoint.on_arc)
+    }
+
+    /// The same from a leg of an emergency plan on (indices of its stage and, in that, of the leg): the first part from which the height
+    /// suffices, else the landing. `circles`: around a place on the final approach.
+    fn shortcut_from(
+        &self,
+        state: &AircraftState,
+        section: usize,
+        leg: (usize, usize),
+        circles: bool,
+    ) -> Option<Shortcut> {
         let plan = self.setup.program.flown().emergency_plans.get(section)?;
         let runway = self.setup.program.plan.runway(&plan.runway)?;
-        let halts = halts(&self.world(), section, (path.stage, path.indices.first().copied().unwrap_or(0)));
+        let halts = halts(&self.world(), section, leg);
         let last = halts.len().checked_sub(1)?;
         let spare_m = |from: usize| {
             // whoever leaves the circles of a landing need not go back to where its final begins
@@ -79,19 +106,19 @@ impl Executor {
             Some((arrival, arrival.map_or(f64::NEG_INFINITY, |a| a.spare_m())))
         };
         // on the final approach nothing can be left out but the circles before it
-        if spare_m(0)?.1 >= 0.0 || (last == 0 && !front.waypoint.on_arc) {
+        if spare_m(0)?.1 >= 0.0 || (last == 0 && !circles) {
             return None;
         }
         let enough = (1..last).find(|from| spare_m(*from).is_some_and(|(_, spare_m)| spare_m >= 0.0));
         let chosen = halts.get(enough.unwrap_or(last))?;
-        let arrival = match (enough, chosen.place) {
-            (Some(from), _) => spare_m(from)?.0,
-            (None, Some(begins)) => {
-                Arrival::at_landing(&self.world(), state.wind(), glide_from(state), begins, runway).1
+        let (arrival, from_other_end) = match enough {
+            Some(from) => (spare_m(from)?.0, false),
+            None => {
+                let lands = GlideIn::of(&self.world(), state.wind(), glide_from(state), runway);
+                (lands.arrival, lands.from_other_end)
             }
-            (None, None) => None,
         };
-        Some(Shortcut { to: chosen.id.clone(), arrival })
+        Some(Shortcut { to: chosen.id.clone(), arrival, from_other_end })
     }
 
     /// The glide from here by way of what is ahead.
@@ -100,12 +127,21 @@ impl Executor {
         Arrival::of(&self.world(), state.wind(), glide_from(state), places, runway)
     }
 
-    fn take(&mut self, Shortcut { to, arrival }: Shortcut, out: &mut Vec<Output>) {
+    fn take(&mut self, shortcut: Shortcut, out: &mut Vec<Output>) {
         let section = self.flight.horizon.tail().and_then(|tail| tail.section);
-        let Ok(cursor) = self.cursor_at(&to, section) else { return };
+        let Ok(cursor) = self.cursor_at(&shortcut.to, section) else { return };
+        out.push(shortcut.told());
+        self.jump(cursor, out);
+    }
+}
+
+impl Shortcut {
+    fn told(&self) -> Output {
+        let Self { to, arrival, from_other_end } = self;
         let outcome = match arrival {
-            Some(Arrival { height_m, .. }) if height_m >= 0.0 => {
-                format!("there it is {height_m:.0} m above the threshold")
+            Some(Arrival { height_m, .. }) if *height_m >= 0.0 => {
+                let end = if *from_other_end { "at the runway's other end" } else { "there" };
+                format!("{end} it is {height_m:.0} m above the threshold")
             }
             Some(Arrival { height_m, .. }) => {
                 format!("even so {:.0} m are lacking: be ready to land elsewhere", -height_m)
@@ -115,12 +151,7 @@ impl Executor {
         let reason = format!(
             "the engine is out, and the height does not suffice for all that is ahead: straight to `{to}`, {outcome}"
         );
-        out.push(Output::Event(Event::ProblemAhead {
-            leg: Some(to),
-            code: "glide-shortened".into(),
-            reason,
-        }));
-        self.jump(cursor, out);
+        Output::Event(Event::ProblemAhead { leg: Some(to.clone()), code: "glide-shortened".into(), reason })
     }
 }
 

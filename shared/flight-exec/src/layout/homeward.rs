@@ -3,13 +3,15 @@
 use super::path::distance_m;
 use super::world::World;
 use aircraft::Wind;
-use aircraft::glide::{GlideStart, glide, reserve_m};
+use aircraft::glide::{GlideStart, glide, may_land_unnamed, reserve_m};
 use flight_plan::{Id, Runway, Stage, StageKind};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 
 /// Off the runway's heading by more than this a path is not on the final approach, which then gets a point to line up at first, degrees.
 pub const ALIGNED_DEG: f64 = 30.0;
+/// Final approaches that a glide may fly, as shares of the whole one.
+const FINALS: [f64; 3] = [1.0, 0.5, 0.3];
 /// Most legs on the way home that are looked at.
 const MAX_HALTS: usize = 200;
 
@@ -85,21 +87,6 @@ impl Arrival {
         Some(-Self::of(world, wind, from, [].into_iter(), runway)?.spare_m())
     }
 
-    /// Of one that goes to a landing at once, and whether it does so by the place where the final approach begins. That is left out if the
-    /// height does not suffice for the way by it; and nobody goes back to it from nearer on the runway's line.
-    pub fn at_landing(
-        world: &World,
-        wind: Wind,
-        from: GlideStart,
-        begins: LatLon,
-        runway: &Runway,
-    ) -> (bool, Option<Self>) {
-        let has_passed = is_on_final(from.position, begins, runway);
-        let by_it = Self::of(world, wind, from, [begins].into_iter(), runway);
-        let by_it = by_it.filter(|arrival| !has_passed && arrival.height_m >= 0.0);
-        (by_it.is_some(), by_it.or_else(|| Self::of(world, wind, from, [].into_iter(), runway)))
-    }
-
     /// `None`: the wind does not let it get there.
     pub fn of(
         world: &World,
@@ -114,5 +101,63 @@ impl Arrival {
             height_m: end.altitude_amsl_m - runway.elevation_amsl_m,
             taken_m: from.altitude_amsl_m - end.altitude_amsl_m,
         })
+    }
+}
+
+/// How a glide that goes to a landing at once flies in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GlideIn {
+    /// The runway, as it is landed on.
+    pub runway: Runway,
+    /// That is from its other end.
+    pub from_other_end: bool,
+    /// By a place so far before the threshold, in line with the runway, metres. `None`: straight to the threshold.
+    pub final_m: Option<f64>,
+    /// `None`: the wind does not let it get there.
+    pub arrival: Option<Arrival>,
+}
+
+impl GlideIn {
+    /// By the longest final approach that the height suffices for, to the end that the plan names before the other one. Nobody goes back to
+    /// where it begins from nearer on the runway's line. If it suffices for none: straight to the end that is named, if it gets there, else
+    /// to the one that is lacking least.
+    pub fn of(world: &World, wind: Wind, from: GlideStart, runway: &Runway) -> Self {
+        let whole_m = world.config.final_approach_m;
+        let by = |end: &(Runway, bool), final_m| Self::by(world, wind, from, end, final_m);
+        let end = (runway.clone(), false);
+        let named = by(&end, None);
+        if named.gets_there() && is_on_final(from.position, final_begins_at(runway, whole_m), runway) {
+            return named;
+        }
+        let other = (runway.from_other_end(), true);
+        let other = Some(other).filter(|(other, _)| may_land_unnamed(world.profile, wind, other.heading_deg));
+        let ends = [Some(&end), other.as_ref()].into_iter().flatten();
+        let mut finals = ends.flat_map(|end| FINALS.map(|share| by(end, Some(share * whole_m))));
+        if let Some(aligned) = finals.find(Self::gets_there) {
+            return aligned;
+        }
+        let lacks_less = |other: &Self| !named.gets_there() && other.height_m() > named.height_m();
+        other.as_ref().map(|end| by(end, None)).filter(lacks_less).unwrap_or(named)
+    }
+
+    fn by(
+        world: &World,
+        wind: Wind,
+        from: GlideStart,
+        (runway, from_other_end): &(Runway, bool),
+        final_m: Option<f64>,
+    ) -> Self {
+        let begins = final_m.map(|metres| final_begins_at(runway, metres));
+        let arrival = Arrival::of(world, wind, from, begins.into_iter(), runway);
+        Self { runway: runway.clone(), from_other_end: *from_other_end, final_m, arrival }
+    }
+
+    /// Above the threshold, metres.
+    fn height_m(&self) -> f64 {
+        self.arrival.map_or(f64::NEG_INFINITY, |arrival| arrival.height_m)
+    }
+
+    fn gets_there(&self) -> bool {
+        self.height_m() >= 0.0
     }
 }

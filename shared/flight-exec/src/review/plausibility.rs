@@ -1,7 +1,7 @@
 //! Is a waypoint fit to be flown after another? What the gateway asks of every waypoint it takes, and the review of every
 //! waypoint a plan makes. One rule, one function.
 
-use crate::api::{Action, FARTHEST_M, Waypoint};
+use crate::api::{Action, FARTHEST_M, TERRAIN_MARGIN_M, Waypoint};
 use aircraft::Profile;
 use flight_plan::LOWEST_AMSL_M;
 use geometry::LatLon;
@@ -10,8 +10,6 @@ use terrain::Terrain;
 
 /// Highest and lowest altitudes that make sense at all, metres AMSL.
 pub const ALTITUDES_M: std::ops::RangeInclusive<f64> = LOWEST_AMSL_M..=12_000.0;
-/// Height that an en-route waypoint keeps above the ground, metres.
-pub const TERRAIN_MARGIN_M: f64 = 20.0;
 /// Share by which a gradient may exceed the aircraft's: plans are checked to their own margins.
 pub const GRADIENT_SLACK: f64 = 1.5;
 /// Loiters smaller than this can't be flown by anything, metres.
@@ -41,6 +39,8 @@ pub struct Context<'a> {
     pub terrain: Option<&'a dyn Terrain>,
     /// Wind speed, m/s.
     pub wind_mps: f64,
+    /// Its engine is out: it sinks as it does, however steep the way is that it is told.
+    pub glides: bool,
 }
 
 type Rule = fn(&Context, Option<&Waypoint>, &Waypoint) -> Option<Fault>;
@@ -128,7 +128,7 @@ fn distance(_: &Context, p: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
 
 /// Climb or descent along the segment against what the aircraft does at that ground speed.
 fn gradient(c: &Context, p: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
-    let previous = p?;
+    let previous = p.filter(|_| !c.glides)?;
     if matches!(previous.action, Action::TakeOff { .. }) || matches!(w.action, Action::TakeOff { .. }) {
         return None;
     }
@@ -210,10 +210,14 @@ mod tests {
         }
     }
 
+    fn context(profile: &Profile, glides: bool) -> Context<'_> {
+        Context { profile, terrain: Some(&terrain::Flat(GROUND_M)), wind_mps: 5.0, glides }
+    }
+
     /// The codes for the last of up to three waypoints.
     fn codes(path: &[Waypoint]) -> Vec<&'static str> {
         let profile = Profile::default();
-        let context = Context { profile: &profile, terrain: Some(&terrain::Flat(GROUND_M)), wind_mps: 5.0 };
+        let context = context(&profile, false);
         let mut back = path.iter().rev();
         let Some(waypoint) = back.next() else { return vec![] };
         let (previous, before) = (back.next(), back.next().map(|w| w.position));
@@ -260,11 +264,26 @@ mod tests {
         }
     }
 
+    /// Refused, it would be flown by nobody, and the aircraft come down no higher.
+    #[test]
+    fn of_a_glide_the_gradient_is_not_judged_but_the_ground_is() {
+        let profile = Profile::default();
+        let [here, high, low] = [600.0, 900.0, 310.0].map(|altitude_amsl_m| Waypoint {
+            altitude_amsl_m,
+            ..waypoint(0.0, if altitude_amsl_m == 600.0 { 0.0 } else { 500.0 })
+        });
+        let codes = |glides, last| -> Vec<_> {
+            faults(&context(&profile, glides), None, Some(&here), last).into_iter().map(|f| f.code).collect()
+        };
+        assert_eq!((codes(false, &high), codes(true, &high)), (vec!["gradient"], vec![]));
+        assert_eq!(codes(true, &low), ["below-terrain"]);
+    }
+
     #[test]
     fn a_waypoint_too_low_says_by_how_much_its_leg_has_to_be_raised() {
         let low = Waypoint { altitude_amsl_m: GROUND_M + TERRAIN_MARGIN_M - 12.4, ..waypoint(0.0, 0.0) };
         let profile = Profile::default();
-        let context = Context { profile: &profile, terrain: Some(&terrain::Flat(GROUND_M)), wind_mps: 5.0 };
+        let context = context(&profile, false);
         let faults = faults(&context, None, None, &low);
         let below = faults.iter().find(|fault| fault.code == "below-terrain").unwrap();
         assert!(

@@ -19,6 +19,7 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
         profile: view.profile,
         terrain: Some(view.terrain),
         wind_mps: view.conditions.wind.speed_mps(),
+        glides: false,
     };
     for flown in view.flights.all() {
         let first = flown.waypoints.first().map(|first| &first.waypoint);

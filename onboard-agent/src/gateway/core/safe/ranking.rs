@@ -10,6 +10,7 @@ use super::ground::along;
 use super::powered::powered;
 use super::way::gates;
 use super::{Approach, Landing, Situation, is_usable};
+use aircraft::glide::may_land_unnamed;
 use geometry::LatLon;
 use usal::contract::{SafeParameters, SafeRunway};
 
@@ -23,8 +24,6 @@ const TAILWIND_PENALTY_S: f64 = 5.0;
 const SHORT_PENALTY_S: f64 = 60.0;
 /// So much does the end of a runway cost that nobody has named, seconds of flight.
 const REVERSED_PENALTY_S: f64 = 40.0;
-/// With more tailwind than this share of its airspeed a glide rolls past the end of a runway that it was not laid out for.
-const GLIDE_TAILWIND: f64 = 0.1;
 /// The ground before the other end of a runway stays below this share of the final approach's height, and a few metres
 /// that elevation models are wrong by.
 const CLEAR_SHARE: f64 = 0.5;
@@ -77,8 +76,8 @@ fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Optio
         ..runway.clone()
     };
     if s.glides {
-        let most_mps = GLIDE_TAILWIND * s.profile.cruise_airspeed_mps;
-        return (tailwind_mps(s, reversed.heading_deg) <= most_mps).then_some((reversed, true));
+        let may_land = may_land_unnamed(s.profile, s.wind(), reversed.heading_deg);
+        return may_land.then_some((reversed, true));
     }
     let [initial, last] = gates(&reversed, Approach::Whole, safe);
     let terrain = s.terrain?;

@@ -1,7 +1,7 @@
 //! Giving out points, with their altitudes; circling at the end of a leg.
 
 use super::{Cursor, CursorLog, CursorPhase, Emission, Step};
-use crate::api::Action;
+use crate::api::{Action, TERRAIN_MARGIN_M};
 use crate::layout::expand::Point;
 use crate::layout::homeward::{Arrival, halts};
 use crate::layout::path::{PathEnd, PathState, distance_and_course};
@@ -91,6 +91,13 @@ impl Cursor {
         needed_m().unwrap_or(f64::NEG_INFINITY)
     }
 
+    /// With the engine out: the altitude that a waypoint is told at least, metres AMSL. One that is out of reach leads over the ground all
+    /// the same: told to fly higher than it can, it sinks no faster, and no gateway takes a way into the ground.
+    fn least_in_a_glide(point: Point, world: &World) -> f64 {
+        let ground_m = world.glides_in.and_then(|_| world.terrain.elevation_m(point.position));
+        ground_m.map_or(f64::NEG_INFINITY, |metres| metres + TERRAIN_MARGIN_M)
+    }
+
     /// The waypoint at a point, `altitude_amsl_m` high, and the path up to it.
     pub(super) fn emit(&mut self, point: Point, altitude_amsl_m: f64, world: &World) -> Emission {
         let level = point.level.unwrap_or(self.level);
@@ -112,7 +119,7 @@ impl Cursor {
                 let (down_m, up_m) = (descent_m + CLIMB_LEAD_M, climb_m + CLIMB_LEAD_M);
                 let commanded_m =
                     ahead_m.max(from.commanded_amsl_m - down_m).min(from.commanded_amsl_m + up_m);
-                (commanded_m, towards(from.predicted_amsl_m, 0.0))
+                (commanded_m.max(Self::least_in_a_glide(point, world)), towards(from.predicted_amsl_m, 0.0))
             }
         };
         self.path = PathState {
