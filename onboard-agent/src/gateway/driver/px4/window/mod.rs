@@ -225,7 +225,7 @@ impl Feeding for Window {
             return Target::None;
         }
         let Some(active) = self.chain.active() else { return Target::End };
-        let item = ring::item_of(&active.waypoint);
+        let item = self.item_of(self.chain.first(), &active.waypoint);
         if self.steered_to().is_some_and(|steered| matches(&steered, &item)) {
             Target::Waypoint(active.serial)
         } else {
@@ -314,7 +314,7 @@ impl Window {
     fn wanted(&self, position: u64) -> Option<Item> {
         match self.chain.at(position) {
             Some(waypoint) if position < self.end => {
-                let item = ring::item_of(waypoint);
+                let item = self.item_of(position, waypoint);
                 let is_left = item.kind == ItemKind::Land && !self.ends_at(position);
                 Some(if is_left { self.instead_of_landing(position, item) } else { item })
             }
@@ -374,7 +374,9 @@ impl Window {
         let first = self.chain.first();
         let (passed, wanted) = (self.chain.before(first), |p| self.wanted(p));
         let items = match self.landing() {
-            Some(landing) => ring::list_that_lands((first, landing), passed, wanted)?,
+            Some(landing) => {
+                ring::list_that_lands((first, landing), self.comes_from(landing).or(passed), wanted)?
+            }
             None => ring::list((first, self.end), self.edition, passed, wanted)?,
         };
         // of a list that nobody knows, nothing can be overrun
