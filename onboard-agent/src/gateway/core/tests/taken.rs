@@ -52,6 +52,23 @@ fn a_list_that_is_not_accepted_is_the_reason_if_it_is_told_soon() {
     assert!(!refused(&core), "it is had back");
 }
 
+/// A list that can't be flown was followed by one that can.
+#[test]
+fn a_hold_that_it_says_comes_of_what_was_fed_is_nobodys_takeover_for_a_moment() {
+    use crate::gateway::order::Aim;
+    for (words, is_takeover) in [("No mission to fly: holding", false), ("Battery failsafe", true)] {
+        let mut core = Core::in_nav();
+        core.gateway.control.fed_at = Some(core.now);
+        core.step(Input::Report(Report::Says(words.into())));
+        core.out.clear();
+        core.run(1, &[beat(Mode::Hold, true)]);
+        assert_eq!(core.gateway.state() == GatewayState::Manual, is_takeover, "{words}");
+        assert_eq!(core.was_ordered(&Order::Steer(Aim::Waypoints)), !is_takeover, "{words}");
+        core.run(4, &[beat(Mode::Hold, true)]);
+        assert_eq!(core.gateway.state(), GatewayState::Manual, "{words}: it goes on holding");
+    }
+}
+
 #[test]
 fn a_list_that_was_not_to_be_flown_is_no_reason() {
     let mut core = Core::in_nav();
