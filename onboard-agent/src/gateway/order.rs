@@ -169,6 +169,8 @@ pub enum Report {
     Stopped(Vec<&'static str>),
     /// What it warned of lately, in its own words.
     Says(String),
+    /// It warns that its engine has failed.
+    EngineFails,
     /// How the links to it do; no sign of life.
     Links(AutopilotLinks),
     /// The autopilot started anew: nothing that was verified still holds.

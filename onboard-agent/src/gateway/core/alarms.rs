@@ -26,6 +26,12 @@ const STOPPED_RPM: f64 = 300.0;
 const THROTTLE: f64 = 0.1;
 /// Throttle at which an aircraft that sinks does all it can, 0..1.
 const FULL_THROTTLE: f64 = 0.9;
+/// So long does an engine seem to have failed whose autopilot says so.
+const TOLD: Duration = Duration::from_millis(500);
+/// It slows down by more than this, m/s².
+const SLOWING_MPS2: f64 = -0.2;
+/// It sinks faster than this, m/s.
+const SINKING_MPS: f64 = 0.5;
 /// The autopilot did not follow an order for so long.
 const DISOBEYS: Duration = Duration::from_secs(4);
 
@@ -142,6 +148,7 @@ impl Alarms {
         for watch in WATCHES {
             let wrong = self.is_wrong(watch, now, t, inputs);
             let patience = match wrong {
+                true if watch == Watch::EngineSuspected && t.warns_of_engine(now) => TOLD,
                 true => watch.patience(),
                 false if is_up => watch.clears_after(),
                 false => Duration::ZERO,
@@ -198,7 +205,8 @@ impl Alarms {
         }
     }
 
-    /// It sinks or slows down at full throttle and does not tell of its engine. Once that was seen, until it has climbed as nothing does
+    /// It sinks or slows down at full throttle and does not tell how its engine turns; of one whose autopilot warned of it, one of these
+    /// is enough. Once that was seen, until it has climbed as nothing does
     /// without an engine, or tells that it turns: on the way down nothing else shows it. An autopilot that pulls up to keep the altitude
     /// gives away its speed first.
     fn is_engine_doubtful(&self, now: Time, t: &Telemetry, inputs: AlarmInputs, raised: bool) -> bool {
@@ -207,6 +215,7 @@ impl Alarms {
             // that it stands is an alarm of its own
             Some(engine) => raised && engine.rpm < STOPPED_RPM && !self.raised.contains(&Watch::EngineOut),
             None if raised => inputs.slow || !self.climb.shows_an_engine(now, t),
+            None if t.warns_of_engine(now) => t.throttle.is_some_and(full) || loses_energy(now, t),
             None => (inputs.sinks == Some(true) || inputs.slow) && t.throttle.is_some_and(full),
         }
     }
@@ -246,6 +255,11 @@ impl Alarms {
 /// the height that is missing. An engine that idles on a descent is well.
 fn has_stopped(engine: usal::contract::Engine, needed: bool) -> bool {
     engine.rpm < STOPPED_RPM && (needed || engine.throttle > THROTTLE)
+}
+
+/// It sinks, or slows down.
+fn loses_energy(now: Time, t: &Telemetry) -> bool {
+    t.fix_now(now).is_some_and(|fix| fix.down_mps > SINKING_MPS) || t.airspeed.gains_mps2() < SLOWING_MPS2
 }
 
 fn is_stale(now: Time, t: &Telemetry) -> bool {

@@ -25,6 +25,9 @@ pub const OUT_OF_DATE: Duration = Duration::from_secs(10);
 /// What it warned of so lately may be why it does what it does: its heartbeat, which shows that, comes once a second.
 const EXPLAINS: Duration = Duration::from_secs(5);
 
+/// An engine of which it warned shows by then whether it drives.
+const SHOWS_FAILURE: Duration = Duration::from_secs(30);
+
 /// An autopilot that has not said for so long whether it stands on the ground will not say it.
 const SAYS_WHERE: Duration = Duration::from_secs(5);
 
@@ -69,6 +72,8 @@ pub struct Telemetry {
     pub list_unfit: bool,
     /// What it warned of, in its own words.
     pub said: Timed<String>,
+    /// When it warned last that its engine has failed.
+    pub engine_fails: Option<Time>,
     /// What it no longer says.
     pub stopped: Vec<&'static str>,
     /// How the links to it do.
@@ -117,6 +122,7 @@ impl Default for Telemetry {
             on_ground: None,
             list_unfit: false,
             said: None,
+            engine_fails: None,
             stopped: vec![],
             links: None,
         }
@@ -158,6 +164,7 @@ impl Telemetry {
             Report::OnGround(v) => self.on_ground = Some(*v),
             Report::ListUnfit(v) => self.list_unfit = *v,
             Report::Says(words) => self.said = Some((now, words.clone())),
+            Report::EngineFails => self.engine_fails = Some(now),
             Report::Stopped(what) => self.stopped.clone_from(what),
             Report::Links(v) => self.links = Some((now, v.clone())),
             _ => {}
@@ -178,6 +185,11 @@ impl Telemetry {
     /// What it says of its engine, if it still does.
     pub fn engine(&self, now: Time) -> Option<Engine> {
         self.engine.filter(|(at, _)| now.saturating_sub(*at) < OUT_OF_DATE).map(|(_, engine)| engine)
+    }
+
+    /// It warned of its engine so lately that what it shows now may come of that.
+    pub fn warns_of_engine(&self, now: Time) -> bool {
+        self.engine_fails.is_some_and(|at| now.saturating_sub(at) < SHOWS_FAILURE)
     }
 
     /// What it warned of just now, to stand behind what happened: ` (it says: …)`.

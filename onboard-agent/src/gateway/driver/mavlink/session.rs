@@ -279,8 +279,11 @@ impl Session {
             }
             MavMessage::STATUSTEXT(text) => {
                 self.streams.said(text);
-                let said = self.words.hear(now, text).then(|| self.words.lately(now)).flatten();
-                events.extend(said.map(Report::Says).map(SessionEvent::Telemetry));
+                if self.words.hear(now, text) {
+                    let fails = self.words.tell_of_engine().then_some(Report::EngineFails);
+                    let said = self.words.lately(now).map(Report::Says);
+                    events.extend(said.into_iter().chain(fails).map(SessionEvent::Telemetry));
+                }
             }
             MavMessage::HIGH_LATENCY2(summary) => {
                 self.on_summary(now, summary, events);

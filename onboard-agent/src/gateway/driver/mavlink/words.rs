@@ -55,6 +55,13 @@ impl Words {
         true
     }
 
+    /// The last of them tells that its engine gives no power any more.
+    pub fn tell_of_engine(&self) -> bool {
+        let text = self.texts.back().map(|text| text.text.to_lowercase()).unwrap_or_default();
+        let has = |words: &[&str]| words.iter().any(|word| text.contains(word));
+        has(&["engine", "motor"]) && has(&["fail", "stop", "flameout"])
+    }
+
     /// What it said lately, each once.
     pub fn lately(&self, now: Time) -> Option<String> {
         let mut said: Vec<&str> = vec![];
@@ -94,6 +101,20 @@ mod tests {
         assert!(said.contains("Arming denied: no GPS") && !said.contains("ready"), "{said}");
         assert!(!said.contains("long ago"), "{said}");
         assert_eq!(words.lately(at(90)), None);
+    }
+
+    #[test]
+    fn a_warning_that_its_engine_has_failed_is_known_by_its_words() {
+        let tells = |said: &str| {
+            let mut words = Words::default();
+            words.hear(Time::ZERO, &text(said, 0, 0)) && words.tell_of_engine()
+        };
+        for said in ["Engine failure", "Uncommanded engine stop", "Motor failure detected"] {
+            assert!(tells(said), "{said}");
+        }
+        for said in ["Battery failsafe", "Engine temperature high", "GPS: fix lost"] {
+            assert!(!tells(said), "{said}");
+        }
     }
 
     #[test]

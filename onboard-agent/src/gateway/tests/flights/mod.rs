@@ -9,7 +9,9 @@ use autopilot_link::Outbox;
 use geometry::LatLon;
 use sim::Personality;
 use sim::core::{Peer, Simulator};
+use std::sync::Arc;
 use std::time::Duration;
+use terrain::Terrain;
 use usal::Instance;
 use usal::contract::*;
 
@@ -62,6 +64,12 @@ pub fn settings() -> Settings {
 /// A station that starts, in lockstep with the simulator.
 pub fn station(restored: Option<Snapshot>) -> Station {
     Station::new(settings(), restored, (driver::DEFAULT.make)(&Setup { lockstep: true, ..Setup::default() }))
+}
+
+/// The same, of a gateway that knows the ground.
+pub fn station_over(terrain: Arc<dyn Terrain>) -> Station {
+    let settings = Settings { terrain: Some(terrain), ..settings() };
+    Station::new(settings, None, (driver::DEFAULT.make)(&Setup { lockstep: true, ..Setup::default() }))
 }
 
 impl Flight {
@@ -376,6 +384,7 @@ pub fn landing() -> Vec<Waypoint> {
     ]
 }
 
+mod alternate;
 mod by_hand;
 mod climb_out;
 mod corners;

@@ -65,11 +65,22 @@ pub struct Whole {
 impl Whole {
     /// On the ground, joined.
     pub fn new(personality: Personality, seed: u64, faults: &[&str]) -> Self {
-        let terrain = Arc::new(terrain::Flat(GROUND_M));
+        Self::over(personality, Arc::new(terrain::Flat(GROUND_M)), seed, faults)
+    }
+
+    /// The same, and both know this ground.
+    pub fn over(
+        personality: Personality,
+        terrain: Arc<dyn terrain::Terrain>,
+        seed: u64,
+        faults: &[&str],
+    ) -> Self {
+        let mut flight = Flight::on_ground(personality, seed, faults);
+        flight.station = station_over(terrain.clone());
         let config = Config { terrain, simulated: true, ..Config::new("test", "") };
         let executor = Executor::new(config.executor.clone(), config.terrain.clone(), config.profile.clone());
         let mut whole = Self {
-            flight: Flight::on_ground(personality, seed, faults),
+            flight,
             manager: Manager::new(executor, Time::ZERO),
             frozen: false,
             config,
@@ -84,12 +95,17 @@ impl Whole {
     /// In the air on its way along the second leg of such a plan.
     pub fn flying(personality: Personality, seed: u64, faults: &[&str], plan: &str) -> Self {
         let mut whole = Self::new(personality, seed, faults);
-        whole.run_until(20.0, "a position", |w| w.flight.station.gateway().telemetry().gps.is_some());
-        let commit = whole.propose(plan);
-        whole.command(commit).unwrap();
-        whole.command(Command::Start).unwrap();
+        whole.start(plan);
         whole.run_until(200.0, "out", |w| w.entered("out"));
         whole
+    }
+
+    /// Off along such a plan.
+    pub fn start(&mut self, plan: &str) {
+        self.run_until(20.0, "a position", |w| w.flight.station.gateway().telemetry().gps.is_some());
+        let commit = self.propose(plan);
+        self.command(commit).unwrap();
+        self.command(Command::Start).unwrap();
     }
 
     /// Puts a plan forward; the command that makes it the active one.
@@ -142,6 +158,9 @@ impl Whole {
         manager.navigation(now, &gateway.navigation(), &mut effects);
         if let Some((_, position)) = gateway.telemetry().position() {
             manager.aircraft().position(position);
+        }
+        if let Some((_, air)) = gateway.telemetry().air {
+            manager.aircraft().air(air);
         }
         manager.tick(now, &mut effects);
         self.perform(effects);
