@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let (text, colour) = match flown {
             Some(flown) => (RichText::new(sentence(scene, flown)).strong(), on(fill)),
             None => match led_otherwise(scene) {
-                Some(how) => (RichText::new(how), p.caution),
+                Some(how) => (RichText::new(format!("⚠ {how}")), p.caution),
                 None => (RichText::new(as_planned(scene)), p.weak),
             },
         };
@@ -44,7 +44,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     });
 }
 
-/// `⚠ Manual: the pilot switched to FBWA`: the plan does not lead the aircraft, though it is in force.
+/// `not in command: the pilot switched to FBWA`: the plan does not lead the aircraft, though it is in force.
 fn led_otherwise(scene: &Scene<'_>) -> Option<String> {
     use GatewayState::{Directed, Hold, Manual, SafeApproach, SafeHold, SafeLand, SafeReturn};
     let gateway = &scene.vehicle.gateway.as_ref()?.value;
@@ -53,7 +53,13 @@ fn led_otherwise(scene: &Scene<'_>) -> Option<String> {
         Hold => scene.vehicle.phase() != Phase::Holding,
         _ => false,
     };
-    is_led_otherwise.then(|| format!("⚠ {:?}: {}", gateway.state, gateway.cause))
+    let who = match gateway.state {
+        Manual => "not in command",
+        SafeApproach | SafeHold | SafeLand | SafeReturn => "Safe mode",
+        Directed => "directed",
+        _ => "held",
+    };
+    is_led_otherwise.then(|| format!("{who}: {}", gateway.cause))
 }
 
 /// `Flying Departure ▸ Climb in the hold · in an emergency: Return home`.
@@ -76,7 +82,8 @@ fn on(fill: Color32) -> Color32 {
     if fill.intensity() > 0.5 { Color32::BLACK } else { Color32::WHITE }
 }
 
-/// `EMERGENCY: flying Return home, lands in 6:20, to runway 27, because the engine failed`; once it is down, where it lies. In a
+/// `EMERGENCY: flying Return home, lands in 6:20, to runway 27, because the link was lost`; while something else than that plan leads the
+/// aircraft, what does; once it is down, where it lies. In a
 /// narrow window the end is cut.
 fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     let plan = scene.vehicle.aboard.as_ref().and_then(|a| plan_named(&a.plan, flown));
@@ -86,8 +93,13 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     if has_come_down(scene) {
         return format!("⛔ EMERGENCY: {name}{cause}, ended on the ground{}", beside(scene, plan));
     }
+    if let Some(how) = led_otherwise(scene) {
+        return format!("⛔ EMERGENCY: {how}{cause}");
+    }
     let runway = plan.map_or_else(String::new, |plan| format!(", to runway {}", plan.runway));
-    let clock_s = scene.vehicle.clock_s(scene.now_s);
+    // the way ahead is foreseen with an engine
+    let clock_s =
+        scene.vehicle.clock_s(scene.now_s).filter(|_| raised.is_none_or(|r| r.cause != Cause::Engine));
     let lands = clock_s.and_then(|aircraft_s| scene.vehicle.outlook.lands_in_s(aircraft_s));
     let lands = lands.map_or_else(String::new, |s| format!(", lands in {}", units::duration(s)));
     format!("⛔ EMERGENCY: flying {name}{lands}{runway}{cause}")

@@ -2,7 +2,7 @@
 
 use super::considering::foresight;
 use super::flying::{flying, flying_its_plan};
-use super::vehicle::{place, position, status};
+use super::vehicle::{gateway_status, place, position, status};
 use super::{SQUARE, Window};
 use egui_kittest::kittest::Queryable;
 use flight_exec::{Branching, Command, Event, Foresight, Phase};
@@ -11,7 +11,7 @@ use gcs_app::link::{Call, LinkEvent, Numbered, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Ticket};
 use geometry::LatLon;
 use std::sync::Arc;
-use usal::contract::{GatewayState, Position, Stamped};
+use usal::contract::{GatewayState, GatewayStatus, Position, Stamped};
 
 /// Flying the emergency plan of the square; when it lands is not known.
 pub fn in_emergency() -> Window {
@@ -23,6 +23,10 @@ pub fn in_emergency() -> Window {
 
 /// It was raised on side3 because of the engine; the ticket of the question when it lands.
 pub fn raised() -> (Window, Ticket) {
+    raised_for(Cause::Engine)
+}
+
+fn raised_for(cause: Cause) -> (Window, Ticket) {
     let (mut window, mut value) = flying();
     let plan = Arc::new(flight_plan::read(SQUARE.as_bytes()).plan);
     let hash = Arc::<str>::from("the plan that is aboard");
@@ -39,11 +43,7 @@ pub fn raised() -> (Window, Ticket) {
     let ticket_of = |wanted: Call| asked.iter().find(|(_, call)| *call == wanted).unwrap().0;
     let (ticket, landing) = (ticket_of(Call::PlanAboard), ticket_of(Call::Foresee(None)));
     window.answer(ticket, Ok(Reply::Plan(Some(ActivePlan { hash, plan }))));
-    let started = Event::EmergencyStarted {
-        cause: Cause::Engine,
-        plan: "return".into(),
-        from_leg: Some("side3".into()),
-    };
+    let started = Event::EmergencyStarted { cause, plan: "return".into(), from_leg: Some("side3".into()) };
     let event = Stamped { time_s: 3.0, validity_s: f64::MAX, value: started };
     window.send(LinkEvent::Telemetry(Telemetry::PlanEvent(Numbered { sequence: 1, event })));
     (window, landing)
@@ -51,8 +51,8 @@ pub fn raised() -> (Window, Ticket) {
 
 #[test]
 fn banner_says_which_plan_why_where_to_and_the_way_back() {
-    let (mut window, ticket) = raised();
-    for text in ["EMERGENCY: flying", "because the engine failed", "to runway R05"] {
+    let (mut window, ticket) = raised_for(Cause::Link);
+    for text in ["EMERGENCY: flying", "because the link was lost", "to runway R05"] {
         assert!(window.shows(text), "{text}");
     }
     assert!(window.shows("Arrival ▸ r1"), "the stage has no name, but a kind");
@@ -71,6 +71,22 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     let without_landing = Foresight { left_out: vec!["r-land".into()], ..foresight() };
     window.answer(ticket, Ok(Reply::Foresight(Box::new(without_landing))));
     assert!(window.shows("Left out: Landing"), "not by its identifier");
+}
+
+/// It is not that plan that is flown then, nor with an engine: a time would be of another flight.
+#[test]
+fn banner_says_who_leads_the_aircraft_and_no_time_of_another_flight() {
+    let (mut window, ticket) = raised();
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    assert!(window.shows("EMERGENCY: flying return") && !window.shows("lands in"));
+    for (state, cause, said) in [
+        (GatewayState::SafeReturn, "gliding to runway R05", "EMERGENCY: Safe mode: gliding to runway R05"),
+        (GatewayState::Manual, "the pilot has it", "EMERGENCY: not in command: the pilot has it"),
+    ] {
+        let value = GatewayStatus { cause: cause.into(), ..gateway_status(state) };
+        window.receive(Telemetry::Gateway(Stamped { time_s: 4.0, validity_s: 2.0, value }));
+        assert!(window.shows(said) && !window.shows("EMERGENCY: flying"), "{said}");
+    }
 }
 
 /// Who is about to press something presses that: the banner has its room before.

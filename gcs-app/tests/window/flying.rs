@@ -465,8 +465,8 @@ fn the_emergency_button_keeps_its_place() {
 fn an_aircraft_that_was_taken_over_says_by_whom_and_offers_to_resume() {
     let p = gcs_app::theme::palette(true);
     for (state, cause, said) in [
-        (GatewayState::Manual, "the pilot switched to FBWA", "⚠ Manual: the pilot switched to FBWA"),
-        (GatewayState::Directed, "a service directs it", "⚠ Directed: a service directs it"),
+        (GatewayState::Manual, "the pilot switched to FBWA", "⚠ not in command: the pilot switched to FBWA"),
+        (GatewayState::Directed, "a service directs it", "⚠ directed: a service directs it"),
     ] {
         let (mut window, _) = flying();
         assert!(!window.shows("▶ Resume") && window.shows("Flying circuit ▸ side2"));
