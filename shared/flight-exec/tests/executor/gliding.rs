@@ -188,7 +188,7 @@ fn nobody_is_told_to_land_elsewhere_who_comes_to_the_runway_straight() {
     let told = left_out(&rig).expect("the hold is left");
     let Event::ProblemAhead { reason, .. } = told else { panic!() };
     assert!(reason.contains("above the threshold"), "{reason}");
-    assert_eq!(rig.buffer.len(), 1, "straight in: {:?}", rig.buffer);
+    assert_eq!(rig.buffer.len(), 2, "by a short final: {:?}", rig.buffer);
 }
 
 /// Abeam of the threshold, so far away and so high, metres, with the landing to come: too low for the way by where the final begins.
@@ -204,9 +204,20 @@ fn abeam_at(away_m: f64, height_m: f64) -> Rig {
 
 #[test]
 fn a_way_down_that_ends_beyond_the_runway_is_told_once_and_with_its_figures() {
-    let heights_m = (15..40).map(|i| 10.0 * f64::from(i));
-    let mut long = heights_m.map(|m| abeam_at(500.0, m)).filter(|rig| !told_long(rig).is_empty());
-    let mut rig = long.next().expect("between the runway and the way round there is too much height");
+    let near = |before_m: f64, height_m: f64| {
+        let mut rig = emergency_at(1500.0, true);
+        rig.position = HOME.destination(270.0, before_m);
+        rig.altitude_amsl_m = Some(GROUND_M + height_m);
+        rig.report();
+        rig.command(Command::GoTo { leg: "b-land".into() }).unwrap();
+        rig.events.clear();
+        rig.report();
+        rig
+    };
+    let places_m = [50.0, 100.0, 200.0, 300.0].into_iter();
+    let mut all = places_m.flat_map(|before_m| (3..40).map(move |i| near(before_m, 10.0 * f64::from(i))));
+    let long = all.find(|rig| !told_long(rig).is_empty());
+    let mut rig = long.expect("between the runway and the way round there is too much height");
     let told = told_long(&rig);
     assert!(told.len() == 1 && told[0].contains("m beyond the runway's end"), "{told:?}");
     rig.report();
