@@ -5,10 +5,10 @@ use crate::gateway::order::Time;
 use mavlink::dialects::ardupilotmega::*;
 use std::time::Duration;
 
-/// Asked for again after this, as long as it is not as it has to be.
-const ASK_AGAIN: Duration = Duration::from_secs(3);
+/// Asked for again after this, as long as it is not as it has to be: a launch waits for the answer, and a bad radio loses a third of them.
+const ASK_AGAIN: Duration = Duration::from_secs(1);
 /// Firmware that has not answered so often has no such parameter.
-const MOST_ASKED: u32 = 5;
+const MOST_ASKED: u32 = 15;
 
 /// What a parameter has to be.
 #[derive(Debug)]
