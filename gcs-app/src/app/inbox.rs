@@ -15,14 +15,15 @@ impl App {
         let now = self.now(ctx);
         let now_s = now.window_s;
         self.drain_links(now);
+        while let Some(event) = self.files.next_event() {
+            self.file_event(event, now_s);
+        }
+        // after the files: what was found out of one plan is never said of another
         self.drain_worker(ctx);
         self.view.behind_since_s = match self.scene(now).is_behind() {
             true => self.view.behind_since_s.or(Some(now_s)),
             false => None,
         };
-        while let Some(event) = self.files.next_event() {
-            self.file_event(event, now_s);
-        }
         self.tend_pushes(now_s);
         self.watch_file();
         self.go_on_after_saving();
