@@ -155,6 +155,38 @@ fn a_gate_from_which_the_landing_flies_back_is_told() {
     assert!(gate(690.0).is_some());
 }
 
+/// From 1200 m before the threshold, at 300 m: the final begins 700 m before it, and 80 m are descended on the way there.
+#[test]
+fn a_landing_that_is_too_steep_is_told_with_how_high_the_leg_before_may_end() {
+    let at = LatLon::new(36.31, -84.19).destination(270.0, 1200.0);
+    let plan = |gate_m: f64| {
+        let legs = format!(
+            r#"<TF id="c" fix="C"/><DF id="far" lat="36.31" lon="-84.25"/><TF id="gate" lat="{}" lon="{}" altitude="{gate_m}" altitudeReference="amsl"/>"#,
+            at.lat_deg, at.lon_deg
+        );
+        document("", &legs)
+    };
+    let steep = |document: &str| found(document).into_iter().find(|p| p.code == "landing-too-steep");
+    for gentle_m in [380.0, 435.0, 440.0] {
+        assert_eq!(steep(&plan(gentle_m)), None, "{gentle_m}");
+    }
+    for (gate_m, is_error) in [(460.0, false), (480.0, false), (535.0, true), (600.0, true)] {
+        let told = steep(&plan(gate_m)).unwrap_or_else(|| panic!("{gate_m}"));
+        assert_eq!((told.is_error(), &told.subject), (is_error, &Some("l".into())), "{told}");
+        let highest = told
+            .message
+            .strip_prefix("end `gate` at ")
+            .and_then(|rest| rest.split_once(" m AMSL at most, or put an `HA`"));
+        let highest_m: f64 = highest.unwrap_or_else(|| panic!("{told}")).0.parse().unwrap();
+        assert!((430.0..=440.0).contains(&highest_m), "{told}");
+        assert!(told.message.ends_with("° steep; autopilots fly at most 5.0°, the aircraft 9.1°"), "{told}");
+        let lowered = told.fix.unwrap().apply(&flight_plan::read(plan(gate_m)).plan).unwrap();
+        assert_eq!(steep(&flight_plan::write(&lowered)), None);
+        let edited = lowered.leg(&"gate".into()).and_then(|leg| leg.altitude().cloned()).unwrap();
+        assert_eq!(edited.metres, flight_plan::Value::Constant(highest_m));
+    }
+}
+
 /// A pass takes some 25 minutes.
 #[test]
 fn a_loop_that_ends_at_a_time_says_how_late_that_may_be() {

@@ -44,6 +44,7 @@ mod prepared;
 mod refused;
 mod remedy;
 mod stay_in;
+mod steep_landings;
 mod terrain_clearance;
 mod tracks;
 mod turns;
@@ -124,7 +125,7 @@ struct View<'a> {
 type Rule = fn(&View, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 20] = [
+const RULES: [Rule; 21] = [
     refused::check,
     unseen::check,
     wind::check,
@@ -142,6 +143,7 @@ const RULES: [Rule; 20] = [
     passes::check,
     gates::check,
     landings::check,
+    steep_landings::check,
     emergency_routes::check,
     powered::check,
     glide::check,

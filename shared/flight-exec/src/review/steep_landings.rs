@@ -1,0 +1,99 @@
+//! `landing-too-steep`: the final approach begins so high that the aircraft, or an autopilot, does not come down to the threshold.
+//!
+//! A landing has no altitude of its own: the leg before it decides. What is too steep for autopilots only is a warning; so is one of an
+//! emergency plan, which is entered from anywhere, and one of a flight under way.
+
+use super::View;
+use super::alternates::flying_s;
+use super::flown::{Flown, Point};
+use super::layout::LaidOut;
+use crate::api::Action;
+use flight_plan::{Edit, Problem};
+
+/// Steepest final approach, degrees: PX4, as it is delivered (`FW_LND_ANG`), flies no mission with a steeper one.
+const STEEPEST_DEG: f64 = 5.0;
+/// So much higher it may begin, metres: the aircraft turns before it reaches a waypoint.
+const TOLERANCE_M: f64 = 10.0;
+
+pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
+    let finals = view.flights.all().filter_map(|flown| Some((flown, Final::of(view, flown)?)));
+    problems.extend(
+        finals.filter(|(_, last)| last.is_too_steep()).map(|(flown, last)| last.problem(view, flown)),
+    );
+}
+
+/// The last part of a landing, as it is flown.
+struct Final<'a> {
+    touch_down: &'a LaidOut,
+    begins: &'a LaidOut,
+    at: &'a Point,
+    /// What is flown before the landing, and where its end was reached.
+    before: Option<(&'a LaidOut, &'a Point)>,
+    length_m: f64,
+    /// Where it begins, above the threshold, metres.
+    height_m: f64,
+    /// What the aircraft descends on it, metres.
+    descent_m: f64,
+}
+
+impl<'a> Final<'a> {
+    fn of(view: &View, flown: &'a Flown) -> Option<Self> {
+        let mut reached = flown.waypoints.iter().zip(&flown.reached).rev();
+        let (touch_down, _) = reached.next().filter(|_| flown.reached.len() == flown.waypoints.len())?;
+        if !matches!(touch_down.waypoint.action, Action::Land { .. }) {
+            return None;
+        }
+        let (begins, at) = reached.next().filter(|(begins, _)| begins.passage == touch_down.passage)?;
+        let threshold = &touch_down.waypoint;
+        let time_s = flying_s(view.profile, at.position, threshold.position, view.conditions.wind)?;
+        Some(Self {
+            touch_down,
+            begins,
+            at,
+            before: reached.find(|(laid_out, _)| laid_out.passage != touch_down.passage),
+            length_m: at.position.distance_m(threshold.position),
+            height_m: at.altitude_amsl_m - threshold.altitude_amsl_m,
+            descent_m: view.profile.max_descent_mps * time_s,
+        })
+    }
+
+    fn is_too_steep(&self) -> bool {
+        let granted_m = self.length_m * STEEPEST_DEG.to_radians().tan();
+        self.height_m > granted_m.min(self.descent_m) + TOLERANCE_M
+    }
+
+    /// The highest that the leg before it may end, whole metres AMSL: from there the final begins on its slope.
+    fn highest_amsl_m(&self, view: &View) -> Option<f64> {
+        let (before, from) = self.before?;
+        let way_s = self.at.time_s - from.time_s;
+        let highest_m = (self.begins.wanted_amsl_m + view.profile.max_descent_mps * way_s).floor();
+        (before.waypoint.action == Action::Fly && highest_m < before.wanted_amsl_m).then_some(highest_m)
+    }
+
+    fn lowered(&self, view: &View, highest_m: f64) -> Option<Edit> {
+        let (before, _) = self.before?;
+        view.relevelled(&before.waypoint.leg, before.wanted_amsl_m, highest_m - before.wanted_amsl_m)
+    }
+
+    fn problem(&self, view: &View, flown: &Flown) -> Problem {
+        let highest_m = self.highest_amsl_m(view);
+        let lower = highest_m.zip(self.before).map_or_else(String::new, |(highest_m, (before, _))| {
+            format!("end `{}` at {highest_m:.0} m AMSL at most, or ", before.waypoint.leg)
+        });
+        let degrees = |height_m: f64| (height_m / self.length_m.max(1.0)).atan().to_degrees();
+        let message = format!(
+            "{lower}put an `HA` before this landing: its final approach begins {:.0} m above the threshold, {:.0} m before it, and is {:.1}° steep; autopilots fly at most {STEEPEST_DEG:.1}°, the aircraft {:.1}°",
+            self.height_m,
+            self.length_m,
+            degrees(self.height_m),
+            degrees(self.descent_m),
+        );
+        let cannot = self.height_m > self.descent_m + TOLERANCE_M;
+        let say = match cannot && flown.emergency.is_none() && !view.flights.under_way {
+            true => Problem::error,
+            false => Problem::warning,
+        };
+        let fix = highest_m.and_then(|highest_m| self.lowered(view, highest_m));
+        say("landing-too-steep", message).of(&self.touch_down.waypoint.leg).perhaps_fixed_by(fix)
+    }
+}
