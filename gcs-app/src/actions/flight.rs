@@ -27,7 +27,7 @@ pub fn of(scene: &Scene<'_>) -> Vec<Action> {
             add(Kind::Do, format!("Decide: {}", option.label), fly(command));
         }
     }
-    if is_in_the_air(scene) {
+    if is_in_the_air(scene) && !panel::is_on_ground(scene) {
         let aboard = scene.vehicle.aboard.as_ref();
         for alternate in aboard.map(|aboard| aboard.plan.emergency_plans.as_slice()).unwrap_or_default() {
             let name = format!("Emergency: fly {}", scene.vehicle.name_of(&alternate.id));
@@ -174,6 +174,7 @@ pub(super) fn start(scene: &Scene<'_>) -> Asked {
 
 pub(super) fn emergency(scene: &Scene<'_>) -> Asked {
     in_the_air(scene, PlanCommand::Emergency { cause: Cause::Operator, plan: None })
+        .and_then(|command| if panel::is_on_ground(scene) { Err(panel::ON_GROUND) } else { Ok(command) })
 }
 
 pub(super) fn leave_safe(scene: &Scene<'_>) -> Asked {

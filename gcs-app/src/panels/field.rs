@@ -319,9 +319,10 @@ pub fn hold_button(ui: &mut Ui, text: &str, colour: Color32, width: f32) -> bool
     let size = vec2((galley.size().x + 24.0).max(width), (galley.size().y + 12.0).max(HOLD_HEIGHT));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let name = format!("{text} (hold)");
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-    let held = response.is_pointer_button_down_on()
-        || (response.has_focus() && ui.input(|i| i.key_down(Key::Space)));
+    let enabled = response.enabled();
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
+    let is_by_key = response.has_focus() && ui.input(|i| i.key_down(Key::Space));
+    let held = enabled && (response.is_pointer_button_down_on() || is_by_key);
     let progress = progress(ui, response.id, held);
     // pressed and let go between two frames
     if response.clicked() && !held {

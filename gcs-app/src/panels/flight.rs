@@ -226,12 +226,19 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let phase = scene.vehicle.phase();
     let is_down = emergency::has_come_down(scene);
     let flying = matches!(phase, Phase::Flying | Phase::AwaitingDecision) && !is_down;
-    // first: it keeps its place, whatever else there is to command
-    if flying || (phase == Phase::Holding && !is_down) {
-        choose_emergency(ui, scene, queue);
+    let leads = flying || (phase == Phase::Holding && !is_down);
+    let starts = can_launch(scene) && !is_down;
+    // first: it keeps its place, whatever else there is to command, and takes none that something else was held in
+    if leads || starts {
+        let may_fly = !is_on_ground(scene);
+        let shown = ui.add_enabled_ui(may_fly, |ui| choose_emergency(ui, scene, queue)).response;
+        if !may_fly {
+            shown.on_hover_text(ON_GROUND);
+        }
     }
-    if can_launch(scene) && !is_down {
-        launch(ui, scene, queue);
+    if starts || (leads && is_taking_off(scene)) {
+        // until it flies: who holds it once more, for nothing moves yet, meets no other command
+        ui.add_enabled_ui(starts, |ui| launch(ui, scene, queue));
     }
     let circles = "The aircraft circles where it is now, until it resumes";
     if flying && field::is_pressed(&ui.button("⏸ Hold").on_hover_text(circles)) {
@@ -315,6 +322,21 @@ pub fn can_launch(scene: &Scene<'_>) -> bool {
         Phase::Finished => false,
     };
     on_ground && may_start && scene.vehicle.active_hash().is_some()
+}
+
+/// Why no emergency plan can be flown.
+pub const ON_GROUND: &str = "The aircraft is on the ground";
+
+/// It is known to be on the ground: no emergency plan can be flown from there.
+pub fn is_on_ground(scene: &Scene<'_>) -> bool {
+    let position = scene.vehicle.position.as_ref().filter(|position| !position.is_expired(scene.now_s));
+    position.is_some_and(|position| position.value.on_ground)
+}
+
+/// It was started, and has not left the ground yet.
+fn is_taking_off(scene: &Scene<'_>) -> bool {
+    let state = scene.vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
+    is_on_ground(scene) && matches!(state, None | Some(GatewayState::Stop | GatewayState::TakeOff))
 }
 
 /// It stands disarmed with a plan that was flown, or was being flown when the vehicle was switched off.

@@ -1,7 +1,7 @@
 //! An emergency plan that is being flown.
 
 use super::considering::foresight;
-use super::flying::{flying, flying_its_plan};
+use super::flying::{connected, flying, flying_its_plan};
 use super::vehicle::{gateway_status, place, position, status};
 use super::{SQUARE, Window};
 use egui_kittest::kittest::Queryable;
@@ -116,6 +116,42 @@ fn nothing_moves_when_an_emergency_begins_and_its_red_banner_changes() {
         assert_eq!(window.fill_around(words), Some(p.warning), "it is red");
         for label in ["⏸ Hold", "Emergency: flying return (hold)"] {
             assert!(window.is_enabled(label), "{label}");
+        }
+    }
+}
+
+/// For seconds nothing moves after the start, and who is impatient holds the same place once more.
+#[test]
+fn no_emergency_comes_where_the_start_was_held_and_none_is_armed_before_it_flies() {
+    for size in [egui::vec2(960.0, 600.0), egui::vec2(1280.0, 800.0)] {
+        let (mut window, hash) = connected();
+        window.harness.set_size(size);
+        let mut value = status(Phase::Idle);
+        value.plan = Some(hash.into());
+        window.receive_status(value.clone());
+        let emergency = "Emergency: fly the alternate in force (hold)";
+        let start = window.harness.get_by_label("Start and take off (hold)").rect();
+        window.leave_open();
+        window.harness.hover_at(window.centre(emergency));
+        window.steps(60);
+        assert!(window.shows("The aircraft is on the ground"), "why it can't be pressed");
+        window.hold("Start and take off (hold)", 90);
+        assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Start)));
+        (value.phase, value.place) = (Phase::Flying, Some(place("departure", "climb")));
+        for (state, on_ground) in
+            [(GatewayState::Stop, true), (GatewayState::TakeOff, true), (GatewayState::TakeOff, false)]
+        {
+            window.receive_status(value.clone());
+            window.receive_gateway_state(state);
+            window.receive_position(on_ground);
+            assert_eq!(window.is_enabled(emergency), !on_ground, "{state:?}");
+            let there = window.harness.get_by_label(emergency).rect();
+            assert!(!there.intersects(start), "{state:?} at {size}: {there} {start}");
+            window.leave_open();
+            window.press_for(start.center(), 90);
+            let is_other = |call: &Call| matches!(call, Call::Plan(command) if *command != Command::Start);
+            let given = std::iter::from_fn(|| window.asked()).map(|(_, call)| call).find(is_other);
+            assert!(!on_ground || given.is_none(), "{state:?} at {size}: {given:?}");
         }
     }
 }

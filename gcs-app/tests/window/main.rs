@@ -296,7 +296,11 @@ impl Window {
 
     /// Presses and holds for so many frames of a sixtieth of a second.
     fn hold(&mut self, label: &str, frames: usize) {
-        let at = self.centre(label);
+        self.press_for(self.centre(label), frames);
+    }
+
+    /// The same at a place of the screen, whatever is there by then.
+    fn press_for(&mut self, at: Pos2, frames: usize) {
         self.harness.hover_at(at);
         self.harness.drag_at(at);
         self.steps(frames);
