@@ -188,6 +188,9 @@ pub fn gateway_event(event: &GatewayEvent) -> Option<(Level, String)> {
         }
         // the FP Manager tells it
         GatewayEvent::Progress { .. } | GatewayEvent::NotLaunched { .. } => None,
+        GatewayEvent::NotDone { request, reason } => {
+            Some((Level::Warning, format!("Granted in the climb, `{request}` is not done: {reason}")))
+        }
         GatewayEvent::BufferLow { waypoints, seconds } => {
             Some((Level::Caution, format!("Buffer low: {waypoints} waypoints, {seconds:.0} s")))
         }
@@ -240,6 +243,13 @@ mod tests {
             let taken = Event::DecisionTaken { leg: "ask".into(), branch: "n1".into(), by: by.into() };
             assert_eq!(plan_event(&taken, names).1, told);
         }
+    }
+
+    #[test]
+    fn what_the_gateway_granted_and_does_not_do_is_told() {
+        let event = GatewayEvent::NotDone { request: "direct".into(), reason: "too low".into() };
+        let told = "Granted in the climb, `direct` is not done: too low".to_owned();
+        assert_eq!(gateway_event(&event), Some((Level::Warning, told)));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::alarms;
 use super::manager::{Effect, Manager};
-use flight_exec::{Command, Event, Input, Token};
+use flight_exec::{Command, Event, Input, Phase, Token};
 use service::Time;
 use usal::Instance;
 use usal::contract::{
@@ -122,6 +122,10 @@ impl Manager {
             GatewayEvent::AlarmCleared { id } => self.alarms.cleared(&id),
             GatewayEvent::BufferLow { .. } => self.feeder.hurry(),
             GatewayEvent::NotLaunched { reason } => self.not_launched(now, reason, out),
+            // it had taken the place of our hold, and the gateway flies the plan
+            GatewayEvent::NotDone { .. } if self.executor.status_phase() == Phase::Holding => {
+                self.gateway_session.want(GatewayRequest::Hold);
+            }
             // brought down by somebody: a join says what became of what is ahead
             GatewayEvent::StateChanged { to: GatewayState::Stop, .. } if self.executor.is_under_way() => {
                 self.gateway_session.state(now, GatewayState::Stop);

@@ -126,6 +126,13 @@ pub enum GatewayEvent {
         /// Why, and what to do.
         reason: String,
     },
+    /// What was granted in the climb of a take-off, and waited for its end, can't be done by then: the plan is flown on.
+    NotDone {
+        /// What was asked for, as requests are named.
+        request: String,
+        /// Why.
+        reason: String,
+    },
     /// The buffer is below its low-water mark.
     BufferLow {
         /// Waypoints left.

@@ -8,7 +8,7 @@ use super::telemetry::CLIMBING_MPS;
 use crate::gateway::order::{Mode, Time};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
-use usal::contract::{Action, Feed, GatewayRequest, GatewayState, Token};
+use usal::contract::{Action, Feed, GatewayEvent, GatewayRequest, GatewayState, Token};
 
 /// Height above the take-off place from which a climbing aircraft may circle, metres.
 pub(super) const CLEAR_M: f64 = 40.0;
@@ -88,9 +88,10 @@ impl Gateway {
             return;
         }
         if let Some(asked) = self.control.climb_out.asked.take()
-            && let Err(why) = self.lead(&asked, out)
+            && let Err(reason) = self.lead(&asked, out)
         {
-            self.cause = why;
+            self.cause.clone_from(&reason);
+            out.push(Output::Event(GatewayEvent::NotDone { request: asked.name().into(), reason }));
             out.push(Output::Save);
         }
         if self.control.climb_out.is_over && self.is_led_by_us() {

@@ -228,6 +228,23 @@ fn holding_when_safe_mode_ends_it_holds_again() {
     }
 }
 
+/// Its hold waited for the end of the climb, and a direct command had taken its place there.
+#[test]
+fn holding_while_the_gateway_could_not_do_what_it_had_granted_it_holds_again() {
+    let mut flight = flown(10, STARTED);
+    for hold_first in [false, true] {
+        if hold_first {
+            flight.ask_once(&What::Command(Command::Hold), "hold").unwrap();
+            run(&mut flight, 2);
+        }
+        flight.gateway.state = GatewayState::Nav;
+        let (request, reason) = ("direct".into(), "the position is not known".into());
+        flight.gateway.events.push_back(GatewayEvent::NotDone { request, reason });
+        run(&mut flight, 3);
+        assert_eq!(flight.gateway.state == GatewayState::Hold, hold_first);
+    }
+}
+
 #[test]
 fn resume_is_one_word_whoever_led_the_aircraft_away() {
     for by in [GatewayState::Hold, GatewayState::Directed, GatewayState::Manual] {

@@ -109,9 +109,17 @@ fn a_direct_command_that_can_not_be_followed_once_it_is_clear_is_told() {
     // nobody knows any more how high it is, nor where
     let heard = [beat(Mode::Waypoints, true), Report::OnGround(false)];
     core.run(15, &heard);
+    core.out.clear();
     core.step(Input::Report(Report::Course(Course { target: Target::Waypoint(Serial(2)), ..course(true) })));
     core.run(1, &heard);
     assert!(core.gateway.cause.contains("position is not known"), "{}", core.gateway.cause);
+    let told = |output: &&Output| match output {
+        Output::Event(GatewayEvent::NotDone { request, reason }) => {
+            request == "direct" && *reason == core.gateway.cause
+        }
+        _ => false,
+    };
+    assert_eq!(core.out.iter().filter(told).count(), 1, "{:?}", core.out);
     assert_eq!(core.gateway.control.intent, Intent::Fly);
 }
 
