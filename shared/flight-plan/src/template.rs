@@ -10,7 +10,7 @@ mod home;
 mod mission;
 
 pub use extent::Extent;
-pub(crate) use frame::climb_out;
+pub(crate) use frame::{GLIDE_SLOPE, climb_out};
 pub(crate) use home::bring_home;
 
 use crate::figures;

@@ -1,22 +1,23 @@
 //! What a new leg has from the leg beside it.
 
 use super::arrange::list_of;
+use super::descent::on_slope;
 use crate::{FlightPlan, Id, Leg, LegKind, Spot};
 use std::sync::Arc;
 
 /// A new leg for a place of the plan, at the altitude and speed that the leg beside it has as its own: between two legs at 80 m
-/// in a stage at 150 m, it would rise to 150 m otherwise. What that leg inherits, the new one inherits too.
+/// in a stage at 150 m, it would rise to 150 m otherwise. What that leg inherits, the new one inherits too. In an approach it is on the
+/// way down to the threshold.
 #[must_use]
 pub fn like_beside(plan: &FlightPlan, leg: Leg, at: &Spot) -> Leg {
     if matches!(leg.kind, LegKind::Call(_)) {
         return leg;
     }
-    let Some(beside) = beside(plan, at) else { return leg };
-    Leg {
-        altitude: leg.altitude.or_else(|| beside.altitude.clone()),
-        speed_mps: leg.speed_mps.or_else(|| beside.speed_mps.clone()),
-        ..leg
-    }
+    let beside = beside(plan, at);
+    let on_slope = || on_slope(plan, &leg, at);
+    let altitude = leg.altitude.clone().or_else(on_slope).or_else(|| beside?.altitude.clone());
+    let speed_mps = leg.speed_mps.clone().or_else(|| beside?.speed_mps.clone());
+    Leg { altitude, speed_mps, ..leg }
 }
 
 /// The leg before a place in its list, else the one behind it.

@@ -7,6 +7,7 @@ mod bind;
 mod binding;
 mod branch;
 mod course;
+mod descent;
 mod gather;
 mod kind;
 mod leave;

@@ -14,7 +14,7 @@ const CLEARANCE_M: f64 = 150.0;
 /// Of the final above the ground under it, metres.
 const LOWEST_M: f64 = 60.0;
 /// Descent on the final, metres down per metre forward.
-const GLIDE_SLOPE: f64 = 0.075;
+pub(crate) const GLIDE_SLOPE: f64 = 0.075;
 /// A place on the final stands for the gate from so far before it on, metres.
 const GATE_ROOM_M: f64 = 300.0;
 /// Share of what an aircraft can fly that its mission's tracks may take; the rest is for climbs, turns and the way there.
