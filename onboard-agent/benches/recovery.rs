@@ -105,6 +105,7 @@ impl Hub {
             cause: "bench".into(),
             armed: false,
             autopilot: None,
+            unfit: None,
             autopilot_mode: "AUTO".into(),
             autopilot_age_s: 0.0,
             fp_manager: None,

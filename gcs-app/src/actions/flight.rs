@@ -169,6 +169,9 @@ pub(super) fn resume(scene: &Scene<'_>) -> Asked {
 pub(super) fn start(scene: &Scene<'_>) -> Asked {
     linked(scene)?;
     let why_not = "A vehicle on the ground with a plan aboard can be started";
+    if scene.vehicle.unfit().is_some() {
+        return Err("Its autopilot is not set up for it: the bar of the commands says what to do");
+    }
     if panel::can_launch(scene) { Ok(Command::Fly(FlyCommand::Launch)) } else { Err(why_not) }
 }
 

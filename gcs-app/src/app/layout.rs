@@ -145,7 +145,7 @@ fn announcements(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
                 ui.vertical(|ui| {
                     for text in &vehicle.unread {
                         let text = RichText::new(format!("⚠ {name}: {text}")).color(theme::of(ui).caution);
-                        ui.add(egui::Label::new(text).truncate());
+                        ui.add(egui::Label::new(text).wrap());
                     }
                 });
             });

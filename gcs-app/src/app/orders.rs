@@ -8,7 +8,7 @@ use crate::command::{
 use crate::document::Document;
 use crate::guide::Answer;
 use crate::link::Call;
-use crate::state::{LOOK_AHEAD, Level, Proposal, Vehicle, VehicleName};
+use crate::state::{LOOK_AHEAD, Level, Proposal, START, Vehicle, VehicleName};
 use flight_exec::Command as PlanCommand;
 use flight_plan::{FlightPlan, Id};
 
@@ -303,7 +303,7 @@ impl App {
                 self.call(vehicle, label, Call::Gateway(request), now_s);
             }
             FlyCommand::Launch => {
-                self.call(vehicle, "Start and take off", Call::Plan(PlanCommand::Start), now_s);
+                self.call(vehicle, START, Call::Plan(PlanCommand::Start), now_s);
             }
         }
     }

@@ -117,6 +117,7 @@ mod tests {
             cause: "waypoints".into(),
             armed: true,
             autopilot: None,
+            unfit: None,
             autopilot_mode: "AUTO".into(),
             autopilot_age_s: 0.1,
             fp_manager: fp_manager.map(Into::into),

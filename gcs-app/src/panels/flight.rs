@@ -238,7 +238,10 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
     if starts || (leads && is_taking_off(scene)) {
         // until it flies: who holds it once more, for nothing moves yet, meets no other command
-        ui.add_enabled_ui(starts, |ui| launch(ui, scene, queue));
+        ui.add_enabled_ui(starts && scene.vehicle.unfit().is_none(), |ui| launch(ui, scene, queue));
+    }
+    if let Some(why) = scene.vehicle.unfit().filter(|_| is_on_ground(scene)) {
+        ui.label(RichText::new(format!("⚠ Can't be started. {why}")).color(p.caution));
     }
     let circles = "The aircraft circles where it is now, until it resumes";
     if flying && field::is_pressed(&ui.button("⏸ Hold").on_hover_text(circles)) {

@@ -4,7 +4,7 @@ use super::Names;
 use flight_exec::{Event, Phase};
 use flight_plan::{Id, VariableValue};
 use std::collections::VecDeque;
-use usal::contract::{GatewayEvent, Severity};
+use usal::contract::{GatewayEvent, GatewayRequest, Severity};
 
 /// How much a line matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,6 +103,17 @@ const BY_DEFAULT: &str = "default";
 pub fn is_announced(event: &Event) -> bool {
     matches!(event, Event::DecisionTaken { by, .. } if by == BY_DEFAULT)
         || matches!(event, Event::PhaseChanged { phase: Phase::AwaitingDecision | Phase::Grounded })
+        || is_refusal(event)
+}
+
+/// What somebody asked for is not done after all. Of reports that do not count there is an alarm.
+fn is_refusal(event: &Event) -> bool {
+    matches!(event, Event::NotGranted { request, .. } if request != "report")
+}
+
+/// The aircraft does not take off after all, though the start was accepted.
+pub fn is_no_start(event: &Event) -> bool {
+    matches!(event, Event::NotGranted { request, .. } if request == GatewayRequest::Launch.name())
 }
 
 /// A plan event as a sentence.
@@ -157,6 +168,9 @@ pub fn plan_event(event: &Event, names: Names<'_>) -> (Level, String) {
             let leg = leg.as_ref().map(|leg| format!("{leg}: ")).unwrap_or_default();
             // as problems are displayed: whoever shows it puts words and names in the place of that
             (Level::Warning, format!("The way ahead has a problem: warning [{code}] {leg}{reason}"))
+        }
+        Event::NotGranted { reason, .. } if is_no_start(event) => {
+            (Level::Caution, format!("Not started: {reason}"))
         }
         Event::NotGranted { request, reason } => {
             (Level::Caution, format!("The gateway does not grant `{request}`: {reason}"))

@@ -23,7 +23,7 @@ pub use losses::Losses;
 pub use names::Names;
 pub use outlook::{Considered, Outlook};
 pub use recent::RecentEvents;
-pub use requests::{LOOK_AHEAD, Outcome, READ_ABOARD, Request, Requests, Ticket};
+pub use requests::{LOOK_AHEAD, Outcome, READ_ABOARD, Request, Requests, START, Ticket};
 pub use strangers::Strangers;
 pub use toasts::Toasts;
 pub use trail::Trail;

@@ -65,6 +65,8 @@ pub struct Requests {
 pub const READ_ABOARD: &str = "Read the plan aboard";
 /// What the window asks before a command is given, and to know when the aircraft lands.
 pub const LOOK_AHEAD: &str = "Look ahead";
+/// What the operator asks for by the button that is called so.
+pub const START: &str = "Start and take off";
 /// Most requests remembered.
 const CAPACITY: usize = 64;
 /// Of those, most that the window made for itself: it asks again and again, and pushes out no command of the operator's.
@@ -106,6 +108,12 @@ impl Requests {
         if let Some(last) = self.list.iter_mut().rev().find(|r| r.is_somebodys()) {
             last.is_read = true;
         }
+    }
+
+    /// What was accepted under this label did not come about after all: that it was accepted is no news any more.
+    pub fn take_back(&mut self, label: &str) {
+        let of_it = |r: &&mut Request| r.label == label && r.outcome == Outcome::Accepted;
+        self.list.iter_mut().filter(of_it).for_each(|r| r.is_read = true);
     }
 
     /// Notes an answer; its request's label if it was still waited for.

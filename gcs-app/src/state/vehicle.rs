@@ -2,7 +2,7 @@
 
 use super::watch::{GROUND_STATION, Sight, Watch};
 use super::{
-    Aged, LOOK_AHEAD, Level, Log, Losses, Names, Outcome, Outlook, RecentEvents, Repeats, Requests,
+    Aged, LOOK_AHEAD, Level, Log, Losses, Names, Outcome, Outlook, RecentEvents, Repeats, Requests, START,
     Strangers, Ticket, Trail, log,
 };
 use crate::link::{
@@ -313,7 +313,12 @@ impl Vehicle {
         let (level, text) = log::plan_event(&event.event.value, self.names());
         self.log.add(now_s, level, "plan", &text);
         let event = &event.event.value;
+        if log::is_no_start(event) {
+            self.requests.take_back(START);
+        }
         if log::is_announced(event) {
+            // asked for again and again, it is refused as often
+            self.unread.retain(|known| *known != text);
             self.unread.push_back(text);
             while self.unread.len() > MOST_UNREAD {
                 self.unread.pop_front();
@@ -409,6 +414,11 @@ impl Vehicle {
     pub fn clock_s(&self, now_s: f64) -> Option<f64> {
         let live = self.position.as_ref().filter(|position| !position.is_expired(now_s));
         live.map(|position| position.time_s)
+    }
+
+    /// Why its autopilot can't be flown as it is set up, and what to do, as its gateway says.
+    pub fn unfit(&self) -> Option<&str> {
+        self.gateway.as_ref()?.value.unfit.as_deref()
     }
 
     /// What the executor is doing; idle when nothing is known.

@@ -1,12 +1,12 @@
 //! What nobody must miss, also who looked elsewhere.
 
 use super::Window;
-use super::flying::flying;
-use super::vehicle::decision;
+use super::flying::{connected, flying};
+use super::vehicle::{decision, gateway_status, status};
 use egui_kittest::kittest::Queryable;
 use flight_exec::{DecisionRequest, Event, Phase};
-use gcs_app::link::{LinkEvent, LinkId, LinkState, Numbered, Telemetry};
-use usal::contract::Stamped;
+use gcs_app::link::{LinkEvent, LinkId, LinkState, Numbered, Reply, Telemetry};
+use usal::contract::{GatewayState, GatewayStatus, Stamped};
 
 pub fn event(sequence: u32, value: Event) -> LinkEvent {
     let event = Stamped { time_s: f64::from(sequence), validity_s: f64::MAX, value };
@@ -41,6 +41,61 @@ fn a_missed_decision_is_announced_until_it_is_put_aside() {
     window.send_of("uav1", two, LinkEvent::Link(LinkState::Connected("there".into())));
     window.send_of("uav1", two, event(2, taken("ask", "default")));
     assert!(!is_announced(&window, text));
+}
+
+/// It was accepted, and nothing moved: why stood in a line of the log alone.
+#[test]
+fn a_start_that_is_not_granted_says_what_to_do_until_that_is_read() {
+    let (mut window, hash) = connected();
+    window.harness.set_size(egui::vec2(960.0, 600.0));
+    let mut value = status(Phase::Idle);
+    value.plan = Some(hash.into());
+    window.receive_status(value);
+    window.leave_open();
+    window.hold("Start and take off (hold)", 90);
+    let (ticket, _) = window.asked().unwrap();
+    window.answer(ticket, Ok(Reply::Done));
+    assert!(window.shows("Start and take off: accepted"));
+    let refused = Event::NotGranted { request: "launch".into(), reason: NEED.into() };
+    // the executor asks again and again
+    window.send(event(1, refused.clone()));
+    window.send(event(2, refused));
+    let text = format!("⚠ uav1: Not started: {NEED}");
+    assert!(window.paints_whole(&text), "nothing of it is cut");
+    assert_eq!(window.harness.query_all_by_label(&text).count(), 1);
+    assert!(!window.shows("Start and take off: accepted"), "that is not so any more");
+    window.steps(60 * 20);
+    assert!(is_announced(&window, "Not started"), "it stays until it is read");
+    window.click("Put aside what uav1 announced");
+    assert!(!is_announced(&window, "Not started"));
+}
+
+/// As a gateway says it of PX4.
+const NEED: &str = "The autopilot's parameter MIS_TKO_LAND_REQ is 2: PX4 then refuses a list without a landing, and so every list \
+                    of a longer flight. Set it to 0.";
+
+#[test]
+fn what_keeps_an_autopilot_from_being_started_is_said_on_connecting_and_start_is_not_to_be_pressed() {
+    let (mut window, hash) = connected();
+    window.harness.set_size(egui::vec2(960.0, 600.0));
+    let says = |window: &mut Window, unfit: Option<&str>| {
+        let value = GatewayStatus { unfit: unfit.map(Into::into), ..gateway_status(GatewayState::Stop) };
+        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+    };
+    says(&mut window, Some(NEED));
+    assert!(window.shows("No plan aboard") && window.shows(&format!("⚠ Can't be started. {NEED}")));
+    let mut value = status(Phase::Idle);
+    value.plan = Some(hash.into());
+    window.receive_status(value);
+    window.leave_open();
+    assert!(!window.is_enabled("Start and take off (hold)") && window.shows(NEED));
+    window.hold("Start and take off (hold)", 90);
+    window.ask_for("start and take off");
+    assert!(!window.is_enabled("Flight Start and take off"), "nor by the palette");
+    window.press(egui::Key::Escape);
+    assert!(window.asked().is_none());
+    says(&mut window, None);
+    assert!(window.is_enabled("Start and take off (hold)") && !window.shows("Can't be started"));
 }
 
 #[test]

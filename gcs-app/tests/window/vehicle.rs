@@ -156,6 +156,7 @@ pub fn gateway_status(state: GatewayState) -> GatewayStatus {
         cause: "for the test".into(),
         armed: state != GatewayState::Stop,
         autopilot: None,
+        unfit: None,
         autopilot_mode: "AUTO".into(),
         autopilot_age_s: 0.1,
         fp_manager: None,

@@ -51,6 +51,9 @@ pub struct GatewayStatus {
     /// What kind of autopilot it is; `None`: it has not said so yet, or can't be flown.
     #[serde(default)]
     pub autopilot: Option<AutopilotKind>,
+    /// Why nothing is started with that autopilot as it is set up, and what to do; `None`: it can be, or has not said so yet.
+    #[serde(default)]
+    pub unfit: Option<String>,
     /// The autopilot's own mode, as text.
     pub autopilot_mode: String,
     /// Seconds since the autopilot was last heard.

@@ -47,6 +47,7 @@ impl Gateway {
             cause: self.cause.clone(),
             armed: self.telemetry.armed,
             autopilot: self.kind(),
+            unfit: self.control.capability.as_ref().and_then(|capability| capability.clone().err()),
             autopilot_mode: self.telemetry.mode_name.clone().into_owned(),
             autopilot_age_s: age(self.telemetry.last_received).unwrap_or(f64::MAX),
             fp_manager: self.fp_manager.heard(now, &self.safe).map(|session| session.to_string()),

@@ -239,6 +239,7 @@ impl Gateway {
             cause: "test".into(),
             armed: self.state != GatewayState::Stop,
             autopilot: None,
+            unfit: None,
             autopilot_mode: "AUTO".into(),
             autopilot_age_s: 0.0,
             fp_manager: None,

@@ -164,8 +164,13 @@ fn a_parameter_that_forbids_long_flights_is_named_before_the_launch() {
     assert!(flight.join("plan").accepted);
     flight.feed(None, std::iter::once(take_off()).chain(zigzag(0, 20, 300.0)).collect());
     flight.run(5.0);
+    let unfit = |flight: &Flight| flight.station.gateway().status(flight.now).unfit;
     let why = flight.ask(GatewayRequest::Launch).unwrap_err();
     assert!(why.contains("MIS_TKO_LAND_REQ is 2"), "{why}");
+    assert_eq!(unfit(&flight), Some(why), "also before anybody asks");
+    assert!(flight.sim.autopilot.params.set("MIS_TKO_LAND_REQ", 0.0));
+    flight.run(5.0);
+    assert_eq!(unfit(&flight), None);
 }
 
 /// On the ground with a plan, and launched as soon as that is allowed.
