@@ -1,6 +1,6 @@
 //! Rows of values that have an age.
 
-use super::field;
+use super::{Scene, field};
 use crate::state::Aged;
 use crate::theme;
 use crate::units;
@@ -34,6 +34,13 @@ pub fn aged_row(ui: &mut Ui, (name, width): (&str, f32), text: &str, age: Option
             });
         });
     });
+}
+
+/// The same of what is known by the autopilot's word: while that is silent others repeat it, and it is no younger for that.
+pub fn age_as_heard<T>(value: &Option<Aged<T>>, scene: &Scene<'_>) -> Option<(f64, bool)> {
+    let (age_s, is_expired) = age_of(value, scene.now_s)?;
+    let silence_s = scene.vehicle.autopilot_silence_s(scene.now_s);
+    Some(silence_s.map_or((age_s, is_expired), |silence_s| (age_s.max(silence_s), true)))
 }
 
 /// Age and expiry of a value, for [`value_with_age`].

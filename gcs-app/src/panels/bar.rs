@@ -174,8 +174,8 @@ fn state(ui: &mut Ui, scene: &Scene<'_>) {
     let v = &gateway.value;
     let armed = if v.armed { "armed" } else { "disarmed" };
     let text = RichText::new(format!("{:?} · {} · {armed}", v.state, v.autopilot_mode));
-    let text =
-        if gateway.is_expired(scene.now_s) { text.color(p.weak).strikethrough() } else { text.color(p.good) };
+    let is_old = gateway.is_expired(scene.now_s) || scene.vehicle.autopilot_silence_s(scene.now_s).is_some();
+    let text = if is_old { text.color(p.weak).strikethrough() } else { text.color(p.good) };
     let hover = format!("{}\nAutopilot heard {} ago", v.cause, units::age(v.autopilot_age_s));
     ui.label(text).on_hover_text(hover);
     if let Some(seconds) = v.safe_return_in_s {

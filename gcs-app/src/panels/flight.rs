@@ -1,6 +1,8 @@
 //! The flight: what the vehicle does now, every value with its age, and the strip of commands.
 
-use super::{Panel, PanelId, Place, Scene, age_of, alarms, emergency, ended, field, pfd, value_with_age};
+use super::{
+    Panel, PanelId, Place, Scene, age_as_heard, age_of, alarms, emergency, ended, field, pfd, value_with_age,
+};
 use crate::command::{FlyCommand, Queue};
 use crate::state::Vehicle;
 use crate::theme;
@@ -96,7 +98,7 @@ fn leg(ui: &mut Ui, scene: &Scene<'_>) {
     let name = |id| scene.vehicle.name_of(id);
     let place = status.as_ref().and_then(|s| s.value.place.as_ref());
     let leg = place.map_or_else(|| "–".to_owned(), |p| format!("{} ▸ {}", name(&p.stage), name(&p.leg)));
-    value_with_age(ui, "Leg", &leg, age_of(status, scene.now_s));
+    value_with_age(ui, "Leg", &leg, age_as_heard(status, scene));
 }
 
 fn iterations(ui: &mut Ui, scene: &Scene<'_>) {
@@ -104,7 +106,7 @@ fn iterations(ui: &mut Ui, scene: &Scene<'_>) {
     let place = status.as_ref().and_then(|s| s.value.place.as_ref());
     if let Some(place) = place.filter(|p| !p.iterations.is_empty()) {
         let loops: Vec<String> = place.iterations.iter().map(|i| iteration(i, scene.vehicle)).collect();
-        value_with_age(ui, "Iteration", &loops.join(" ▸ "), age_of(status, scene.now_s));
+        value_with_age(ui, "Iteration", &loops.join(" ▸ "), age_as_heard(status, scene));
     }
 }
 
@@ -121,7 +123,7 @@ fn next(ui: &mut Ui, scene: &Scene<'_>) {
         let far = scene.units().distance().show(n.value.distance_m);
         format!("{far} · {}", units::duration(n.value.eta_s))
     });
-    value_with_age(ui, "Next", &next.unwrap_or_default(), age_of(navigation, scene.now_s));
+    value_with_age(ui, "Next", &next.unwrap_or_default(), age_as_heard(navigation, scene));
 }
 
 fn off_track(ui: &mut Ui, scene: &Scene<'_>) {
@@ -130,7 +132,7 @@ fn off_track(ui: &mut Ui, scene: &Scene<'_>) {
         let side = if n.value.cross_track_m < 0.0 { "left" } else { "right" };
         format!("{} {side}", scene.units().length().show(n.value.cross_track_m.abs()))
     });
-    value_with_age(ui, "Off track", &off.unwrap_or_default(), age_of(navigation, scene.now_s));
+    value_with_age(ui, "Off track", &off.unwrap_or_default(), age_as_heard(navigation, scene));
 }
 
 /// `patrol 3/20 ↩`: the pass being flown, how many there are, and an arrow when it goes backwards.
@@ -147,8 +149,10 @@ fn buffer(ui: &mut Ui, scene: &Scene<'_>) {
         let end = if n.value.end_of_plan { ", end of plan" } else { "" };
         format!("{} wp · {}{end}", n.value.buffer_waypoints, units::duration(n.value.buffer_s))
     });
-    value_with_age(ui, "Buffer", &text.unwrap_or_default(), age_of(navigation, scene.now_s));
-    if let Some(n) = navigation.as_ref().filter(|n| !n.is_expired(scene.now_s)) {
+    value_with_age(ui, "Buffer", &text.unwrap_or_default(), age_as_heard(navigation, scene));
+    if let Some(n) =
+        navigation.as_ref().filter(|_| age_as_heard(navigation, scene).is_some_and(|(_, expired)| !expired))
+    {
         let p = theme::of(ui);
         let short = n.value.buffer_s < 10.0 && !n.value.end_of_plan && scene.vehicle.is_airborne();
         let colour = if short { p.caution } else { p.accent };
@@ -161,13 +165,13 @@ fn above_home(ui: &mut Ui, scene: &Scene<'_>) {
     let position = &scene.vehicle.position;
     let altitude = scene.units().altitude();
     let home = position.as_ref().map(|v| format!("{} above home", altitude.show(v.value.altitude_home_m)));
-    value_with_age(ui, "Height", &home.unwrap_or_default(), age_of(position, scene.now_s));
+    value_with_age(ui, "Height", &home.unwrap_or_default(), age_as_heard(position, scene));
 }
 
 fn above_ground(ui: &mut Ui, scene: &Scene<'_>) {
     let agl_m = scene.vehicle.watch.agl_m;
     let agl = agl_m.map(|m| format!("{} above the ground", scene.units().altitude().show(m)));
-    let age = age_of(&scene.vehicle.position, scene.now_s);
+    let age = age_as_heard(&scene.vehicle.position, scene);
     value_with_age(ui, "AGL", agl.as_deref().unwrap_or("ground not known"), age);
 }
 
@@ -177,13 +181,13 @@ fn over_ground(ui: &mut Ui, scene: &Scene<'_>) {
         let speed = scene.units().speed().show(v.value.ground_speed_mps);
         format!("{speed} · track {}", units::bearing(v.value.track_deg))
     });
-    value_with_age(ui, "Ground", &ground.unwrap_or_default(), age_of(position, scene.now_s));
+    value_with_age(ui, "Ground", &ground.unwrap_or_default(), age_as_heard(position, scene));
 }
 
 fn climb(ui: &mut Ui, scene: &Scene<'_>) {
     let position = &scene.vehicle.position;
     let climb = position.as_ref().map(|v| scene.units().climb().show(-v.value.velocity_down_mps));
-    value_with_age(ui, "Climb", &climb.unwrap_or_default(), age_of(position, scene.now_s));
+    value_with_age(ui, "Climb", &climb.unwrap_or_default(), age_as_heard(position, scene));
 }
 
 fn battery(ui: &mut Ui, scene: &Scene<'_>) {
@@ -191,7 +195,7 @@ fn battery(ui: &mut Ui, scene: &Scene<'_>) {
     let text = power.as_ref().map(|p| {
         format!("{:.0} % · {:.1} V · {:.1} A", p.value.battery * 100.0, p.value.voltage_v, p.value.current_a)
     });
-    value_with_age(ui, "Battery", &text.unwrap_or_default(), age_of(power, scene.now_s));
+    value_with_age(ui, "Battery", &text.unwrap_or_default(), age_as_heard(power, scene));
 }
 
 fn engine(ui: &mut Ui, scene: &Scene<'_>) {
@@ -200,7 +204,7 @@ fn engine(ui: &mut Ui, scene: &Scene<'_>) {
         let (rpm, temperature) = (e.value.rpm, e.value.temperature_c);
         format!("{rpm:.0} rpm · {temperature:.0} °C · {:.0} %", e.value.throttle * 100.0)
     });
-    value_with_age(ui, "Engine", &text.unwrap_or_default(), age_of(engine, scene.now_s));
+    value_with_age(ui, "Engine", &text.unwrap_or_default(), age_as_heard(engine, scene));
 }
 
 fn gps(ui: &mut Ui, scene: &Scene<'_>) {
@@ -209,11 +213,14 @@ fn gps(ui: &mut Ui, scene: &Scene<'_>) {
         let fix = if g.value.fix_3d { "3D fix" } else { "NO FIX" };
         format!("{fix} · {} sats · HDOP {:.1}", g.value.satellites, g.value.hdop)
     });
-    value_with_age(ui, "GPS", &text.unwrap_or_default(), age_of(gps, scene.now_s));
+    value_with_age(ui, "GPS", &text.unwrap_or_default(), age_as_heard(gps, scene));
 }
 
 /// Why no command can be given.
 pub const NOT_CONNECTED: &str = "Not connected: no command reaches the aircraft";
+
+/// Who should obey does not hear.
+pub const NOT_HEARD: &str = "The autopilot is silent: nobody hears a command now";
 
 /// The strip of commands; each is there when it makes sense. Without a link none of them would arrive.
 pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -222,6 +229,9 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if scene.vehicle.open_link().is_none() {
         ui.label(RichText::new(NOT_CONNECTED).color(p.caution));
         ui.disable();
+    } else if scene.vehicle.autopilot_silence_s(scene.now_s).is_some() {
+        // they may be given all the same: agent and gateway do what was asked for as soon as they can
+        ui.label(RichText::new(format!("⚠ {NOT_HEARD}")).color(p.caution));
     }
     let phase = scene.vehicle.phase();
     let is_down = emergency::has_come_down(scene);

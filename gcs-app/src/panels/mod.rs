@@ -58,7 +58,7 @@ use crate::state::{Toasts, Vehicle, Vehicles};
 use crate::story::Chapter;
 use crate::theme;
 use crate::units::Units;
-pub use aged::{age_of, aged_row, value_with_age};
+pub use aged::{age_as_heard, age_of, aged_row, value_with_age};
 use browse::Browsing;
 use egui::{RichText, Ui};
 use flight_exec::rehearse::{Diversion, WhatIf};

@@ -455,6 +455,13 @@ impl Vehicle {
         self.received_s.map(|received_s| (now_s - received_s).max(0.0))
     }
 
+    /// Seconds for which its gateway, that is heard itself, has not heard its autopilot; `None`: it does hear it.
+    pub fn autopilot_silence_s(&self, now_s: f64) -> Option<f64> {
+        let gateway = self.gateway.as_ref().filter(|gateway| !gateway.is_expired(now_s))?;
+        let silence_s = gateway.value.autopilot_age_s + gateway.age_s(now_s);
+        (silence_s > AUTOPILOT_SILENT_S).then_some(silence_s)
+    }
+
     /// Looks at the aircraft over the ground; what is raised anew is logged.
     pub(super) fn look(&mut self, terrain: &dyn Terrain, now_s: f64) {
         let before: Vec<String> = self.watch.alarms().map(|alarm| alarm.id).collect();
@@ -514,5 +521,7 @@ fn live<T>(value: &Option<Aged<T>>, now_s: f64) -> Option<&T> {
 const ASK_ABOARD_S: f64 = 3.0;
 /// Silence after which the operator should know, seconds.
 pub const LINK_CAUTION_S: f64 = 3.0;
+/// Silence of its autopilot after which what that said is old, seconds: even an idle one speaks once a second.
+const AUTOPILOT_SILENT_S: f64 = 3.0;
 /// Silence after which the operator should act, seconds.
 pub const LINK_WARNING_S: f64 = 10.0;

@@ -9,7 +9,8 @@ use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Repl
 use gcs_app::state::{ActivePlan, Outcome};
 use std::sync::Arc;
 use usal::contract::{
-    Alarm, GatewayState, GatewayStatus, PlanVariable, PlanVariables, Severity, Stamped, VariableValue,
+    Alarm, GatewayState, GatewayStatus, Navigation, PlanVariable, PlanVariables, Severity, Stamped,
+    VariableValue,
 };
 
 pub fn report(hash: &str, acceptable: bool) -> ProposalReport {
@@ -348,6 +349,49 @@ fn values_that_expire_look_expired() {
     window.steps(60 * 3);
     assert!(window.shows(" old"));
     assert!(window.shows("Primary flight display. No data"));
+}
+
+/// Agent and gateway repeat what they know, and that looked as fresh as before.
+#[test]
+fn what_a_silent_autopilot_said_looks_as_old_as_it_is_and_its_commands_say_that_nobody_hears_them() {
+    let (mut window, value) = flying();
+    let p = gcs_app::theme::palette(true);
+    let silent = |window: &mut Window, autopilot_age_s: f64| {
+        let gateway = GatewayStatus { autopilot_age_s, ..gateway_status(GatewayState::Nav) };
+        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value: gateway }));
+        window.receive_status(value.clone());
+        let way = navigation(812.0);
+        window.receive(Telemetry::Navigation(Stamped { time_s: 1.0, validity_s: 2.0, value: way }));
+    };
+    let nobody = "⚠ The autopilot is silent: nobody hears a command now";
+    let state = "Nav · AUTO · armed";
+    silent(&mut window, 0.4);
+    assert!(!window.shows(" old") && !window.shows(nobody));
+    assert_eq!(window.colour_of(state), Some(p.good));
+    silent(&mut window, 12.0);
+    let rows = window.harness.query_all_by_label_contains("12 s old").count();
+    assert!(rows >= 3, "leg, next and off track, and {rows} of all rows");
+    for text in ["circuit ▸ side2", "0.8 km", state] {
+        assert_eq!(window.colour_of(text), Some(p.weak), "{text}");
+    }
+    assert!(window.shows(nobody) && window.is_enabled("⏸ Hold"), "it is done when that can be done");
+    silent(&mut window, 0.4);
+    assert!(!window.shows(" old") && !window.shows(nobody));
+}
+
+fn navigation(distance_m: f64) -> Navigation {
+    Navigation {
+        current: None,
+        next: None,
+        last: None,
+        distance_m,
+        eta_s: 36.0,
+        cross_track_m: 3.0,
+        buffer_waypoints: 4,
+        buffer_s: 50.0,
+        room: 200,
+        end_of_plan: false,
+    }
 }
 
 #[test]
