@@ -110,6 +110,7 @@ impl Hub {
             autopilot_age_s: 0.0,
             fp_manager: None,
             fp_manager_age_s: None,
+            waits_for_height_m: None,
             safe_return_in_s: None,
             alarms: Vec::new(),
         };

@@ -122,6 +122,7 @@ mod tests {
             autopilot_age_s: 0.1,
             fp_manager: fp_manager.map(Into::into),
             fp_manager_age_s: Some(0.1),
+            waits_for_height_m: None,
             safe_return_in_s: None,
             alarms: Vec::new(),
         };

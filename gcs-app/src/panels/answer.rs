@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         Outcome::Pending => {
             (format!("⏳ {}: pending, {}", request.label, units::age(scene.now_s - request.sent_s)), p.text)
         }
-        Outcome::Accepted => (format!("✔ {}: accepted", request.label), p.good),
+        Outcome::Accepted => (format!("✔ {}: accepted{}", request.label, waits(scene)), p.good),
         Outcome::Refused(why) => {
             if field::small_button(&mut line, "✖", "Put this answer aside") {
                 queue.fly(FlyCommand::PutAnswerAside);
@@ -33,6 +33,20 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if let Outcome::Refused(why) = &request.outcome {
         with_codes(response, why);
     }
+}
+
+/// `, waits until 40 m above home`: what was accepted is not done yet.
+fn waits(scene: &Scene<'_>) -> String {
+    if scene.vehicle.autopilot_silence_s(scene.now_s).is_some() {
+        return ", waits until the autopilot is heard".to_owned();
+    }
+    until_height(scene).map_or_else(String::new, |height| format!(", waits {height}"))
+}
+
+/// `until 40 m above home`: before, what was asked for in the climb is not done.
+pub fn until_height(scene: &Scene<'_>) -> Option<String> {
+    let height_m = scene.vehicle.waits_for_height_m(scene.now_s)?;
+    Some(format!("until {} above home", scene.units().altitude().show(height_m)))
 }
 
 /// It is taken, whatever is said there: nothing moves under the pointer when something is.

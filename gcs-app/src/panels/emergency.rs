@@ -1,6 +1,6 @@
 //! An emergency plan that is being flown: what, why, where to, and the way back to the main plan.
 
-use super::{Scene, field, flight};
+use super::{Scene, answer, field, flight};
 use crate::command::Queue;
 use crate::theme;
 use crate::units;
@@ -67,7 +67,12 @@ fn as_planned(scene: &Scene<'_>) -> String {
     let vehicle = scene.vehicle;
     let status = vehicle.status.as_ref().map(|status| &status.value);
     let place = status.and_then(|status| status.place.as_ref());
-    let does = if vehicle.phase() == Phase::Holding { "Holding on" } else { "Flying" };
+    let is_holding = vehicle.phase() == Phase::Holding;
+    if let Some(height) = answer::until_height(scene) {
+        let then = if is_holding { "then it holds" } else { "then the changed way is flown" };
+        return format!("Climbing straight ahead {height}, {then}");
+    }
+    let does = if is_holding { "Holding on" } else { "Flying" };
     let does = place.map_or_else(
         || "In the air".to_owned(),
         |at| format!("{does} {} ▸ {}", vehicle.name_of(&at.stage), vehicle.name_of(&at.leg)),
@@ -95,6 +100,9 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     }
     if let Some(how) = led_otherwise(scene) {
         return format!("⛔ EMERGENCY: {how}{cause}");
+    }
+    if let Some(height) = answer::until_height(scene) {
+        return format!("⛔ EMERGENCY: climbing straight ahead {height}, then flying {name}{cause}");
     }
     let runway = plan.map_or_else(String::new, |plan| format!(", to runway {}", plan.runway));
     // the way ahead is foreseen with an engine

@@ -230,7 +230,7 @@ impl Vehicle {
             Telemetry::Power(v) => remember!(self.power, v, now_s),
             Telemetry::Links(v) => remember!(self.links, v, now_s),
             Telemetry::Navigation(v) => remember!(self.navigation, v, now_s),
-            Telemetry::Gateway(v) => remember!(self.gateway, v, now_s),
+            Telemetry::Gateway(v) => self.gateway_status(v, now_s),
             Telemetry::Status(v) => {
                 self.follow(&v.value);
                 remember!(self.status, *v, now_s);
@@ -267,6 +267,18 @@ impl Vehicle {
             // the status of a flight that is over has none any more
             self.ended_in = self.emergency().cloned();
         }
+    }
+
+    /// That what was asked for in the climb waits is logged once: its answer and its phase look as if it were done.
+    fn gateway_status(&mut self, status: Stamped<GatewayStatus>, now_s: f64) {
+        let before = self.gateway.as_ref().and_then(|before| before.value.waits_for_height_m);
+        if let Some(height_m) = status.value.waits_for_height_m.filter(|_| before.is_none()) {
+            let text = format!(
+                "It climbs straight ahead: what was asked for waits until {height_m:.0} m above home"
+            );
+            self.log.add(now_s, Level::Info, "gateway", &text);
+        }
+        remember!(self.gateway, status, now_s);
     }
 
     /// That a flight is not recorded any more is reported once.
@@ -419,6 +431,11 @@ impl Vehicle {
     /// Why its autopilot can't be flown as it is set up, and what to do, as its gateway says.
     pub fn unfit(&self) -> Option<&str> {
         self.gateway.as_ref()?.value.unfit.as_deref()
+    }
+
+    /// What was asked for in the climb waits until the aircraft is so high above home, metres.
+    pub fn waits_for_height_m(&self, now_s: f64) -> Option<f64> {
+        live(&self.gateway, now_s)?.waits_for_height_m
     }
 
     /// What the executor is doing; idle when nothing is known.

@@ -374,9 +374,44 @@ fn what_a_silent_autopilot_said_looks_as_old_as_it_is_and_its_commands_say_that_
     for text in ["circuit ▸ side2", "0.8 km", state] {
         assert_eq!(window.colour_of(text), Some(p.weak), "{text}");
     }
-    assert!(window.shows(nobody) && window.is_enabled("⏸ Hold"), "it is done when that can be done");
+    assert!(window.shows(nobody));
+    window.click("⏸ Hold");
+    let (ticket, _) = window.asked().unwrap();
+    window.answer(ticket, Ok(Reply::Done));
+    assert!(window.shows("Hold: accepted, waits until the autopilot is heard"));
     silent(&mut window, 0.4);
     assert!(!window.shows(" old") && !window.shows(nobody));
+}
+
+/// It was accepted and said to be holding, and climbed straight on.
+#[test]
+fn what_was_asked_for_in_the_climb_says_until_when_it_waits() {
+    let (mut window, mut value) = flying();
+    let climb = |window: &mut Window, waits_for_height_m: Option<f64>| {
+        let gateway = GatewayStatus { waits_for_height_m, ..gateway_status(GatewayState::TakeOff) };
+        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value: gateway }));
+    };
+    climb(&mut window, None);
+    window.click("⏸ Hold");
+    let (ticket, _) = window.asked().unwrap();
+    window.answer(ticket, Ok(Reply::Done));
+    assert!(window.shows("Hold: accepted") && !window.shows("waits"));
+    value.phase = Phase::Holding;
+    window.receive_status(value.clone());
+    climb(&mut window, Some(40.0));
+    let banner = "Climbing straight ahead until 40 m above home";
+    assert!(window.shows("Hold: accepted, waits until 40 m above home"));
+    assert!(window.shows(&format!("{banner}, then it holds")) && !window.shows("Holding on"));
+    (value.phase, value.emergency) = (Phase::Flying, Some("return".into()));
+    window.receive_status(value.clone());
+    assert!(window.shows("EMERGENCY: climbing straight ahead until 40 m above home, then flying return"));
+    (value.phase, value.emergency) = (Phase::Holding, None);
+    window.receive_status(value);
+    climb(&mut window, Some(40.0));
+    climb(&mut window, None);
+    assert!(window.shows("Holding on circuit ▸ side2") && !window.shows(banner));
+    let log = window.app().vehicle().log.iter().filter(|line| line.text.contains("waits until 40 m"));
+    assert_eq!(log.map(|line| line.times).collect::<Vec<_>>(), [1], "once");
 }
 
 fn navigation(distance_m: f64) -> Navigation {

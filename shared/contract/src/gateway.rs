@@ -63,6 +63,9 @@ pub struct GatewayStatus {
     pub fp_manager: Option<String>,
     /// Seconds since the FP Manager was last heard; `None`: never.
     pub fp_manager_age_s: Option<f64>,
+    /// What was asked for right after lift-off is done from this height above home on, metres; `None`: nothing waits for that.
+    #[serde(default)]
+    pub waits_for_height_m: Option<f64>,
     /// Seconds until Safe.Hold becomes Safe.Return, while that is so.
     pub safe_return_in_s: Option<f64>,
     /// Alarms that are raised now.

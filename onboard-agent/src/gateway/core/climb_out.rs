@@ -43,6 +43,12 @@ impl Gateway {
         self.state == GatewayState::TakeOff && !self.control.climb_out.is_over
     }
 
+    /// Something that was asked for waits until the aircraft is so high above home, metres.
+    pub(super) fn waits_for_height_m(&self) -> Option<f64> {
+        let climb = &self.control.climb_out;
+        (self.climbs_out() && (climb.asked.is_some() || climb.left.is_some())).then_some(CLEAR_M)
+    }
+
     /// Leads the aircraft away from its waypoints, once that can be done.
     pub(super) fn lead_away(&mut self, asked: GatewayRequest, out: &mut Vec<Output>) -> Result<(), String> {
         self.is_free()?;

@@ -52,6 +52,7 @@ impl Gateway {
             autopilot_age_s: age(self.telemetry.last_received).unwrap_or(f64::MAX),
             fp_manager: self.fp_manager.heard(now, &self.safe).map(|session| session.to_string()),
             fp_manager_age_s: self.fp_manager.age_s(now),
+            waits_for_height_m: self.waits_for_height_m(),
             safe_return_in_s: left.map(|l| l.as_secs_f64()),
             alarms: self.alarms.raised(),
         }

@@ -244,6 +244,7 @@ impl Gateway {
             autopilot_age_s: 0.0,
             fp_manager: None,
             fp_manager_age_s: None,
+            waits_for_height_m: None,
             safe_return_in_s: None,
             alarms: self.alarms.clone(),
         }

@@ -37,6 +37,10 @@ fn is_held(core: &Core) -> bool {
     core.was_ordered(&Order::Steer(Aim::Hold))
 }
 
+fn waits(core: &Core) -> Option<f64> {
+    core.gateway.status(core.now).waits_for_height_m
+}
+
 fn is_left(core: &Core) -> bool {
     core.orders().iter().any(|(_, order)| matches!(order, Order::Leave(_)))
 }
@@ -44,11 +48,14 @@ fn is_left(core: &Core) -> bool {
 #[test]
 fn what_climbs_on_its_take_off_is_held_once_it_is_clear() {
     let mut core = climbing();
+    assert_eq!(waits(&core), None);
     ask(&mut core, GatewayRequest::Hold);
     core.run(3, &up(Mode::Waypoints, 35.0, -3.0));
     assert!(!is_held(&core));
+    assert_eq!(waits(&core), Some(40.0), "it says so meanwhile");
     core.run(1, &up(Mode::Waypoints, 41.0, -3.0));
     assert!(is_held(&core));
+    assert_eq!(waits(&core), None);
 }
 
 #[test]
