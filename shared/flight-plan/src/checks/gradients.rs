@@ -7,18 +7,21 @@ use super::step::Step;
 use crate::legible::told_apart;
 use crate::{Edit, IterativeForm, LegKind, Problem};
 
+/// So much does rounding make of it, metres: what another program writes has four decimals.
+const ROUNDED_M: f64 = 0.1;
+/// So much more than the aircraft does the gateway grants on a way, metres: it is flown, and ends so far from its altitude. The
+/// waypoints of a climb are written so.
+const GRANTED_M: f64 = 10.0;
+
 pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let Some((gain_m, length_m)) = gain_and_length_m(step) else { return };
-    let rate_mps = gain_m / (length_m / step.speed_mps);
-    let (climb, descent) = (view.profile.max_climb_mps, view.profile.max_descent_mps);
-    // flown backwards, a climb is a descent
-    let (climb, descent) =
-        if flown_backwards(step) { (climb.min(descent), climb.min(descent)) } else { (climb, descent) };
-    if rate_mps > climb || -rate_mps > descent {
-        let (what, limit) = if rate_mps > 0.0 { ("climb", climb) } else { ("descend", descent) };
+    let limit = limit_mps(view, step, gain_m);
+    let possible_m = length_m / step.speed_mps * limit;
+    let lacking_m = gain_m.abs() - possible_m;
+    if lacking_m > ROUNDED_M {
+        let what = if gain_m > 0.0 { "climb" } else { "descend" };
         let (at_least, at_most) = if step.start.is_none() { ("at least ", "at most ") } else { ("", "") };
-        let (takes, does) = told_apart(rate_mps.abs(), limit);
-        let possible_m = length_m / step.speed_mps * limit;
+        let (takes, does) = told_apart(gain_m.abs() / (length_m / step.speed_mps), limit);
         let ends = step.entry_altitude_amsl_m().map_or_else(String::new, |from_m| {
             // in whole metres that it reaches
             let reached_m =
@@ -26,20 +29,43 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
             format!(", end it at {reached_m:.0} m AMSL")
         });
         let message = format!(
-            "lengthen this leg from {at_most}{length_m:.0} m to {:.0} m{ends} or hold to {what} before it (HA): it takes {at_least}{takes} m/s, the aircraft does {does} m/s",
+            "lengthen this leg from {at_most}{:.0} m to {:.0} m{ends} or hold to {what} before it (HA): it takes {at_least}{takes} m/s, the aircraft does {does} m/s",
+            length_m.floor(),
             (gain_m.abs() / limit * step.speed_mps).ceil()
         );
-        let problem = Problem::error("too-steep", message).of(&step.leg.id);
+        let say = if lacking_m > GRANTED_M { Problem::error } else { Problem::warning };
+        let problem = say("too-steep", message).of(&step.leg.id);
         problems.push(problem.perhaps_fixed_by(gentler(view, step, limit)));
     }
 }
 
-/// The altitude that is reached at the end of the leg.
+/// What the aircraft climbs or descends, m/s.
+fn limit_mps(view: &Inspection, step: &Step, gain_m: f64) -> f64 {
+    let (climb, descent) = (view.profile.max_climb_mps, view.profile.max_descent_mps);
+    // flown backwards, a climb is a descent
+    match (flown_backwards(step), gain_m > 0.0) {
+        (true, _) => climb.min(descent),
+        (false, true) => climb,
+        (false, false) => descent,
+    }
+}
+
+/// The altitude that is reached at the end of the leg; not where that only makes the next one too steep.
 fn gentler(view: &Inspection, step: &Step, limit_mps: f64) -> Option<Edit> {
     let (from_m, to_m) = (step.start?.altitude_amsl_m?, step.end?.altitude_amsl_m?);
     let possible_m = step.path?.length_m() / step.speed_mps * limit_mps;
     let reached_m = from_m + (to_m - from_m).clamp(-possible_m, possible_m);
-    relevelled(view, &step.leg.id, step.altitude(), to_m, reached_m - to_m)
+    let next_is_steeper = view.after(step).is_some_and(|next| is_steeper_from(view, next, reached_m));
+    relevelled(view, &step.leg.id, step.altitude(), to_m, reached_m - to_m).filter(|_| !next_is_steeper)
+}
+
+/// Begun at this altitude, it takes more than the aircraft does, and more than now.
+fn is_steeper_from(view: &Inspection, step: &Step, from_m: f64) -> bool {
+    let ends = step.entry_altitude_amsl_m().zip(step.end.and_then(|end| end.altitude_amsl_m));
+    let Some(((now_m, to_m), length_m)) = ends.zip(longest_m(step)) else { return false };
+    let gain_m = to_m - from_m;
+    let possible_m = length_m / step.speed_mps * limit_mps(view, step, gain_m);
+    gain_m.abs() > possible_m + ROUNDED_M && gain_m.abs() > (to_m - now_m).abs()
 }
 
 /// How much higher it ends than it begins, and how long it is; `None`: there is nothing to gain, or it can't be said.
@@ -65,7 +91,10 @@ fn flown_backwards(step: &Step) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, fixed_legs, message_of};
+    use crate::checks::testing::{check_legs, fixed_legs, message_of, plan_with};
+    use crate::{Problem, check, read};
+    use aircraft::Profile;
+    use terrain::Flat;
 
     /// From A at 500 m to B, 2695 m away: 107.8 s at 25 m/s, so at most 431 m.
     fn with(altitude_m: f64) -> String {
@@ -104,7 +133,7 @@ mod tests {
             check_legs(&[(&with(reached), &[])]);
             check_legs(&[(&with(reached + 1.0), &["too-steep"])]);
             let length: f64 = advice
-                .strip_prefix("lengthen this leg from 2695 m to ")
+                .strip_prefix("lengthen this leg from 2694 m to ")
                 .unwrap()
                 .split(' ')
                 .next()
@@ -115,5 +144,40 @@ mod tests {
             let longer = with(altitude_m).replace(r#"fix="B""#, &format!(r#"lat="36.3" lon="{lon}""#));
             check_legs(&[(&longer, &[])]);
         }
+    }
+
+    /// What is written with four decimals is a hair steeper than what it was written from.
+    #[test]
+    fn rounding_makes_nothing_too_steep() {
+        let exact_m = 500.0 + 2694.6 / 25.0 * 4.0;
+        assert!(check_plan(exact_m + 0.05).is_empty());
+        for lacking_m in [0.2, 5.0, 9.0, 11.0, 100.0] {
+            let found = check_plan(exact_m + lacking_m);
+            assert_eq!(found.len(), 1, "{lacking_m}");
+            assert_eq!(found[0].is_error(), lacking_m > 10.0, "{}", found[0]);
+            let (from, to) = found[0].message.split_once(" m to ").unwrap();
+            let (from, to) = (from.rsplit(' ').next().unwrap(), to.split(' ').next().unwrap());
+            assert!(from.parse::<f64>().unwrap() < to.parse::<f64>().unwrap(), "{}", found[0]);
+        }
+    }
+
+    fn check_plan(altitude_m: f64) -> Vec<Problem> {
+        let plan = read(plan_with(&with(altitude_m))).plan;
+        check(&plan, &Profile::default(), &Flat(300.0))
+    }
+
+    /// The next track is 3.3 km long: from 931 m it leads down to 500 m, and no farther.
+    #[test]
+    fn no_edit_is_offered_that_makes_the_next_leg_too_steep() {
+        let down_to = |next_m: f64| {
+            let legs = format!(
+                r#"<IF id="a" fix="A" altitude="1400" altitudeReference="amsl"/><TF id="b" fix="B" altitude="900" altitudeReference="amsl"/><TF id="c" fix="C" altitude="{next_m}" altitudeReference="amsl"/>"#
+            );
+            let found = check(&read(plan_with(&legs)).plan, &Profile::default(), &Flat(300.0));
+            assert_eq!(found.len(), 1, "{found:?}");
+            (found[0].subject.clone(), found[0].fix.is_some())
+        };
+        assert_eq!(down_to(600.0), (Some("b".into()), true));
+        assert_eq!(down_to(400.0), (Some("b".into()), false));
     }
 }

@@ -1,12 +1,15 @@
 //! Rally points as emergency plans, where a runway is near.
 
 use super::RallyPoint;
+use super::loiters::racetrack;
 use super::placed::{leg, waypoint};
 use crate::names::Names;
 use crate::note::Notes;
 use crate::synthetic::{Assumptions, altitude, runway, stage};
+use flight_exec::Config;
 use flight_plan::{
-    Altitude, AltitudeReference, EmergencyChoice, EmergencyPlan, FlightPlan, LegKind, Place, StageKind, Value,
+    Altitude, AltitudeReference, EmergencyChoice, EmergencyPlan, FlightPlan, Leg, LegKind, Place, Runway,
+    StageKind, TurnDirection, Value,
 };
 use geometry::LatLon;
 
@@ -26,7 +29,7 @@ pub fn add(
         return as_runways(plan, rally, home_amsl_m, assumptions, (names, notes));
     }
     for RallyPoint { place, position, height_m, .. } in rally {
-        let distance = |r: &flight_plan::Runway| r.threshold.distance_m(*position);
+        let distance = |r: &Runway| r.threshold.distance_m(*position);
         let nearest = plan.runways.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let Some(runway) = nearest.filter(|r| distance(r) <= NEAR_M) else {
             let message = format!(
@@ -52,7 +55,19 @@ pub fn add(
         });
         let mut arrival =
             stage(names.take("rally-arrival", "arrival"), "To the rally point", StageKind::Arrival);
+        let descent = height_m.map(|height_m| Leg {
+            altitude: Some(altitude(
+                (home_amsl_m + height_m).min(lands_from_amsl_m(runway, *position)),
+                AltitudeReference::Amsl,
+            )),
+            ..leg(
+                names.take("rally-hold", "rally-hold"),
+                LegKind::Ha(racetrack(*position, TurnDirection::Right, 0.0)),
+            )
+        });
         arrival.legs.push(way.into());
+        // an alarm is raised anywhere: it may come there too high to land from
+        arrival.legs.extend(descent.map(Into::into));
         let mut land = stage(names.take("rally-land", "land"), "Land", StageKind::Land);
         land.runway = Some(runway.id.clone());
         let id = names.take("rally", "rally");
@@ -67,6 +82,13 @@ pub fn add(
     if let Some(first) = plan.emergency_plans.first() {
         plan.emergency = EmergencyChoice { by_cause: vec![(None, first.id.clone())] };
     }
+}
+
+/// How high a landing is begun from a place at most, whole metres AMSL: on the slope of a final approach.
+fn lands_from_amsl_m(runway: &Runway, from: LatLon) -> f64 {
+    let Config { glide_slope_deg, final_approach_m, .. } = Config::default();
+    let before_m = runway.threshold.distance_m(from).max(final_approach_m);
+    (runway.elevation_amsl_m + before_m * glide_slope_deg.to_radians().tan()).floor()
 }
 
 /// Without a mission there is no runway that an emergency plan could lead to: each rally point becomes one.
