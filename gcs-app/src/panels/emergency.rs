@@ -96,7 +96,7 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     let raised = scene.vehicle.raised.as_ref().filter(|raised| raised.plan == *flown);
     let cause = raised.map_or_else(String::new, |raised| format!(", because {}", because(raised.cause)));
     if has_come_down(scene) {
-        return format!("⛔ EMERGENCY: {name}{cause}, ended on the ground{}", beside(scene, plan));
+        return format!("⛔ EMERGENCY: {name}, ended {}{cause}", where_it_ended(scene, plan));
     }
     if let Some(how) = led_otherwise(scene) {
         return format!("⛔ EMERGENCY: {how}{cause}");
@@ -113,14 +113,19 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     format!("⛔ EMERGENCY: flying {name}{lands}{runway}{cause}")
 }
 
-/// `, 2.5 km from runway 27`.
-fn beside(scene: &Scene<'_>, plan: Option<&EmergencyPlan>) -> String {
+/// `on runway 27`, or `on the ground, 2.5 km from runway 27`: a runway is as long and as wide as it is.
+fn where_it_ended(scene: &Scene<'_>, plan: Option<&EmergencyPlan>) -> String {
     let aboard = scene.vehicle.aboard.as_ref();
     let runway = plan.and_then(|plan| aboard?.plan.runway(&plan.runway));
     let lies = scene.vehicle.position.as_ref().map(|position| position.value.position);
-    let (Some(runway), Some(lies)) = (runway, lies) else { return String::new() };
-    let off = scene.units().distance().show(lies.distance_m(runway.threshold));
-    format!(", {off} from runway {}", runway.id)
+    let (Some(runway), Some(lies)) = (runway, lies) else {
+        return "on the ground".to_owned();
+    };
+    if runway.strip().is_landed_on(lies) {
+        return format!("on runway {}", runway.id);
+    }
+    let off = scene.units().distance().show(runway.strip().beside_m(lies));
+    format!("on the ground, {off} from runway {}", runway.id)
 }
 
 /// The emergency plan of this identifier.

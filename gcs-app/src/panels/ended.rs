@@ -20,7 +20,7 @@ pub fn otherwise(scene: &Scene<'_>) -> Option<String> {
         return Some(format!("The plan was not flown to its end: {name} was flown instead{landed}"));
     }
     let (end, stands) = (destination(plan?)?, vehicle.ended_at?);
-    let off = scene.units().distance().show(stands.distance_m(end.threshold));
+    let off = scene.units().distance().show(end.strip().beside_m(stands));
     (!end.strip().is_landed_on(stands)).then(|| format!("Landed {off} from {}, where the plan ends", end.id))
 }
 
@@ -28,7 +28,7 @@ fn landed(scene: &Scene<'_>, runway: &Runway, stands: LatLon) -> String {
     if runway.strip().is_landed_on(stands) {
         return format!(", landed on {}", runway.id);
     }
-    let off = scene.units().distance().show(stands.distance_m(runway.threshold));
+    let off = scene.units().distance().show(runway.strip().beside_m(stands));
     format!(", came down {off} from {}", runway.id)
 }
 

@@ -179,15 +179,39 @@ fn the_map_and_the_values_of_the_flight_stay_where_they_are_while_a_question_is_
 #[test]
 fn what_came_down_beside_the_runway_is_said_to_be_on_the_ground_and_offers_nothing_but_to_rewind() {
     let (mut window, _) = raised();
-    window.receive(position(101.0, 0.0, true));
+    window.stand_at(THRESHOLD.destination(142.0, 2500.0));
     window.receive_gateway_state(GatewayState::Stop);
-    assert!(window.shows("ended on the ground, ") && window.shows("from runway R05"));
+    assert!(window.shows("ended on the ground, 2.5 km from runway R05"));
     for gone in
         ["lands in", "Return to the main plan", "Hold", "Skip leg", "Start and take off", "Emergency: f"]
     {
         assert!(!window.shows(gone), "{gone}");
     }
     assert!(window.shows("Rewind to the start"));
+}
+
+/// It stood on the runway, and was said to be 0.4 km from it.
+#[test]
+fn what_came_down_on_the_runway_is_said_to_be_there_however_long_that_is() {
+    let (mut window, _) = raised();
+    window.receive_gateway_state(GatewayState::Stop);
+    for along_m in [0.0, 400.0, 600.0] {
+        window.stand_at(THRESHOLD.destination(52.0, along_m).destination(142.0, 10.0));
+        assert!(window.shows("ended on runway R05, because"), "{along_m} m along it");
+    }
+    // counted from where the runway is nearest
+    window.stand_at(THRESHOLD.destination(52.0, 1600.0));
+    assert!(window.shows("ended on the ground, 1.0 km from runway R05"));
+}
+
+/// Of the runway R05 of the square.
+const THRESHOLD: LatLon = LatLon::new(36.3190, -84.1730);
+
+impl Window {
+    fn stand_at(&mut self, at: LatLon) {
+        let value = Position { position: at, ..on_ground() };
+        self.receive(Telemetry::Position(Stamped { time_s: 101.0, validity_s: 2.0, value }));
+    }
 }
 
 #[test]
