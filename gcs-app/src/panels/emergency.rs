@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 }
 
 /// `not in command: the pilot switched to FBWA`: the plan does not lead the aircraft, though it is in force.
-fn led_otherwise(scene: &Scene<'_>) -> Option<String> {
+pub fn led_otherwise(scene: &Scene<'_>) -> Option<String> {
     use GatewayState::{Directed, Hold, Manual, SafeApproach, SafeHold, SafeLand, SafeReturn};
     let gateway = &scene.vehicle.gateway.as_ref()?.value;
     let is_led_otherwise = match gateway.state {

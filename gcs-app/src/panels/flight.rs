@@ -376,6 +376,8 @@ fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let plans = scene.vehicle.aboard.as_ref().map(|a| a.plan.emergency_plans.as_slice()).unwrap_or_default();
     let flown = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency.as_ref());
     let flown = flown.filter(|flown| chosen.as_ref().is_none_or(|chosen| chosen == *flown));
+    // what something else leads does not fly it
+    let flown = flown.filter(|_| emergency::led_otherwise(scene).is_none());
     let text = match flown {
         Some(flown) => format!("Emergency: flying {}", scene.vehicle.name_of(flown)),
         None => format!("Emergency: fly {name}"),
