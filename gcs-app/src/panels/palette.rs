@@ -173,8 +173,13 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     if query.trim().is_empty() {
         return actions;
     }
+    let bindings = bindings::of(scene);
+    // nothing more is asked for: in their own order, the place first, and not the shortest name
+    if query.trim_end() == bindings::QUERY.trim_end() && !bindings.is_empty() {
+        return bindings;
+    }
     actions.extend(alternates::of(scene));
-    actions.extend(bindings::of(scene));
+    actions.extend(bindings);
     actions.extend(offers::of(scene));
     actions.extend(flight::of(scene));
     actions.extend(flight::connect_to(query, scene));

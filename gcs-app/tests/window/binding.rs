@@ -4,12 +4,18 @@ use super::{SQUARE, Window};
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
-use flight_plan::{Place, Value, VariableValue, create};
+use flight_plan::{LegKind, Place, Value, VariableValue, create};
 
 /// A square with a position and a number.
 fn window() -> Window {
+    window_with("", "")
+}
+
+/// With something else in the place of a part of it.
+fn window_with(part: &str, other: &str) -> Window {
     let variables = r#"<variables><variable name="fire" type="position" initial="36.322 -84.168"/><variable name="fast" type="number" unit="m/s" initial="24"/></variables>"#;
-    let mut window = Window::open(&SQUARE.replace("<mainPlan", &format!("{variables}<mainPlan")));
+    let square = if part.is_empty() { SQUARE.to_owned() } else { SQUARE.replace(part, other) };
+    let mut window = Window::open(&square.replace("<mainPlan", &format!("{variables}<mainPlan")));
     window.until_analysed();
     window
 }
@@ -188,6 +194,28 @@ fn a_variable_is_dragged_onto_the_spacing_of_a_scan() {
     assert_eq!(spacing, Some(&Value::Expression("fast".into())));
     window.press_ctrl(Key::Z);
     assert_eq!(window.plan(), before, "one step");
+}
+
+/// Turns are not counted in metres per second.
+#[test]
+fn the_first_that_is_offered_for_an_orbit_is_its_place_and_no_count_is_a_speed() {
+    let orbit = r#"<orbit id="round" radius="300" turns="2" turn="left"><centre fix="C"/></orbit>"#;
+    let mut window = window_with(r#"<TF id="side3" fix="C"/>"#, orbit);
+    window.select_row(("ORB round", 0));
+    window.steps(2);
+    window.press(Key::B);
+    window.steps(3);
+    assert!(window.shows("Bind the turns of round to a new variable"));
+    assert!(
+        !window.shows("Bind the turns of round to fast") && !window.shows("Bind the radius of round to fast")
+    );
+    window.press(Key::Enter);
+    let place = Some(Place::Position(Value::Expression("fire".into())));
+    let plan = window.plan();
+    let LegKind::Orbit { centre, .. } = &plan.leg(&"round".into()).unwrap().leg.kind else {
+        panic!("no orbit")
+    };
+    assert_eq!(Some(centre.clone()), place);
 }
 
 /// What comes from the window system when somebody types, each letter a key and a text.

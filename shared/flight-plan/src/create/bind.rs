@@ -124,6 +124,14 @@ impl Numeric {
         quantity.map_or("", Quantity::unit)
     }
 
+    /// A variable in this unit can give it: nothing else is known of it than that it is no other unit. What has no unit (a number of
+    /// turns) has none of those.
+    pub fn takes(self, leg: &Leg, unit: &str) -> bool {
+        const KNOWN: [&str; 4] = ["m", "m/s", "°", "s"];
+        let (own, unit) = (self.unit(leg), if unit == "deg" { "°" } else { unit });
+        unit.is_empty() || unit == own || (!own.is_empty() && !KNOWN.contains(&unit))
+    }
+
     /// The edit that gives it a value of its own again: what its variable says at the start. `None`: it is not bound to one.
     pub fn unbind(self, plan: &FlightPlan, leg: &Leg) -> Option<Edit> {
         let (_, value) = Self::of(leg).into_iter().find(|(number, _)| *number == self)?;

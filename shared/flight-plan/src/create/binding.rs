@@ -1,7 +1,7 @@
 //! What of a leg a variable can give: its place or area and its numbers, each with the edits that make it so.
 
 use super::bind::{Numeric, bind, bound_to, unbind, variable_of_leg};
-use crate::{Edit, FlightPlan, Id, Leg, VariableValue};
+use crate::{Edit, FlightPlan, Id, Leg, Variable, VariableValue};
 
 /// Something of a leg that a variable can give.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,9 @@ pub fn bindings(plan: &FlightPlan, leg: &Id) -> Vec<Binding> {
         bound: Numeric::bound_to(value),
         choices: edits(
             plan,
-            |value| matches!(value, VariableValue::Number(_)),
+            |variable| {
+                matches!(variable.initial, VariableValue::Number(_)) && number.takes(leg, &variable.unit)
+            },
             |name| Some(number.bind(leg, name)),
         ),
         new: number.make_variable(plan, leg),
@@ -55,8 +57,9 @@ fn place(plan: &FlightPlan, leg: &Leg) -> Option<Binding> {
     let variable = bound.as_ref().and_then(|name| plan.variable(name));
     let is_area = variable.map_or(leg.place().is_none(), |v| matches!(v.initial, VariableValue::Polygon(_)));
     let is_any = bound.is_some() || new.is_some() || leg.place().is_some();
-    let fits =
-        |value: &VariableValue| matches!(value, VariableValue::Position(_) | VariableValue::Polygon(_));
+    let fits = |variable: &Variable| {
+        matches!(variable.initial, VariableValue::Position(_) | VariableValue::Polygon(_))
+    };
     is_any.then(|| Binding {
         name: if is_area { "Area" } else { "Place" }.into(),
         number: None,
@@ -69,10 +72,10 @@ fn place(plan: &FlightPlan, leg: &Leg) -> Option<Binding> {
 
 fn edits(
     plan: &FlightPlan,
-    fits: impl Fn(&VariableValue) -> bool,
+    fits: impl Fn(&Variable) -> bool,
     bind: impl Fn(&Id) -> Option<Edit>,
 ) -> Vec<(Id, Edit)> {
-    let variables = plan.variables.iter().filter(|variable| fits(&variable.initial));
+    let variables = plan.variables.iter().filter(|variable| fits(variable));
     variables.filter_map(|variable| Some((variable.name.clone(), bind(&variable.name)?))).collect()
 }
 
@@ -105,6 +108,25 @@ mod tests {
     fn names_of_the_document_are_said_in_words() {
         assert_eq!(words("innerRadius"), "Inner radius");
         assert_eq!(words("course"), "Course");
+    }
+
+    /// A number of turns is no distance between tracks, whatever both are called.
+    #[test]
+    fn a_variable_is_offered_where_its_unit_fits() {
+        let with =
+            |unit: &str| PLAN.replace(r#"initial="400"/>"#, &format!(r#"initial="400" unit="{unit}"/>"#));
+        let offered = |unit: &str| {
+            let all = bindings(&crate::read(with(unit)).plan, &"o".into());
+            let numbers = all.into_iter().filter(|binding| binding.number.is_some());
+            numbers
+                .filter(|binding| !binding.choices.is_empty())
+                .map(|binding| binding.name)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(offered("m"), ["Radius"]);
+        assert_eq!(offered("metres"), ["Radius"], "nobody knows that unit");
+        assert_eq!(offered("m/s"), [""; 0]);
+        assert_eq!(offered(""), ["Radius", "Turns"]);
     }
 
     #[test]
