@@ -71,6 +71,8 @@ pub struct Autopilot {
     pub flies_on: bool,
     /// It does not bank.
     pub jammed: bool,
+    /// It has started a moment ago, and has not read its list yet.
+    pub is_booting: bool,
     /// The aircraft lies where it came down, and its autopilot does not know.
     pub is_down: bool,
     /// Its own fence.
@@ -87,6 +89,8 @@ pub struct Autopilot {
     demanded: Demand,
     notices: Vec<Notice>,
     reached: Vec<u16>,
+    /// In GUIDED it said that it circles where it was sent.
+    has_arrived: bool,
 }
 
 impl Autopilot {
@@ -105,6 +109,8 @@ impl Autopilot {
             iced: false,
             flies_on: false,
             jammed: false,
+            is_booting: false,
+            has_arrived: false,
             is_down: false,
             fence: Fence::default(),
             rules,
@@ -252,6 +258,7 @@ impl Autopilot {
     fn enter(&mut self, mode: Mode) {
         self.mode = mode;
         self.take_off_done = false;
+        self.has_arrived = false;
         match mode {
             Mode::Auto => self.start_mission(),
             Mode::ReturnToLaunch => self.start_return(),
@@ -350,7 +357,8 @@ impl Autopilot {
             _ if self.aircraft.state().on_ground => Demand::default(),
             Mode::Circle => Demand { bank_rad: 0.35, ..cruise },
             Mode::Manual | Mode::FlyByWireA => cruise,
-            Mode::ReturnToLaunch | Mode::Loiter | Mode::Guided => self.follow(None).demand,
+            Mode::Guided => self.fly_guided(),
+            Mode::ReturnToLaunch | Mode::Loiter => self.follow(None).demand,
         }
     }
 

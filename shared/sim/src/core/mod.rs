@@ -35,6 +35,8 @@ pub const MAX_PEERS: usize = 8;
 const TIMESYNC_ID: u32 = 111;
 /// Share of the battery that the low-battery fault leaves.
 const LOW_BATTERY_SHARE: f64 = 0.15;
+/// Started anew, it has not read its list for so long.
+const BOOTS_NS: u64 = 3_000_000_000;
 
 /// Bytes to be sent: one whole frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -233,6 +235,7 @@ impl Simulator {
         if new.reboot && !old.reboot {
             self.booted_ns = self.now_ns;
         }
+        self.autopilot.is_booting = self.booted_ns > 0 && self.now_ns < self.booted_ns + BOOTS_NS;
         if new.low_battery != old.low_battery {
             self.autopilot.aircraft.set_battery_share(if new.low_battery { LOW_BATTERY_SHARE } else { 1.0 });
         }

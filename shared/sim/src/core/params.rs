@@ -17,6 +17,8 @@ pub enum Setting {
     ReturnHeight,
     /// Radius of the circle over home; 0: as any.
     ReturnRadius,
+    /// Whether the way back is the landing of the list; none: that is not to be chosen.
+    ReturnLands,
     /// A waypoint is reached when the altitude is so near to its own, metres; none: the altitude does not matter.
     AltitudeAcceptance,
     /// Height at which the take-off mode ends, metres.

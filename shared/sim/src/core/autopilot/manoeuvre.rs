@@ -6,6 +6,11 @@ use crate::core::params::Setting;
 use aircraft::{Action, Demand, Target};
 use geometry::LatLon;
 
+/// So near to its circle it has arrived, metres.
+const ARRIVED_M: f64 = 20.0;
+/// `RTL_AUTOLAND`: at once to the landing of the list.
+const LANDS_AT_ONCE: f64 = 2.0;
+
 impl Autopilot {
     /// Circles a point in a mode, at an altitude AMSL; radius negative: counter-clockwise, 0: the usual one.
     pub fn circle(&mut self, mode: Mode, position: LatLon, altitude_amsl_m: f64, radius_m: f64) {
@@ -19,6 +24,21 @@ impl Autopilot {
             acceptance_m: None,
         };
         self.guidance.direct(self.aircraft.state(), target);
+        self.has_arrived = false;
+    }
+
+    /// Round the place it was sent to. That it has arrived it says once, as of item 0, which is home's.
+    pub(super) fn fly_guided(&mut self) -> Demand {
+        let guided = self.follow(None);
+        let radius_m = match self.guidance.target().map(|target| target.action) {
+            Some(Action::Loiter { radius_m }) => radius_m.abs(),
+            _ => 0.0,
+        };
+        if guided.distance_m <= radius_m + ARRIVED_M && !self.has_arrived {
+            self.has_arrived = true;
+            self.reached.push(0);
+        }
+        guided.demand
     }
 
     pub(super) fn take_off(&mut self) -> Demand {
@@ -65,6 +85,11 @@ impl Autopilot {
 
     /// Home, or the landing of the mission if there is one and it is the autopilot's way.
     pub(super) fn start_return(&mut self) {
+        let lands = self.params.find(Setting::ReturnLands) == Some(LANDS_AT_ONCE);
+        if let Some(seq) = self.marked_landing().filter(|_| lands) {
+            self.mode = Mode::Auto;
+            return self.fly_item(seq, true);
+        }
         match self.landing_start().filter(|_| self.rules.returns_to_land) {
             Some(seq) => self.fly_item(seq, true),
             None => {

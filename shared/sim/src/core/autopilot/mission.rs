@@ -155,10 +155,15 @@ impl Autopilot {
 
     /// Where the landing of the mission begins: at its land start, or at the waypoint that leads to it.
     pub fn landing_start(&self) -> Option<u16> {
+        let land = self.mission.items().iter().position(|i| i.kind == Kind::Land)?;
+        self.marked_landing().or(u16::try_from(land.saturating_sub(1)).ok())
+    }
+
+    /// Where the landing begins by a marker of its own.
+    pub(super) fn marked_landing(&self) -> Option<u16> {
         let items = self.mission.items();
         let land = items.iter().position(|i| i.kind == Kind::Land)?;
-        let marked = items.iter().take(land).position(|i| i.kind == Kind::LandStart);
-        u16::try_from(marked.unwrap_or(land.saturating_sub(1))).ok()
+        u16::try_from(items.iter().take(land).position(|i| i.kind == Kind::LandStart)?).ok()
     }
 
     /// The list has run out.

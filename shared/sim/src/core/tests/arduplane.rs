@@ -215,6 +215,98 @@ fn the_mission_reads_back_as_it_was_written() {
     }
 }
 
+/// How long to stay and where to point is not kept, and what is said of distances only in a byte.
+#[test]
+fn what_is_read_back_is_what_it_keeps() {
+    let mut ground = Ground::new(Wind::CALM);
+    let at = ground.home().destination(52.0, 2500.0);
+    let waypoint = MISSION_ITEM_INT_DATA {
+        param1: 30.0,
+        param2: 63.7,
+        param3: 999.0,
+        param4: f32::NAN,
+        z: 150.004,
+        ..waypoint(at)
+    };
+    ground.upload(&[take_off(), waypoint, wire(MavCmd::MAV_CMD_NAV_LAND, at, 0.0)]);
+    let mut read = |seq| {
+        let ask = MISSION_REQUEST_INT_DATA { seq, ..MISSION_REQUEST_INT_DATA::DEFAULT };
+        match &ground.say(MavMessage::MISSION_REQUEST_INT(ask))[..] {
+            [MavMessage::MISSION_ITEM_INT(item)] => {
+                ([item.param1, item.param2, item.param3, item.param4], item.z)
+            }
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(read(2), ([0.0, 63.0, 255.0, 0.0], 150.0));
+    assert_eq!(read(3).0[3], 1.0);
+}
+
+#[test]
+fn nobody_waits_at_a_waypoint_that_says_how_long() {
+    let home = Config::default().home.position;
+    let landed_ns = |wait_s: f32| {
+        let wait = |item| match item {
+            MISSION_ITEM_INT_DATA { command: MavCmd::MAV_CMD_NAV_WAYPOINT, .. } => {
+                MISSION_ITEM_INT_DATA { param1: wait_s, ..item }
+            }
+            item => item,
+        };
+        let mut ground =
+            airborne_in_auto(&circuit(home).into_iter().map(wait).collect::<Vec<_>>(), Wind::CALM);
+        assert!(ground.fly_until(900.0, |sim| !sim.autopilot.is_armed()));
+        ground.sim.now_ns()
+    };
+    assert_eq!(landed_ns(60.0), landed_ns(0.0));
+}
+
+#[test]
+fn an_arrival_in_guided_is_told_once_as_of_item_0() {
+    let home = Config::default().home.position;
+    let mut ground = airborne_in_auto(&circuit(home), Wind::CALM);
+    let before = ground.reached().len();
+    let (altitude_amsl_m, point) = (500.0, home.destination(90.0, 1500.0));
+    ground.sim.autopilot.circle(Mode::Guided, point, altitude_amsl_m, 150.0);
+    ground.fly_until(10.0, |_| false);
+    assert_eq!(ground.reached().len(), before, "on its way");
+    ground.fly_until(200.0, |_| false);
+    assert_eq!(ground.reached()[before..], [0]);
+}
+
+#[test]
+fn a_list_is_refused_for_want_of_space_until_it_has_booted() {
+    let mut ground = Ground::new(Wind::CALM);
+    assert_eq!(ground.count(3), None, "it asks for the first item");
+    assert!(ground.sim.inject("reboot".parse().unwrap()));
+    ground.fly_until(1.0, |_| false);
+    assert_eq!(ground.count(3), Some(MavMissionResult::MAV_MISSION_NO_SPACE));
+    ground.fly_until(3.0, |_| false);
+    assert_eq!(ground.count(3), None);
+}
+
+#[test]
+fn a_return_that_is_to_land_flies_the_marked_landing_in_auto() {
+    let home = Config::default().home.position;
+    let marker = wire(MavCmd::MAV_CMD_DO_LAND_START, home, 0.0);
+    for (lands, marked, by_list) in [(2.0, true, true), (2.0, false, false), (0.0, true, false)] {
+        let mut items = circuit(home);
+        if marked {
+            items.insert(5, marker.clone());
+        }
+        let mut ground = airborne_in_auto(&items, Wind::CALM);
+        assert!(ground.sim.autopilot.params.set("RTL_AUTOLAND", lands));
+        ground.mode(Mode::ReturnToLaunch);
+        let autopilot = &ground.sim.autopilot;
+        let mode = if by_list { Mode::Auto } else { Mode::ReturnToLaunch };
+        assert_eq!((autopilot.mode(), autopilot.run.current == 7), (mode, by_list), "{lands} {marked}");
+        if by_list {
+            let set = MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT;
+            ground.command(set, [2., 0., 0., 0., 0., 0., 0.]);
+            assert_eq!(ground.sim.autopilot.run.current, 2, "that leaves it");
+        }
+    }
+}
+
 #[test]
 fn reposition_circles_the_point_the_way_it_was_asked() {
     let home = Config::default().home.position;

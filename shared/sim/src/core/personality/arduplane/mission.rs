@@ -20,6 +20,10 @@ impl ArduPlane {
     ) -> bool {
         let items = &mut a.mission.0;
         let reply = match message {
+            MavMessage::MISSION_COUNT(c) if is_mission(c.mission_type) && a.is_booting => {
+                // it does not know yet how many items there is room for
+                Reply::Ack(MavMissionResult::MAV_MISSION_NO_SPACE)
+            }
             MavMessage::MISSION_COUNT(c) if is_mission(c.mission_type) => {
                 self.transfer.begin(items, party, c.count, now_ns)
             }
@@ -117,7 +121,25 @@ pub(super) fn send(a: &mut Autopilot, party: Party, reply: Reply, out: &mut Vec<
     out.push((Some(party.peer), message));
 }
 
-/// Read-back: what was taken, altitudes rounded to centimetres as the real list does.
+/// What the list keeps of an item: altitudes to the centimetre, a waypoint's distances in a byte each, and of a waypoint neither how long
+/// to stay nor where to point; a landing says that it may be broken off.
+fn kept(wire: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_INT_DATA {
+    let byte = |metres: f32| f32::from(metres as u8);
+    let wire = MISSION_ITEM_INT_DATA { z: (wire.z * 100.0).round() / 100.0, ..wire.clone() };
+    match wire.command {
+        MavCmd::MAV_CMD_NAV_WAYPOINT => MISSION_ITEM_INT_DATA {
+            param1: 0.0,
+            param2: byte(wire.param2),
+            param3: byte(wire.param3),
+            param4: 0.0,
+            ..wire
+        },
+        MavCmd::MAV_CMD_NAV_LAND => MISSION_ITEM_INT_DATA { param4: 1.0, ..wire },
+        _ => wire,
+    }
+}
+
+/// Read-back: what is kept of what was taken.
 fn send_item(
     a: &Autopilot,
     party: Party,
@@ -129,9 +151,8 @@ fn send_item(
     let item = a.mission.items().get(usize::from(seq)).filter(|_| is_mission(mission_type));
     let message = match item {
         Some(item) => {
-            let mut wire = item.wire.clone();
-            wire.z = (wire.z * 100.0).round() / 100.0;
-            wire.current = u8::from(seq == a.run.current);
+            let current = u8::from(seq == a.run.current);
+            let wire = MISSION_ITEM_INT_DATA { current, ..kept(&item.wire) };
             mission_item(party.sender, wire, seq, as_int)
         }
         None => mission_ack(party.sender, MavMissionResult::MAV_MISSION_INVALID_SEQUENCE, mission_type),

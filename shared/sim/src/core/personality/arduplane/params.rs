@@ -21,7 +21,7 @@ pub fn params(profile: &Profile) -> Params {
         free("WP_LOITER_RAD", turn_m, any_radius).is(S::LoiterRadius),
         free("RTL_ALTITUDE", 100.0, (-1.0, 5000.0)).is(S::ReturnHeight),
         free("RTL_RADIUS", 0.0, any_radius).is(S::ReturnRadius),
-        fixed("RTL_AUTOLAND", 0.0),
+        free("RTL_AUTOLAND", 0.0, (0.0, 4.0)).is(S::ReturnLands),
         free("TKOFF_ALT", 50.0, (0.0, 200.0)).is(S::TakeOffHeight),
         free("LAND_DISARMDELAY", 3.0, (0.0, 127.0)).is(S::DisarmDelay),
         free("ARMING_CHECK", 1.0, (0.0, 1.0)).is(S::ArmingChecks),
