@@ -61,7 +61,7 @@ impl Autopilot {
         let mut demand = Demand::default();
         for _ in 0..MAX_REACHED_A_STEP {
             let next = self.run.upcoming(self.mission.items(), self.rules.first_item);
-            let next = next.map(|item| self.target(&item));
+            let next = next.map(|item| self.target(&item, self.comes_from()));
             let guided = self.follow(next);
             demand = guided.demand;
             if !self.is_reached(&guided) || self.run.phase != Phase::Running {
@@ -132,7 +132,9 @@ impl Autopilot {
             self.set_mode(Mode::ReturnToLaunch);
             return;
         }
-        let target = self.target(&item);
+        // told where to go on, it forgets the line that it flew along
+        let from = if direct { self.aircraft.state().position } else { self.comes_from() };
+        let target = self.target(&item, from);
         self.circles_for_altitude = false;
         if direct {
             self.guidance.direct(self.aircraft.state(), target);
@@ -193,12 +195,12 @@ impl Autopilot {
         }
     }
 
-    /// What guidance is to do for an item.
-    fn target(&self, item: &Item) -> Target {
+    /// What guidance is to do for an item, to which it comes from a place. It lands in the direction in which it comes.
+    fn target(&self, item: &Item, from: LatLon) -> Target {
         let s = self.aircraft.state();
         let nowhere = item.position == LatLon::new(0.0, 0.0);
         let position = if nowhere { s.position } else { item.position };
-        let landing_deg = self.landing_heading_deg(position);
+        let landing_deg = from.bearing_deg(position);
         let action = match item.kind {
             Kind::TakeOff => Action::TakeOff { heading_deg: s.heading_deg() },
             Kind::Loiter { radius_m } => self.circle_action(radius_m),
@@ -224,13 +226,12 @@ impl Autopilot {
         }
     }
 
-    /// It lands in the direction in which it comes from the item before.
-    fn landing_heading_deg(&self, touch_down: LatLon) -> f64 {
-        let from = match self.guidance.target() {
+    /// The item before the next one, if it is a place.
+    fn comes_from(&self) -> LatLon {
+        match self.guidance.target() {
             Some(Target { position, action: Action::Fly, .. }) => *position,
             _ => self.aircraft.state().position,
-        };
-        from.bearing_deg(touch_down)
+        }
     }
 }
 

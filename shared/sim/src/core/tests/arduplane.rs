@@ -307,6 +307,19 @@ fn a_return_that_is_to_land_flies_the_marked_landing_in_auto() {
     }
 }
 
+/// It forgets the line that it flew along before.
+#[test]
+fn sent_to_its_landing_it_flies_straight_there() {
+    let home = Config::default().home.position;
+    let mut ground = airborne_in_auto(&circuit(home), Wind::CALM);
+    assert!(ground.fly_until(600.0, |sim| sim.autopilot.run.current == 5));
+    ground.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, [7., 0., 0., 0., 0., 0., 0.]);
+    ground.fly_until(25.0, |_| false);
+    let (at, track_deg) = (ground.position(), ground.sim.autopilot.aircraft.state().track_deg());
+    let off_deg = (track_deg - at.bearing_deg(home) + 540.0).rem_euclid(360.0) - 180.0;
+    assert!(off_deg.abs() < 3.0, "{off_deg}");
+}
+
 #[test]
 fn reposition_circles_the_point_the_way_it_was_asked() {
     let home = Config::default().home.position;
