@@ -5,7 +5,9 @@
 mod small;
 
 use aircraft::{Autopilot, Profile, Wind, air};
-use flight_exec::rehearse::{Act, Options, Scenario, Start, Trigger, When, preview_as_far_as_possible};
+use flight_exec::rehearse::{
+    Act, Options, Scenario, Start, TrackPoint, Trigger, When, preview_as_far_as_possible,
+};
 use flight_exec::{Action, Command, Event, Preview, PreviewError, preview};
 use flight_plan::{Cause, Program, VariableValue, compile_document};
 use std::path::Path;
@@ -189,6 +191,24 @@ fn by_arduplane_a_plan_is_flown_as_much_faster_as_the_air_is_thin() {
     assert!((at.airspeed_mps - expected_mps).abs() < 0.01, "{at:?}, expected {expected_mps}");
     assert!(arduplane.landed && arduplane.time_s < usual.time_s);
     assert_eq!(legs(&arduplane), legs(&usual));
+}
+
+/// Its driver puts a waypoint where the take-off was to end: it does not climb on before.
+#[test]
+fn an_autopilot_flies_to_where_its_take_off_was_to_end_before_it_climbs_on() {
+    let height_there_m = |autopilot| {
+        let (flat, options) = (Arc::new(Flat(300.0)) as _, Options { autopilot, ..Options::default() });
+        let legs = r#"<TF id="a" fix="A"/><TF id="b" fix="B"/><TF id="c" fix="C"/>"#;
+        let (profile, scenario) = (Profile::default(), Scenario::default());
+        let flown =
+            preview(&program(legs), &profile, &flat, Wind::CALM, Start::Runway, &scenario, &options).unwrap();
+        let end = &flown.waypoints[0].waypoint;
+        let away_m = |at: &TrackPoint| at.position.distance_m(end.position);
+        let nearest = flown.track.iter().min_by(|a, b| away_m(a).total_cmp(&away_m(b))).unwrap();
+        nearest.altitude_amsl_m - end.altitude_amsl_m
+    };
+    let px4_m = height_there_m(Some(Autopilot::Px4));
+    assert!(px4_m < 5.0 && height_there_m(None) > px4_m + 5.0, "{px4_m}");
 }
 
 /// Asked once and decided once at each passing: by default at its deadline, before the leg behind it begins.

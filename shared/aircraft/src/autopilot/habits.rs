@@ -82,6 +82,8 @@ pub struct Habits {
     /// It leaves corners from as near as it is told, by [`arc_acceptance_m`](super::arc_acceptance_m) and
     /// [`turn_acceptance_m`](super::turn_acceptance_m).
     pub is_told_corners: bool,
+    /// It flies on to where its take-off was to end, as high as that ended, before it goes on: its driver puts a waypoint there.
+    pub climbs_out: bool,
     /// So much of the sideways acceleration that it asks for does it get, 0..1: an airframe that slips turns less than by
     /// its bank.
     pub turn_share: f64,
@@ -96,6 +98,7 @@ impl Habits {
         damping: 0.8,
         corners: Corners::Anticipated,
         is_told_corners: false,
+        climbs_out: false,
         turn_share: 1.0,
         is_indicated: false,
     };
@@ -107,6 +110,7 @@ impl Habits {
     /// NPFG_DAMPING (0.7), or NAV_ACC_RAD (10 m) if that is more; and its airspeeds are calibrated ones (FW_AIRSPD_TRIM).
     pub const PX4: Habits = Habits {
         corners: Corners::Early { s: 0.32 * 10.0 * 0.7, least_m: 10.0 },
+        climbs_out: true,
         is_indicated: true,
         ..Habits::CLOSE
     };
@@ -122,6 +126,7 @@ impl Habits {
             damping: 0.75,
             corners: Corners::Radius(wp_radius_m(profile)),
             is_told_corners: true,
+            climbs_out: true,
             turn_share: 0.73,
             is_indicated: true,
         }

@@ -217,6 +217,10 @@ impl<'a> Flight<'a> {
 
     /// The aircraft is at its waypoint, or was within the last step.
     fn reached(&mut self, guided: &Guided, step_us: u64) -> Result<(), PreviewError> {
+        if let Some(place) = self.at.climb_out() {
+            self.at.guidance.direct(self.at.aircraft.state(), place);
+            return Ok(());
+        }
         let since_us = self.at.now_us.saturating_sub(self.at.stepped_us).min(step_us);
         let late_us = microseconds(guided.late_s).min(since_us);
         self.at.distance_m -= self.at.aircraft.state().ground_speed_mps() * seconds(late_us);

@@ -4,9 +4,10 @@ use super::scenario::Moment;
 use super::{FlownWaypoint, LegPassage, Options, PreviewError, Start};
 use crate::api::{Time, Waypoint};
 use crate::executor::Executor;
-use aircraft::autopilot::{arc_acceptance_m, turn_acceptance_m};
+use aircraft::autopilot::{GREATEST_ACCEPTANCE_M, arc_acceptance_m, turn_acceptance_m};
 use aircraft::{Aircraft, Autopilot, Guidance, Habits, Profile, Target};
 use flight_plan::{Id, Program, Runway};
+use geometry::LocalFrame;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use terrain::Terrain;
@@ -172,6 +173,19 @@ impl Situation {
             turn_acceptance_m(from.position, waypoint.position, onward.position, waypoint.airspeed_mps)
         });
         Target { acceptance_m: acceptance_m.or(target.acceptance_m), ..target }
+    }
+
+    /// Behind a take-off: where it was to end, if the autopilot flies there first, and it lies ahead.
+    pub fn climb_out(&self) -> Option<Target> {
+        let habits = self.guidance.habits();
+        let is_take_off = |target: &&Target| matches!(target.action, aircraft::Action::TakeOff { .. });
+        let take_off = self.guidance.target().filter(is_take_off).filter(|_| habits.climbs_out)?;
+        let state = self.aircraft.state();
+        let ahead = LocalFrame::new(state.position).to_local(take_off.position);
+        // as far away as can be told
+        let acceptance_m = habits.is_told_corners.then_some(GREATEST_ACCEPTANCE_M);
+        let place = Target { action: aircraft::Action::Fly, acceptance_m, ..*take_off };
+        (ahead.dot(state.ground_velocity_mps) > 0.0).then_some(place)
     }
 
     /// Since the start, seconds.
