@@ -152,6 +152,18 @@ fn what_is_in_reach_of_a_glide_is_reached_in_flight_too() {
     assert!(in_reach > 20, "{in_reach}");
 }
 
+/// Until somebody knows that the engine is out, it flies on along its way.
+#[test]
+fn an_engine_failure_is_answered_once_it_is_noticed() {
+    let plan = plan("fire-watch");
+    let rehearsal = rehearsed(&plan, &WhatIf::default());
+    let found = rehearsal.divert(rehearsal.preview().unwrap().time_s * 0.5, Cause::Engine).unwrap();
+    let track = found.glided.unwrap().track;
+    let turned = track.iter().find(|at| at.passage != track[0].passage).unwrap();
+    let noticed_s = turned.time_s - found.time_s;
+    assert!((2.0..3.5).contains(&noticed_s), "{noticed_s}");
+}
+
 fn reach(diversion: &Diversion) -> Reach {
     diversion.reach(15.0, 0.05)
 }

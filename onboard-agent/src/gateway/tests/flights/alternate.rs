@@ -6,12 +6,12 @@ use flight_exec::Branching;
 use flight_exec::Event;
 use terrain::{Tile, Tiles};
 
-const SQUARE: &str = include_str!("../../../../../assets/plans/square.xml");
+pub const SQUARE: &str = include_str!("../../../../../assets/plans/square.xml");
 /// Surveys 300 m above home, and names an alternate of its own for an engine failure, by a detour.
-const SURVEY: &str = include_str!("survey.xml");
+pub const SURVEY: &str = include_str!("survey.xml");
 const PERSONALITIES: [Personality; 2] = [Personality::ArduPlane, Personality::Px4];
 
-fn hills() -> Arc<dyn Terrain> {
+pub fn hills() -> Arc<dyn Terrain> {
     let tile = include_bytes!("../../../../../assets/terrain/N36W085.hgt");
     let mut tiles = Tiles::new();
     tiles.add(Tile::from_hgt("N36W085.hgt", tile).unwrap());
@@ -52,7 +52,8 @@ fn assert_flies_its_alternate(whole: &Whole, plan: &str) {
     assert!(!said.is_some_and(|(_, words)| words.contains("mission")), "{said:?}");
 }
 
-const STRIP: aircraft::Strip = aircraft::Strip { threshold: HOME, heading_deg: HEADING_DEG, length_m: 600.0 };
+pub const STRIP: aircraft::Strip =
+    aircraft::Strip { threshold: HOME, heading_deg: HEADING_DEG, length_m: 600.0 };
 
 fn place(whole: &Whole) -> LatLon {
     whole.flight.sim.autopilot.aircraft.state().position

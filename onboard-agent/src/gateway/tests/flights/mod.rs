@@ -392,6 +392,7 @@ mod disarmed;
 mod ended;
 mod faulted;
 mod faults;
+mod foretold;
 mod gliding;
 mod late;
 mod met_in_flight;

@@ -23,6 +23,9 @@ const MAX_SAMPLES: f64 = 500.0;
 /// So near to the threshold the ground is the runway's.
 const AT_RUNWAY_M: f64 = 400.0;
 
+/// An engine that has failed is noticed aboard so much later, seconds: it is told once a second, and has stood for a second then.
+const NOTICED_S: f64 = 2.0;
+
 /// What would happen after an alarm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diversion {
@@ -171,21 +174,30 @@ impl<'a> Here<'a> {
 
     /// As it is flown with an engine, or why it is not.
     fn powered(&self, cause: Cause) -> Option<Result<Powered, String>> {
-        let alarm = Act::Command(Command::Emergency { cause, plan: None });
-        self.flown_on(vec![alarm], |flight| powered(flight, self.time_s))
+        self.flown_on([self.alarm(self.time_s, cause)], |flight| powered(flight, self.time_s))
     }
 
-    /// As it is flown after the engine failed.
+    /// As it is flown after the engine failed; until that is noticed, on along its way.
     fn glided(&self, runway: &Runway) -> Option<Glided> {
-        let alarm = Act::Command(Command::Emergency { cause: Cause::Engine, plan: None });
+        let fails = Trigger { at: When::After { seconds: self.time_s }, then: vec![Act::FailEngine] };
+        let alarm = self.alarm(self.time_s + NOTICED_S, Cause::Engine);
         let terrain = self.rehearsal.terrain.as_ref();
-        self.flown_on(vec![Act::FailEngine, alarm], |flight| glided(flight, self.time_s, runway, terrain))?
+        self.flown_on([fails, alarm], |flight| glided(flight, self.time_s, runway, terrain))?
     }
 
-    /// What becomes of the flight if this is done here.
-    fn flown_on<T>(&self, then: Vec<Act>, judge: impl FnOnce(Flight) -> T) -> Option<T> {
+    fn alarm(&self, seconds: f64, cause: Cause) -> Trigger {
+        let alarm = Act::Command(Command::Emergency { cause, plan: None });
+        Trigger { at: When::After { seconds }, then: vec![alarm] }
+    }
+
+    /// What becomes of the flight if this is done from here on.
+    fn flown_on<T>(
+        &self,
+        triggers: impl IntoIterator<Item = Trigger>,
+        judge: impl FnOnce(Flight) -> T,
+    ) -> Option<T> {
         let mut scenario = self.rehearsal.scenario.clone();
-        scenario.triggers.push(Trigger { at: When::After { seconds: self.time_s }, then });
+        scenario.triggers.extend(triggers);
         let (winds, options) = (self.rehearsal.winds, &self.rehearsal.options);
         let given = Circumstances { winds, scenario: &scenario, options };
         Some(judge(self.flown.resumed_before(self.time_s, given)?))
@@ -243,7 +255,7 @@ fn glide_home(
 }
 
 impl Flown {
-    /// The flight at the last place kept that is not later than this. What is yet to be done is the scenario's last trigger.
+    /// The flight at the last place kept that is not later than this. What is yet to be done are the scenario's last triggers.
     fn resumed_before<'a>(&self, time_s: f64, given: Circumstances<'a>) -> Option<Flight<'a>> {
         let is_behind = |begin: &Situation| begin.time_s() > time_s;
         let first = self.stretches.partition_point(|s| !s.begin.as_deref().is_some_and(is_behind));
@@ -256,7 +268,7 @@ impl Flown {
         let mut at = begin.as_ref().clone();
         at.executor.swap_program(self.program.clone());
         at.executor.watch(false);
-        at.fired.push(false);
+        at.fired.resize(given.scenario.triggers.len(), false);
         Some(Flight::resumed(given, at))
     }
 }
