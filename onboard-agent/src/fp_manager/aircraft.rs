@@ -34,6 +34,12 @@ impl Aircraft {
         }
     }
 
+    /// How much warmer than the standard's the air is, by its density where the aircraft is; `None`: it is not known.
+    pub fn isa_deviation_c(&self) -> Option<f64> {
+        let (air, at) = (self.air?, self.position?);
+        aircraft::air::isa_deviation_c(at.altitude_amsl_m, air.pressure_hpa, air.temperature_c)
+    }
+
     /// Everything together, once a position is known. Without air data there is no wind; without
     /// battery data it is taken as full, as conditions on it must not fire on nothing. `engine_out`: see [`AircraftState::engine_out`].
     pub fn state(&self, engine_out: bool) -> Option<AircraftState> {

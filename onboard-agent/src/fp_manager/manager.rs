@@ -123,14 +123,15 @@ impl Manager {
         self.gateway_session.gateway()
     }
 
-    /// The wind as it is measured (calm, as long as nothing is known), and the time of day.
+    /// The wind as it is measured (calm, as long as nothing is known), the air, and the time of day.
     pub fn conditions(&self, now: Time) -> Conditions {
         let state = self.aircraft.state(self.alarms.engine_is_out());
         let wind =
             state.map_or(Wind::CALM, |s| Wind { east_mps: s.wind_east_mps, north_mps: s.wind_north_mps });
         let since_s = |then| now.saturating_sub(then).as_secs();
         let start_unix_s = self.day.map(|(then, unix_s)| unix_s.saturating_add_unsigned(since_s(then)));
-        Conditions { wind, start_unix_s, ..Conditions::default() }
+        let isa_deviation_c = self.aircraft.isa_deviation_c();
+        Conditions { wind, start_unix_s, isa_deviation_c, ..Conditions::default() }
     }
 
     /// The time of day, seconds since 1970-01-01T00:00:00Z, as the satellites give it.

@@ -187,7 +187,7 @@ fn by_arduplane_a_plan_is_flown_as_much_faster_as_the_air_is_thin() {
     };
     assert_eq!(fastest(&usual).airspeed_mps, 25.0);
     let at = fastest(&arduplane);
-    let expected_mps = 25.0 * air::true_per_indicated(at.altitude_amsl_m);
+    let expected_mps = 25.0 * air::true_per_indicated(at.altitude_amsl_m, 0.0);
     assert!((at.airspeed_mps - expected_mps).abs() < 0.01, "{at:?}, expected {expected_mps}");
     assert!(arduplane.landed && arduplane.time_s < usual.time_s);
     assert_eq!(legs(&arduplane), legs(&usual));

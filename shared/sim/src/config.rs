@@ -33,6 +33,8 @@ pub struct Config {
     pub home: Home,
     /// The wind.
     pub wind: Wind,
+    /// So much warmer than the standard's is the air, °C.
+    pub isa_deviation_c: f64,
     /// What flies.
     pub profile: Profile,
     /// Simulated seconds per second. 0: as fast as the lockstep partner lets it (1 without one).
@@ -60,6 +62,7 @@ impl Default for Config {
                 heading_deg: 52.0,
             },
             wind: Wind::CALM,
+            isa_deviation_c: 0.0,
             profile: Profile::default(),
             speed: 1.0,
             lockstep: false,

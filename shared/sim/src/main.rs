@@ -38,6 +38,9 @@ struct Options {
     /// Wind: the direction it comes from (degrees true) and its speed (m/s).
     #[arg(long, value_name = "DIRECTION,SPEED", value_parser = parse_wind, allow_hyphen_values = true)]
     wind: Option<aircraft::Wind>,
+    /// So much warmer than the standard atmosphere is the air at any height, °C.
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, default_value_t = 0.0)]
+    isa_deviation: f64,
     /// What flies: a built-in profile, or a JSON file.
     #[arg(long, default_value = "trainer")]
     aircraft: String,
@@ -70,6 +73,7 @@ impl Options {
             link,
             home: self.home.unwrap_or(defaults.home),
             wind: self.wind.unwrap_or(defaults.wind),
+            isa_deviation_c: self.isa_deviation,
             profile: load_profile(&self.aircraft)?,
             speed: self.speed,
             lockstep: self.lockstep,

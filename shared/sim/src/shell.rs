@@ -10,6 +10,7 @@ use crate::core::{Peer, STEP_NS, Simulator};
 use crate::frame::{self, Decoder, Frame};
 use crate::link::Bound;
 use crate::turns::Turns;
+use aircraft::air::MOST_DEVIATION_C;
 use anyhow::Context;
 use autopilot_link::{Event, Link};
 use geometry::LatLon;
@@ -165,11 +166,17 @@ pub fn spawn(config: Config) -> anyhow::Result<Handle> {
         "speed must be 0 or a positive number, not {}",
         config.speed
     );
+    anyhow::ensure!(
+        config.isa_deviation_c.abs() <= MOST_DEVIATION_C,
+        "no air is {} °C beside the standard's: it may be {MOST_DEVIATION_C} warmer or colder",
+        config.isa_deviation_c
+    );
     config.profile.validate()?;
     let bound = Bound::bind(config.link)?;
     let address = bound.address()?;
     let mut simulator =
         Simulator::of(config.personality, config.profile.clone(), config.home, config.wind, config.seed);
+    simulator.autopilot.set_isa_deviation_c(config.isa_deviation_c);
     for (name, value) in &config.params {
         let params = &mut simulator.autopilot.params;
         anyhow::ensure!(

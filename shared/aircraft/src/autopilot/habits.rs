@@ -89,6 +89,8 @@ pub struct Habits {
     pub turn_share: f64,
     /// It holds airspeeds as its pitot tube measures them: in thin air it is faster than it was told.
     pub is_indicated: bool,
+    /// So much warmer than the standard's is the air at any height, °C.
+    pub isa_deviation_c: f64,
 }
 
 impl Habits {
@@ -101,6 +103,7 @@ impl Habits {
         climbs_out: false,
         turn_share: 1.0,
         is_indicated: false,
+        isa_deviation_c: 0.0,
     };
 
     /// PX4's on a wing: by its source, as far as that says it, and not held against a flight; but with this lead its arcs come out as near to
@@ -129,12 +132,13 @@ impl Habits {
             climbs_out: true,
             turn_share: 0.73,
             is_indicated: true,
+            isa_deviation_c: 0.0,
         }
     }
 
     /// The true airspeed at which it flies when it was told one, at an altitude AMSL; m/s and metres.
     pub fn true_mps(&self, told_mps: f64, altitude_amsl_m: f64) -> f64 {
-        if self.is_indicated { told_mps * air::true_per_indicated(altitude_amsl_m) } else { told_mps }
+        told_mps * self.true_per_told(altitude_amsl_m)
     }
 
     /// A radius as it is in thin air, at an altitude AMSL; metres.
@@ -145,7 +149,11 @@ impl Habits {
 
     /// The airspeed that it takes a true one for, at an altitude AMSL; m/s and metres.
     pub fn told_mps(&self, true_mps: f64, altitude_amsl_m: f64) -> f64 {
-        if self.is_indicated { true_mps / air::true_per_indicated(altitude_amsl_m) } else { true_mps }
+        true_mps / self.true_per_told(altitude_amsl_m)
+    }
+
+    fn true_per_told(&self, altitude_amsl_m: f64) -> f64 {
+        if self.is_indicated { air::true_per_indicated(altitude_amsl_m, self.isa_deviation_c) } else { 1.0 }
     }
 }
 
@@ -165,6 +173,14 @@ mod tests {
         assert!((flown_mps - 25.67).abs() < 0.01, "{flown_mps}");
         assert!((arduplane.told_mps(flown_mps, 550.0) - 25.0).abs() < 1e-9);
         assert_eq!(Habits::CLOSE.true_mps(25.0, 550.0), 25.0);
+        let warm = Habits { isa_deviation_c: 20.0, ..arduplane };
+        let (flown_mps, back_mps) = (warm.true_mps(25.0, 550.0), warm.told_mps(26.56, 550.0));
+        assert!(
+            (flown_mps - 26.56).abs() < 0.01 && (back_mps - 25.0).abs() < 0.01,
+            "{flown_mps}, {back_mps}"
+        );
+        let cold_close = Habits { isa_deviation_c: -20.0, ..Habits::CLOSE };
+        assert_eq!(cold_close.true_mps(25.0, 550.0), 25.0, "true ones are the same in any air");
     }
 
     #[test]

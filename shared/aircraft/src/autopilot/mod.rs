@@ -125,6 +125,11 @@ impl Guidance {
         &self.habits
     }
 
+    /// From now on the air is so much warmer than the standard's, °C.
+    pub fn set_isa_deviation_c(&mut self, isa_deviation_c: f64) {
+        self.habits.isa_deviation_c = isa_deviation_c;
+    }
+
     /// Another airspeed towards the current target, m/s.
     pub fn set_airspeed(&mut self, airspeed_mps: f64) {
         if let Some(leg) = &mut self.leg {

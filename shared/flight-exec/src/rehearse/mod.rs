@@ -24,7 +24,7 @@ pub use what_if::WhatIf;
 use crate::api::{Event, PlacePointer, ProposalReport, Refusal, Waypoint};
 use crate::executor::Executor;
 use crate::value::Config;
-use aircraft::{Autopilot, Profile, Winds};
+use aircraft::{Autopilot, Habits, Profile, Winds};
 use flight::{Circumstances, Flight};
 use flight_plan::{Id, Program};
 use geometry::LatLon;
@@ -49,6 +49,19 @@ pub struct Options {
     pub energy_share: f64,
     /// The autopilot whose habits it is flown with; `None`: close to the lines, at true airspeeds, as reviews fly.
     pub autopilot: Option<Autopilot>,
+    /// Airspeeds are held as indicated ones whatever the habits.
+    pub is_indicated: bool,
+    /// So much warmer than the standard's is the air at any height, °C. That matters where airspeeds are indicated ones.
+    pub isa_deviation_c: f64,
+}
+
+impl Options {
+    /// How an aircraft is led.
+    fn habits(&self, profile: &Profile) -> Habits {
+        let habits = self.autopilot.map_or(Habits::CLOSE, |autopilot| autopilot.habits(profile));
+        let is_indicated = habits.is_indicated || self.is_indicated;
+        Habits { is_indicated, isa_deviation_c: self.isa_deviation_c, ..habits }
+    }
 }
 
 impl Default for Options {
@@ -61,6 +74,8 @@ impl Default for Options {
             step_s: 0.1,
             energy_share: 1.0,
             autopilot: None,
+            is_indicated: false,
+            isa_deviation_c: 0.0,
         }
     }
 }

@@ -5,7 +5,7 @@ use super::{FlownWaypoint, LegPassage, Options, PreviewError, Start};
 use crate::api::{Time, Waypoint};
 use crate::executor::Executor;
 use aircraft::autopilot::{GREATEST_ACCEPTANCE_M, arc_acceptance_m, turn_acceptance_m};
-use aircraft::{Aircraft, Autopilot, Guidance, Habits, Profile, Target};
+use aircraft::{Aircraft, Guidance, Profile, Target};
 use flight_plan::{Id, Program, Runway};
 use geometry::LocalFrame;
 use std::collections::VecDeque;
@@ -86,7 +86,7 @@ impl Situation {
         let executor = Executor::new(options.config.clone(), terrain.clone(), profile.clone());
         let mut aircraft = placed(program, profile, start)?;
         aircraft.set_battery_share(options.energy_share);
-        Ok(Self::at_first(executor, aircraft, triggers, options.autopilot))
+        Ok(Self::at_first(executor, aircraft, triggers, options))
     }
 
     /// A flight under way: the executor as it is, the aircraft as it was reported last, in steady flight along its track.
@@ -100,7 +100,7 @@ impl Situation {
         };
         let mut aircraft = place(if known.on_ground { Aircraft::on_runway } else { Aircraft::in_flight });
         aircraft.set_battery_share(known.battery);
-        let mut at = Self::at_first(executor, aircraft, triggers, options.autopilot);
+        let mut at = Self::at_first(executor, aircraft, triggers, options);
         at.moment.place = at.executor.place();
         let begun = |place| LegPassage {
             place,
@@ -120,14 +120,9 @@ impl Situation {
         Some(at)
     }
 
-    fn at_first(
-        executor: Executor,
-        aircraft: Aircraft,
-        triggers: usize,
-        autopilot: Option<Autopilot>,
-    ) -> Self {
+    fn at_first(executor: Executor, aircraft: Aircraft, triggers: usize, options: &Options) -> Self {
         let profile = aircraft.profile().clone();
-        let habits = autopilot.map_or(Habits::CLOSE, |autopilot| autopilot.habits(&profile));
+        let habits = options.habits(&profile);
         Self {
             guidance: Guidance::with(profile, habits),
             executor,

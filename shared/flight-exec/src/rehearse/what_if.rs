@@ -25,6 +25,8 @@ pub struct WhatIf {
     pub decisions: BTreeMap<Id, Id>,
     /// The autopilot whose habits it is flown with; `None`: that of the vehicle, or as reviews fly.
     pub autopilot: Option<Autopilot>,
+    /// So much warmer than the standard's is the air at any height, °C: what holds indicated airspeeds is faster in warm air.
+    pub isa_deviation_c: f64,
 }
 
 impl Default for WhatIf {
@@ -37,6 +39,7 @@ impl Default for WhatIf {
             variables: BTreeMap::new(),
             decisions: BTreeMap::new(),
             autopilot: None,
+            isa_deviation_c: 0.0,
         }
     }
 }
@@ -72,9 +75,10 @@ impl WhatIf {
         Self { autopilot: self.autopilot.or(vehicles), ..self }
     }
 
-    /// The options of a preview, with the energy at the start, and the autopilot.
+    /// The options of a preview, with the energy at the start, the autopilot, and the warmth of the air.
     pub fn options(&self, options: Options) -> Options {
-        Options { energy_share: self.energy_share, autopilot: self.autopilot, ..options }
+        let Self { energy_share, autopilot, isa_deviation_c, .. } = *self;
+        Options { energy_share, autopilot, isa_deviation_c, ..options }
     }
 
     /// Without what a plan does not have, or does not accept.

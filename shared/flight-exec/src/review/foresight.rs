@@ -47,7 +47,12 @@ fn not_flying() -> Refusal {
 }
 
 fn ahead(flight: &Executor, conditions: Conditions) -> Option<(Preview, Option<PreviewError>)> {
-    preview_on_as_far_as_possible(flight.clone(), conditions.wind, &Scenario::default(), &Options::default())
+    let options = Options {
+        is_indicated: conditions.isa_deviation_c.is_some(),
+        isa_deviation_c: conditions.isa_deviation_c.unwrap_or(0.0),
+        ..Options::default()
+    };
+    preview_on_as_far_as_possible(flight.clone(), conditions.wind, &Scenario::default(), &options)
 }
 
 fn told(after: &Executor, flown: &Preview, error: Option<PreviewError>) -> Foresight {

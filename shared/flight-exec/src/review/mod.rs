@@ -86,6 +86,9 @@ pub struct Conditions {
     pub begin: Option<Start>,
     /// What is kept in reserve.
     pub margins: Margins,
+    /// The autopilot of a flight that is foreseen holds indicated airspeeds, in air that is so much warmer than the standard's, °C;
+    /// `None`: true ones, as in reviews.
+    pub isa_deviation_c: Option<f64>,
 }
 
 /// What is kept in reserve.

@@ -305,6 +305,16 @@ impl Autopilot {
         self.speed_mps.unwrap_or_else(|| self.params.setting(Setting::Cruise))
     }
 
+    /// So much warmer than the standard's is the air it flies in, °C.
+    pub fn isa_deviation_c(&self) -> f64 {
+        self.guidance.habits().isa_deviation_c
+    }
+
+    /// Another air from now on.
+    pub fn set_isa_deviation_c(&mut self, isa_deviation_c: f64) {
+        self.guidance.set_isa_deviation_c(isa_deviation_c);
+    }
+
     /// A true airspeed as its pitot tube shows it, m/s.
     pub fn shown_mps(&self, true_mps: f64) -> f64 {
         self.guidance.habits().told_mps(true_mps, self.aircraft.state().altitude_amsl_m)

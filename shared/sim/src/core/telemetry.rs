@@ -123,7 +123,7 @@ fn gps_raw(a: &Autopilot, now_ns: u64) -> MavMessage {
     })
 }
 
-/// International Standard Atmosphere below 11 km.
+/// International Standard Atmosphere below 11 km, on a day that may be warmer.
 fn pressure(a: &Autopilot, now_ns: u64) -> MavMessage {
     let s = a.aircraft.state();
     let kelvin_share = aircraft::air::temperature_share(s.altitude_amsl_m);
@@ -132,7 +132,7 @@ fn pressure(a: &Autopilot, now_ns: u64) -> MavMessage {
         time_boot_ms: boot_ms(now_ns),
         press_abs: (1013.25 * kelvin_share.powf(5.255_88)) as f32,
         press_diff: (0.5 * 1.225 * shown_mps * shown_mps / 100.0) as f32,
-        temperature: ((15.0 - 0.0065 * s.altitude_amsl_m) * 100.0) as i16,
+        temperature: ((15.0 - 0.0065 * s.altitude_amsl_m + a.isa_deviation_c()) * 100.0) as i16,
         ..SCALED_PRESSURE_DATA::DEFAULT
     })
 }

@@ -1,11 +1,11 @@
 //! What the window says of an engine failure ("What happens here") beside what is then flown: by the whole agent, on both autopilots.
 
 use super::alternate::{SQUARE, STRIP, SURVEY, hills};
-use super::whole::Whole;
+use super::whole::{Whole, plan};
 use super::*;
 use aircraft::{Autopilot, Profile, Wind};
 use flight_exec::rehearse::{Diversion, Options, Rehearsal, Start, TrackPoint, WhatIf};
-use flight_exec::{Branching, Event};
+use flight_exec::{Branching, Conditions, Event, foresee};
 use flight_plan::Cause;
 
 const PERSONALITIES: [Personality; 2] = [Personality::ArduPlane, Personality::Px4];
@@ -148,5 +148,26 @@ fn an_engine_failure_over_hills_ends_as_the_window_tells() {
         for personality in PERSONALITIES {
             is_as_told(personality, failure, hills());
         }
+    }
+}
+
+/// Twenty degrees more than standard: 25 m/s indicated are 3.4 % more through that air.
+#[test]
+fn in_warm_air_what_is_foreseen_aboard_takes_as_long_as_it_is_flown() {
+    for personality in PERSONALITIES {
+        let mut whole = Whole::over(personality, Arc::new(terrain::Flat(GROUND_M)), 62, &[]);
+        whole.flight.sim.autopilot.set_isa_deviation_c(20.0);
+        whole.start(&plan(0.0));
+        whole.run_until(200.0, "out", |w| w.entered("out"));
+        whole.run(10.0);
+        let (now, executor) = (whole.flight.now, whole.manager.executor().clone());
+        let conditions = whole.manager.conditions(now);
+        let foreseen_s = |conditions| foresee(&executor, "test", None, conditions).unwrap().time_s;
+        let told_s = foreseen_s(conditions);
+        let standard_s = foreseen_s(Conditions { isa_deviation_c: Some(0.0), ..conditions });
+        whole.run_until(700.0, "down", |w| aircraft_of(w).on_ground);
+        let flown_s = (whole.flight.now - now).as_secs_f64();
+        assert!((told_s / flown_s - 1.0).abs() < 0.015, "{personality}: {told_s:.1} s, flown {flown_s:.1} s");
+        assert!(standard_s / flown_s > 1.02, "{personality}: {standard_s:.1} s, flown {flown_s:.1} s");
     }
 }
