@@ -28,6 +28,7 @@ mod orbits;
 mod order;
 mod outliers;
 mod path;
+mod pattern_terrain;
 mod pattern_turns;
 mod patterns;
 mod plan_context;
@@ -78,7 +79,7 @@ enum Rule {
 }
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 44] = {
+const RULES: [Rule; 45] = {
     use Rule::{Leg, Plan};
     [
         Plan(outliers::check),
@@ -122,6 +123,7 @@ const RULES: [Rule; 44] = {
         Plan(home::check),
         Leg(home::leg),
         Leg(terrain_clearance::check),
+        Leg(pattern_terrain::check),
         Plan(emergency_plans::check),
         Plan(emergency_coverage::check),
         Leg(emergency_coverage::leg),
