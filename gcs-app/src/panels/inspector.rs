@@ -94,7 +94,7 @@ fn part(ui: &mut Ui, scene: &Scene<'_>, draft: Draft, queue: &mut Queue) {
     heading(ui, scene, &draft);
     match draft.subject() {
         Subject::Plan => summary(ui, scene),
-        Subject::Leg(id) => aboard::leg(ui, scene, id, queue),
+        Subject::Leg(id) | Subject::Stage(id) => aboard::leg(ui, scene, id, queue),
         _ => {}
     }
     form(ui, scene, std::slice::from_ref(&draft), queue);

@@ -44,6 +44,28 @@ pub fn considered() -> (Window, Ticket) {
     (window, ticket)
 }
 
+/// It was one leg skipped after another, or an emergency.
+#[test]
+fn the_landing_is_gone_to_by_its_row_and_by_the_palette_as_a_leg_is() {
+    let mut window = flying_its_plan();
+    let go_to = |leg: &str| Command::GoTo { leg: leg.into() };
+    window.ask_for("land");
+    window.click("Flight Land now on R05: go to the landing…");
+    let (ticket, call) = window.asked().unwrap();
+    assert_eq!(call, Call::Foresee(Some(go_to("land"))), "nothing is done yet");
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    assert!(window.shows("until the approach: 85 m") && window.shows("43 % energy left"));
+    window.hold("Go to Landing (hold)", 90);
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(go_to("land"))));
+    window.click("LND land");
+    window.click("Land now: go to this landing…");
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(go_to("land")))));
+    window.click("Cancel");
+    // a stage with legs is no landing
+    window.click("ENR circuit");
+    assert!(!window.shows("Land now") && !window.shows("Go to this leg"));
+}
+
 #[test]
 fn skip_shows_what_follows_and_is_given_by_a_button_named_by_its_effect() {
     let (mut window, ticket) = considered();

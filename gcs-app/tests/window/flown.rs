@@ -199,6 +199,18 @@ fn a_leg_that_is_moved_in_flight_and_pushed_is_flown() {
 }
 
 #[test]
+fn the_landing_is_gone_to_at_once() {
+    let mut field = Field::new();
+    field.take_off();
+    field.window.ask_for("land now");
+    field.window.click("Flight Land now on R05: go to the landing…");
+    field.until_shown("energy left");
+    field.window.hold("Go to Landing (hold)", 80);
+    field.until_leg(Branching::Main, "land");
+    assert!(!entered(&field.heard).iter().any(|(_, leg)| leg == "side3"), "from where it was");
+}
+
+#[test]
 fn an_emergency_is_flown_and_the_way_back_is_taken() {
     let mut field = Field::new();
     field.take_off();

@@ -12,7 +12,7 @@ use flight_plan::words::yes_or_no;
 use flight_plan::{Id, Variable, VariableValue};
 use wire::Convert;
 
-/// Commands that concern this leg of the plan that is being flown.
+/// Commands that concern this leg, or landing, of the plan that is being flown.
 pub fn leg(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) {
     leading::button(ui, scene, id, queue);
     if let Some(place) = iteration_of(scene, id) {

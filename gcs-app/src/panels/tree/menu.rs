@@ -66,8 +66,8 @@ impl Entry {
 /// The menu of what a row stands for.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
     let plan = scene.document.plan();
-    if let Selection::Leg(leg) = of
-        && leading::button(ui, scene, leg, queue)
+    if let Selection::Leg(id) | Selection::Stage(id) = of
+        && leading::button(ui, scene, id, queue)
     {
         ui.close();
     }
