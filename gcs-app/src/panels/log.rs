@@ -32,7 +32,7 @@ impl Panel for EventLog {
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
         if ui.available_width() < NARROW {
-            let rows = scene.vehicle.requests.newest_first().count().clamp(1, COMMANDS) + 1;
+            let rows = given(scene).count().clamp(1, COMMANDS) + 1;
             let height = (ROW + ui.spacing().item_spacing.y) * rows as f32;
             ui.allocate_ui(vec2(ui.available_width(), height), |ui| commands(ui, scene));
             return events(ui, scene);
@@ -46,9 +46,14 @@ impl Panel for EventLog {
     }
 }
 
+/// Commands that somebody gave, the newest first: what the window asks for itself, every few seconds, would push them out of sight.
+fn given<'a>(scene: &Scene<'a>) -> impl Iterator<Item = &'a Request> {
+    scene.vehicle.requests.newest_first().filter(|request| request.is_somebodys())
+}
+
 fn commands(ui: &mut Ui, scene: &Scene<'_>) {
     super::group_title(ui, "Commands");
-    let requests: Vec<&Request> = scene.vehicle.requests.newest_first().collect();
+    let requests: Vec<&Request> = given(scene).collect();
     let list = ScrollArea::vertical().id_salt("commands").auto_shrink(false).min_scrolled_height(0.0);
     list.show_rows(ui, ROW, requests.len(), |ui, rows| {
         for request in requests.get(rows).unwrap_or_default() {

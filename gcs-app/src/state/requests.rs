@@ -49,7 +49,7 @@ impl Request {
     }
 
     /// Somebody made it, rather than the window for itself.
-    fn is_somebodys(&self) -> bool {
+    pub fn is_somebodys(&self) -> bool {
         ![READ_ABOARD, LOOK_AHEAD].contains(&self.label.as_str())
     }
 }

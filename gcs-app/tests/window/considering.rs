@@ -1,6 +1,7 @@
 //! Commands that lead elsewhere are looked at before they are given.
 
 use super::emergency::{in_emergency, raised};
+use super::fleet::tab;
 use super::flying::{fly_its_plan, flying, flying_its_plan};
 use super::vehicle::{place, position, status};
 use super::whatif::FIRE_WATCH;
@@ -42,6 +43,17 @@ pub fn considered() -> (Window, Ticket) {
     let (ticket, call) = window.asked().unwrap();
     assert_eq!(call, Call::Foresee(Some(Command::SkipLeg)), "nothing is done yet");
     (window, ticket)
+}
+
+/// What the window asks for itself filled the list.
+#[test]
+fn the_log_lists_the_commands_that_were_given() {
+    let (mut window, ticket) = considered();
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    window.click("⏸ Hold");
+    tab(&mut window, "Log");
+    assert!(!window.shows("Look ahead") && !window.shows("Read the plan aboard"));
+    assert_eq!(window.harness.query_all_by_label("Hold").count(), 1, "a command that was given");
 }
 
 /// It was one leg skipped after another, or an emergency.
