@@ -48,6 +48,9 @@ fn what_is_behind_the_aircraft_cannot_be_moved() {
     assert!(!moves(&mut window, "Move what is selected", vec2(30.0, 30.0)));
     // on the ground again everything is ahead
     window.receive_position(true);
+    // room for the handle above what is selected
+    window.click("Zoom out");
+    window.steps(20);
     assert!(moves(&mut window, "Move what is selected", vec2(30.0, 30.0)));
     assert!(window.harness.query_by_label("Fix A").is_some());
 }
