@@ -121,9 +121,9 @@ impl Sketch {
         sketch
     }
 
-    /// Ways on from forks begin where the flight comes from.
+    /// Ways on from forks go as the flight does, where it takes them.
     pub fn begin_ways(&mut self, forecast: &Forecast) {
-        self.ways.iter_mut().for_each(|way| way.begin(forecast));
+        self.ways.iter_mut().for_each(|way| way.follow(forecast));
     }
 
     fn add_leg(&mut self, leg: &Leg, reader: &Reader<'_>) {

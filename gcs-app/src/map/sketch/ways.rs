@@ -2,7 +2,7 @@
 
 use super::calls::Calls;
 use super::{Line, Reader};
-use crate::forecast::Forecast;
+use crate::forecast::{Forecast, Point};
 use flight_plan::{Area, Id, Leg, LegContext, LegKind, Pattern, Scan, Section};
 use geometry::{LatLon, LocalFrame};
 use std::collections::HashMap;
@@ -28,11 +28,48 @@ pub struct Way {
     pub lines: Vec<Line>,
     /// The leg before the fork, if it covers an area: only the flight says where that is left.
     behind_area: Option<Id>,
+    /// Corridors on the way: only the flight says at which end they are begun and left.
+    corridors: Vec<Id>,
 }
 
 impl Way {
+    /// As the flight goes, where it takes this way: behind an area it begins where that is left, and along a corridor it goes the way that
+    /// is flown.
+    pub(super) fn follow(&mut self, forecast: &Forecast) {
+        self.begin(forecast);
+        for corridor in self.corridors.clone() {
+            self.go_along(&corridor, forecast);
+        }
+    }
+
+    fn go_along(&mut self, corridor: &Id, forecast: &Forecast) {
+        let Some(flown) = forecast.passages_of(corridor).next() else { return };
+        let mut along: Vec<LatLon> =
+            self.lines.iter().filter(|line| line.leg == *corridor).map(|line| line.to).collect();
+        let when = |place: Option<&LatLon>| {
+            let far_m = |point: &Point| place.map_or(0.0, |place| place.distance_m(point.position));
+            let nearest = flown.iter().min_by(|a, b| far_m(a).total_cmp(&far_m(b)));
+            nearest.map_or(0.0, |point| point.time_s)
+        };
+        if when(along.first()) > when(along.last()) {
+            along.reverse();
+        }
+        let mut at = None;
+        for line in &mut self.lines {
+            match line.leg == *corridor {
+                true if !along.is_empty() => {
+                    line.from = at.unwrap_or(line.from);
+                    line.to = along.remove(0);
+                    at = Some(line.to);
+                }
+                // between tracks it may come back to the end at which it began
+                _ => line.from = at.take().and(flown.last()).map_or(line.from, |point| point.position),
+            }
+        }
+    }
+
     /// Behind an area it begins where the flight leaves that.
-    pub(super) fn begin(&mut self, forecast: &Forecast) {
+    fn begin(&mut self, forecast: &Forecast) {
         let left = self.behind_area.as_ref().and_then(|leg| forecast.end_of(leg));
         if let Some((first, left)) = self.lines.first_mut().zip(left) {
             first.from = left.from;
@@ -100,7 +137,8 @@ pub(super) fn of(arrivals: &Arrivals<'_>, reader: &Reader<'_>) -> Vec<Way> {
         let Some(from) = arrivals.at(&context.leg.id) else { continue };
         let heads: Vec<&Id> = fork.branches.iter().filter_map(|branch| branch.next.as_ref()).collect();
         for branch in fork.branches {
-            let mut trace = Trace { reader, calls: &mut calls, at: from, lines: Vec::new() };
+            let (lines, corridors) = (Vec::new(), Vec::new());
+            let mut trace = Trace { reader, calls: &mut calls, at: from, lines, corridors };
             let next = branch.next.clone().or_else(|| after(&context));
             if let (End::OfList, Some(to)) =
                 (trace.way(context.siblings, next, &heads), behind(&context, reader))
@@ -109,8 +147,9 @@ pub(super) fn of(arrivals: &Arrivals<'_>, reader: &Reader<'_>) -> Vec<Way> {
             }
             let label = if branch.label.is_empty() { branch.id.to_string() } else { branch.label.clone() };
             let is_default = fork.default == Some(&branch.id);
-            let (fork, lines, behind_area) = (context.leg.id.clone(), trace.lines, area_before(&context));
-            ways.push(Way { fork, label, is_default, lines, behind_area });
+            let Trace { lines, corridors, .. } = trace;
+            let (fork, behind_area) = (context.leg.id.clone(), area_before(&context));
+            ways.push(Way { fork, label, is_default, lines, behind_area, corridors });
         }
         if ways.len() >= MOST {
             break;
@@ -157,6 +196,7 @@ struct Trace<'a, 'p> {
     calls: &'a mut Calls<'p>,
     at: LatLon,
     lines: Vec<Line>,
+    corridors: Vec<Id>,
 }
 
 impl Trace<'_, '_> {
@@ -208,17 +248,27 @@ impl Trace<'_, '_> {
             let is_written = leg.id == *written;
             self.leg(inner, if is_written { &inner.id } else { written });
         }
+        if is_corridor(leg) && leg.id == *written && !self.corridors.contains(written) {
+            self.corridors.push(written.clone());
+        }
         self.places(leg).into_iter().for_each(|to| self.to(to, written));
     }
 
-    /// As [`places`]; of an outline the corner that is nearest to where the way has come.
+    /// As [`places`]; of an outline the corner that is nearest to where the way has come, and a corridor from its nearer end.
     fn places(&self, leg: &Leg) -> Vec<LatLon> {
         let far = |corner: &LatLon| corner.distance_m(self.at);
         match area(leg) {
             Some(Area::Polygon { corners, .. }) => {
                 corners.iter().copied().min_by(|a, b| far(a).total_cmp(&far(b))).into_iter().collect()
             }
-            _ => places(leg, self.reader),
+            _ => {
+                let mut along = places(leg, self.reader);
+                let ends = along.first().map(far).zip(along.last().map(far));
+                if is_corridor(leg) && ends.is_some_and(|(first_m, last_m)| last_m < first_m) {
+                    along.reverse();
+                }
+                along
+            }
         }
     }
 
@@ -252,6 +302,11 @@ pub(super) fn area(leg: &Leg) -> Option<&Area> {
     }
 }
 
+/// It is begun at the end that is nearer to where the path comes from.
+fn is_corridor(leg: &Leg) -> bool {
+    matches!(leg.kind, LegKind::Pattern(Pattern::Corridor { .. }))
+}
+
 fn middle(ring: &[LatLon]) -> Option<LatLon> {
     LocalFrame::around(ring).map(|frame| frame.origin())
 }
@@ -265,7 +320,7 @@ fn last_place(leg: &Leg, reader: &Reader<'_>) -> Option<LatLon> {
 mod tests {
     use super::super::Sketch;
     use super::*;
-    use crate::forecast::{Passage, Point};
+    use crate::forecast::Passage;
     use flight_plan::Variables;
 
     const PLAN: &str = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer">
@@ -294,27 +349,59 @@ mod tests {
     #[test]
     fn a_way_behind_an_area_begins_where_the_flight_leaves_that() {
         let mut sketch = sketch();
-        let point = |lat: f64, passage| Point {
-            time_s: 0.0,
-            distance_m: 0.0,
-            position: LatLon::new(lat, 9.0),
-            altitude_amsl_m: 500.0,
-            ground_amsl_m: None,
-            passage,
+        let points = [(46.0, 0.0), (46.02, 1.0)].map(|(lat, time_s)| at_time(LatLon::new(lat, 9.0), time_s));
+        let (points, scanned) = (points.to_vec(), passage("s", 1));
+        sketch.begin_ways(&Forecast { points, passages: vec![scanned], ..Forecast::default() });
+        assert!(sketch.ways.iter().all(|way| way.lines[0].from == LatLon::new(46.02, 9.0)));
+    }
+
+    /// The fork is nearer to the corridor's end, and the flight begins and leaves it there.
+    #[test]
+    fn a_way_along_a_corridor_goes_as_that_is_flown() {
+        let (south, middle, north) =
+            (LatLon::new(46.0, 9.0), LatLon::new(46.02, 9.0), LatLon::new(46.04, 9.0));
+        let home = LatLon::new(46.1, 9.1);
+        let plan = format!(
+            r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><mainPlan><stage id="m" type="mission">
+              <TF id="b" lat="46.06" lon="9.0"/><intersection id="f" default="on"><branch id="on" next="c"/><branch id="no" next="home"/></intersection>
+              <corridor id="c" width="400" spacing="200"><route>{}</route></corridor><DF id="home" lat="46.1" lon="9.1"/></stage></mainPlan></flightPlan>"#,
+            [south, middle, north]
+                .map(|at| format!(r#"<point lat="{}" lon="{}"/>"#, at.lat_deg, at.lon_deg))
+                .concat()
+        );
+        let reading = flight_plan::read(plan);
+        let mut sketch = Sketch::new(&reading.plan, &Variables::initial(&reading.plan), &Sketch::default());
+        let along = |sketch: &Sketch| sketch.ways[0].lines.iter().map(|line| line.to).collect::<Vec<_>>();
+        assert_eq!(along(&sketch), [north, middle, south, home], "the nearer end first");
+        let flown = |places: [LatLon; 3]| {
+            let points = places.iter().zip([0.0, 1.0, 2.0]).map(|(at, time_s)| at_time(*at, time_s));
+            let passages = vec![passage("c", 3)];
+            Forecast { points: points.collect(), passages, ..Forecast::default() }
         };
-        let scanned = Passage {
-            leg: "s".into(),
+        sketch.begin_ways(&flown([north, south, north]));
+        assert_eq!(along(&sketch), [north, middle, south, home]);
+        assert_eq!(sketch.ways[0].lines.last().unwrap().from, north, "it is left where it was begun");
+        sketch.begin_ways(&flown([south, middle, north]));
+        assert_eq!(along(&sketch), [south, middle, north, home]);
+        assert_eq!(sketch.ways[0].lines.last().unwrap().from, north);
+    }
+
+    fn at_time(position: LatLon, time_s: f64) -> Point {
+        let (distance_m, altitude_amsl_m, ground_amsl_m, passage) = (0.0, 500.0, None, 0);
+        Point { time_s, distance_m, position, altitude_amsl_m, ground_amsl_m, passage }
+    }
+
+    fn passage(leg: &str, end: usize) -> Passage {
+        Passage {
+            leg: leg.into(),
             stage: "m".into(),
             passes: Vec::new(),
             reverse: false,
             first: 0,
-            end: 1,
+            end,
             energy_left: 1.0,
             clearance_m: None,
-        };
-        let points = vec![point(46.0, 0), point(46.02, 1)];
-        sketch.begin_ways(&Forecast { points, passages: vec![scanned], ..Forecast::default() });
-        assert!(sketch.ways.iter().all(|way| way.lines[0].from == LatLon::new(46.02, 9.0)));
+        }
     }
 
     #[test]
