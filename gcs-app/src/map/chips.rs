@@ -111,7 +111,7 @@ fn colours(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 
 /// What the colours tell; how far that has got is told until it is there.
 fn title(known: &Coverage) -> String {
-    let what = "How the worst alarm would end";
+    let what = "How the worst alarm would end, as it is flown";
     match known.is_complete() {
         true => what.to_owned(),
         false => format!("{what}: {:.0} % worked out", known.progress() * 100.0),
@@ -136,8 +136,8 @@ mod tests {
         let forecast = Forecast { points: vec![point(0.0), point(9.0)], ..Forecast::default() };
         let mut coverage = Coverage::of(&forecast);
         coverage.push(None);
-        assert_eq!(title(&coverage), "How the worst alarm would end: 50 % worked out");
+        assert_eq!(title(&coverage), "How the worst alarm would end, as it is flown: 50 % worked out");
         coverage.push(None);
-        assert_eq!(title(&coverage), "How the worst alarm would end");
+        assert_eq!(title(&coverage), "How the worst alarm would end, as it is flown");
     }
 }

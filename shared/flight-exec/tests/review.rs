@@ -592,9 +592,11 @@ fn an_alternate_that_is_named_says_how_it_would_count_unnamed() {
     );
     let (unnamed, named) = (out_of_glide(&unnamed), out_of_glide(&named));
     let share = unnamed.split(" % of the flight").next().and_then(|text| text.rsplit(' ').next()).unwrap();
-    assert!(unnamed.contains("a glide straight to the runway counts"), "{unnamed}");
-    let compared = format!("a glide straight to its runway falls short on {share} %");
-    assert!(named.contains("All of its legs count") && named.contains(&compared), "{unnamed}\n{named}");
+    assert!(unnamed.contains("of the flight, by a glide straight to the runway."), "{unnamed}");
+    // as What if calls them
+    let along = "by a glide along all of `home`; ";
+    let straight = format!("by a glide straight to the runway on {share} %");
+    assert!(named.contains(along) && named.contains(&straight), "{unnamed}\n{named}");
 }
 
 #[test]

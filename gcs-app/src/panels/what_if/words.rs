@@ -129,8 +129,9 @@ fn without_engine(
 ) -> String {
     let time = units::duration(flown.time_s);
     if flown.missed_m > 0.0 {
-        let missed = units.distance().show(flown.missed_m);
-        return format!(": on {plan} it comes down {missed} beside the runway after {time}");
+        let unit = if flown.missed_m < 1000.0 { units.length() } else { units.distance() };
+        let missed = unit.show(flown.missed_m);
+        return format!(": as it is flown, on {plan}, it comes down {missed} from the runway after {time}");
     }
     let part = match glide.filter(|glide| glide.along_plan).map(|glide| glide.reach(0.0)) {
         Some(Reach::Out) => "on a part of",
@@ -274,7 +275,7 @@ mod tests {
         }
         assert_eq!(
             words(&found)[0],
-            "Engine failure: R05 is not reached without the engine: on Return home it comes down 0.5 km beside the runway \
+            "Engine failure: R05 is not reached without the engine: as it is flown, on Return home, it comes down 480 m from the runway \
              after 1:30."
         );
         (found.powered, found.glided) = (Err("the aircraft has not taken off".into()), None);
