@@ -98,6 +98,8 @@ pub enum DocumentCommand {
         runway: Id,
         /// Through these places, from the runway outwards.
         outwards: Vec<Place>,
+        /// Where it is drawn from, and how high the path is there, metres AMSL; `None`: from anywhere.
+        from: Option<(LatLon, f64)>,
     },
     /// Take over what another program has written in the document's file.
     LoadTheirs,

@@ -56,7 +56,7 @@ fn new_parts(scene: &Scene<'_>) -> Vec<Action> {
         add(format!("Add a variable: {}", initial.kind()), make::variable(plan, initial));
     }
     for runway in plan.runways.iter().take(MOST) {
-        let home = DocumentCommand::BringHome { runway: runway.id.clone(), outwards: Vec::new() };
+        let home = DocumentCommand::BringHome { runway: runway.id.clone(), outwards: Vec::new(), from: None };
         let name = format!("Emergency plan that lands on {}", runway.id);
         add(name, Command::Document(home));
     }

@@ -4,8 +4,9 @@ use super::App;
 use crate::airfields::Ground;
 use crate::command::Selection;
 use aircraft::Profile;
+use flight_plan::create::WayHome;
 use flight_plan::template::Outline;
-use flight_plan::{Edit, Id, Place, Thing, create};
+use flight_plan::{Altitude, AltitudeReference, Edit, FlightPlan, Id, Place, Thing, Value, create};
 use geometry::LatLon;
 
 impl App {
@@ -54,13 +55,18 @@ impl App {
         Ok(())
     }
 
-    /// What should be known of the plan that was made: that nothing names it, if that is so.
-    pub(super) fn bring_home(&mut self, runway: &Id, outwards: &[Place]) -> Result<Option<String>, String> {
+    /// What should be known of the plan that was made: that nothing names it, or that it climbs, if that is so.
+    pub(super) fn bring_home(
+        &mut self,
+        runway: &Id,
+        outwards: &[Place],
+        from: Option<(LatLon, f64)>,
+    ) -> Result<Vec<String>, String> {
         let plan = self.document.plan().clone();
-        let Some(runway) = plan.runway(runway) else { return Ok(None) };
+        let Some(runway) = plan.runway(runway) else { return Ok(Vec::new()) };
         let profile = Profile::by_name(&plan.aircraft).unwrap_or_default();
         let ground = self.layers.ground().as_ref();
-        let (id, edit) = create::emergency_plan(&plan, runway, outwards, &profile, ground);
+        let (id, edit) = create::emergency_plan(&plan, WayHome { runway, outwards, from }, &profile, ground);
         self.document.edit(&edit)?;
         let made = self.document.plan();
         let is_named = made.emergency.by_cause.iter().any(|(_, named)| *named == id);
@@ -68,7 +74,29 @@ impl App {
             "Nothing leads to “{}” yet: drag its row onto a leg, a stage or the main plan",
             made.label(&id)
         );
+        let climb_m =
+            from.and_then(|(_, from_m)| Some(begins_amsl_m(&made, &id)? - from_m)).filter(|m| *m > 1.0);
+        let climbs = climb_m.map(|climb_m| {
+            format!(
+                "“{}” begins {} above the path where it was drawn from: the ground on its way asks for that",
+                made.label(&id),
+                self.view.units.altitude().show(climb_m)
+            )
+        });
         self.view.select(Some(Selection::Emergency(id)));
-        Ok((!is_named).then_some(text))
+        Ok((!is_named).then_some(text).into_iter().chain(climbs).collect())
+    }
+}
+
+/// How high an emergency plan begins, metres AMSL.
+fn begins_amsl_m(plan: &FlightPlan, emergency: &Id) -> Option<f64> {
+    let first = plan.emergency_plan(emergency)?.stages.first()?.legs.first()?;
+    let Altitude { metres: Value::Constant(metres), reference } = first.altitude.as_ref()? else {
+        return None;
+    };
+    match reference {
+        AltitudeReference::Amsl => Some(*metres),
+        AltitudeReference::Home => Some(metres + plan.common_home()?.elevation_amsl_m),
+        AltitudeReference::Agl => None,
     }
 }

@@ -60,12 +60,12 @@ impl App {
                 let done = self.add_runway(threshold, end, both);
                 self.tell(done);
             }
-            DocumentCommand::BringHome { runway, outwards } => match self.bring_home(&runway, &outwards) {
-                Ok(unnamed) => {
-                    unnamed.into_iter().for_each(|text| self.toasts.add(now_s, Level::Info, text));
+            DocumentCommand::BringHome { runway, outwards, from } => {
+                match self.bring_home(&runway, &outwards, from) {
+                    Ok(texts) => texts.into_iter().for_each(|text| self.toasts.add(now_s, Level::Info, text)),
+                    refused => self.tell(refused.map(drop)),
                 }
-                refused => self.tell(refused.map(drop)),
-            },
+            }
             DocumentCommand::Dropped(path) => self.files.sort_dropped(path),
             DocumentCommand::TakeImport => self.take_import(now_s),
             DocumentCommand::AddImport => self.add_import(now_s),

@@ -88,6 +88,37 @@ fn an_emergency_plan_shows_the_way_into_it_from_the_selected_leg_while_it_is_dra
     assert_eq!(ends(&window), before);
 }
 
+/// From anywhere it is as high as the hills around the runway ask for.
+#[test]
+fn an_emergency_plan_that_is_drawn_from_a_leg_does_not_climb_without_need() {
+    let drawn_from = |leg: Option<&str>| {
+        let mut window = window();
+        if let Some(leg) = leg {
+            window.click(&format!("TF {leg}"));
+        }
+        let there = window.centre("Fix D") + vec2(-30.0, 30.0);
+        window.press(Key::E);
+        let runway = window.centre("Runway R05");
+        window.click_at(runway);
+        window.click_at(there);
+        window.press(Key::Enter);
+        window.steps(3);
+        let plan = window.plan();
+        let made = plan.emergency_plans.last().unwrap();
+        let first = made.stages[0].legs[0].altitude.clone().unwrap();
+        let flight_plan::Value::Constant(height_m) = first.metres else { panic!("{first:?}") };
+        let forecast = &window.app().analysis().forecast;
+        let path = forecast.middle_of_s(&"side2".into()).and_then(|time_s| forecast.at(time_s)).unwrap();
+        let climb_m = height_m + plan.home().unwrap().elevation_amsl_m - path.altitude_amsl_m;
+        let says_why = "above the path where it was drawn from: the ground on its way asks for that";
+        (height_m, climb_m, window.shows(says_why))
+    };
+    let (anywhere_m, ..) = drawn_from(None);
+    let (low_m, climb_m, says_why) = drawn_from(Some("side2"));
+    assert!(low_m < anywhere_m, "{low_m} {anywhere_m}");
+    assert_eq!(says_why, climb_m > 1.0, "{climb_m}");
+}
+
 #[test]
 fn what_does_not_go_with_the_selection_is_fainter() {
     let zone = r#"<zones><keepOut id="quarry" lat="36.3141" lon="-84.1567" radius="150"/></zones><mainPlan"#;

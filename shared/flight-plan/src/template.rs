@@ -11,6 +11,7 @@ mod mission;
 
 pub use extent::Extent;
 pub(crate) use frame::{GLIDE_SLOPE, climb_out};
+pub use home::WayHome;
 pub(crate) use home::bring_home;
 
 use crate::figures;

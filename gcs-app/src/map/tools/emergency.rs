@@ -34,6 +34,8 @@ struct Raised {
     leg: Id,
     /// Where the aircraft is then, and which way it flies.
     at: Approach,
+    /// And how high, metres AMSL.
+    altitude_amsl_m: f64,
 }
 
 /// At the cursor, unless something else is selected that is flown: then in the middle of that. `None`: there is neither.
@@ -50,7 +52,8 @@ fn raised(scene: &Scene<'_>) -> Option<Raised> {
         middle.is_none_or(|(what, _)| passage.is_some_and(|p| p.leg == *what || p.stage == *what))
     };
     let time_s = scene.view.cursor_s.filter(is_meant).or(middle.map(|(_, time_s)| time_s))?;
-    Some(Raised { leg: passage_at(time_s)?.leg.clone(), at: forecast.approach_at(time_s)? })
+    let altitude_amsl_m = forecast.at(time_s)?.altitude_amsl_m;
+    Some(Raised { leg: passage_at(time_s)?.leg.clone(), at: forecast.approach_at(time_s)?, altitude_amsl_m })
 }
 
 impl Default for DrawEmergency {
@@ -65,7 +68,8 @@ impl DrawEmergency {
         let marks = self.pen.drawn();
         if let Some(runway) = self.runway.take() {
             let outwards: Vec<Place> = marks.into_iter().skip(1).map(|mark| mark.place).collect();
-            queue.document(DocumentCommand::BringHome { runway, outwards });
+            let from = self.raised.as_ref().map(|raised| (raised.at.from, raised.altitude_amsl_m));
+            queue.document(DocumentCommand::BringHome { runway, outwards, from });
         }
         self.pen.clear();
     }

@@ -134,7 +134,11 @@ fn emergency_plans(ui: &mut Ui, plan: &FlightPlan, queue: &mut Queue) {
     }
     for runway in &plan.runways {
         if ui.button(format!("Land on {}", runway.id)).clicked() {
-            queue.document(DocumentCommand::BringHome { runway: runway.id.clone(), outwards: Vec::new() });
+            queue.document(DocumentCommand::BringHome {
+                runway: runway.id.clone(),
+                outwards: Vec::new(),
+                from: None,
+            });
         }
     }
 }

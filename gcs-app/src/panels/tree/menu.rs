@@ -74,7 +74,11 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, of: &Selection, queue: &mut Queue) {
     if let Selection::Runway(runway) = of
         && ui.button("Emergency plan that lands here").clicked()
     {
-        queue.document(DocumentCommand::BringHome { runway: runway.clone(), outwards: Vec::new() });
+        queue.document(DocumentCommand::BringHome {
+            runway: runway.clone(),
+            outwards: Vec::new(),
+            from: None,
+        });
     }
     if let Selection::Leg(id) = of
         && let Some(context) = plan.leg(id)

@@ -17,6 +17,7 @@ mod thing;
 mod trial;
 mod ways;
 
+pub use crate::template::WayHome;
 pub use arrange::{
     delete_legs, delete_set, duplicate, fork_around, fork_behind, loop_around, procedure_of, shift, unloop,
 };

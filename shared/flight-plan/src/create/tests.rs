@@ -9,7 +9,7 @@ use crate::{
 use aircraft::Profile;
 use geometry::LatLon;
 use proptest::prelude::*;
-use terrain::Flat;
+use terrain::{Flat, Terrain};
 
 const HOME: LatLon = LatLon::new(46.0, 8.0);
 
@@ -162,8 +162,9 @@ fn a_way_home_is_made_for_any_runway() {
     let second = runway(&plan, HOME.destination(0.0, 6000.0), HOME.destination(5.0, 6500.0), 260.0);
     let plan = Edit::Add(Box::new(Thing::Runway(second.clone()))).apply(&plan).unwrap();
     let profile = Profile::default();
-    let plan = emergency_plan(&plan, &second, &[], &profile, &Flat(200.0)).1.apply(&plan).unwrap();
-    let plan = emergency_plan(&plan, &plan.runways[0], &[], &profile, &Flat(200.0)).1.apply(&plan).unwrap();
+    let plan = emergency_plan(&plan, home_to(&second, &[]), &profile, &Flat(200.0)).1.apply(&plan).unwrap();
+    let plan =
+        emergency_plan(&plan, home_to(&plan.runways[0], &[]), &profile, &Flat(200.0)).1.apply(&plan).unwrap();
     assert_eq!(errors(&plan), Vec::<String>::new());
     let ids: Vec<&str> = plan.emergency_plans.iter().map(|e| e.id.as_str()).collect();
     assert_eq!(ids, ["return", "return2", "return3"]);
@@ -183,7 +184,7 @@ fn an_emergency_plan_drawn_outwards_is_flown_inwards() {
     let plan = made(Template::Survey);
     let outwards = [3000.0, 6000.0, 9000.0].map(|far_m| at(HOME.destination(200.0, far_m)));
     let runway = plan.runways[0].clone();
-    let (id, edit) = emergency_plan(&plan, &runway, &outwards, &Profile::default(), &Flat(200.0));
+    let (id, edit) = emergency_plan(&plan, home_to(&runway, &outwards), &Profile::default(), &Flat(200.0));
     let plan = edit.apply(&plan).unwrap();
     assert_eq!(errors(&plan), Vec::<String>::new());
     let legs = &plan.emergency_plan(&id).unwrap().stages[0].legs;
@@ -191,6 +192,46 @@ fn an_emergency_plan_drawn_outwards_is_flown_inwards() {
         legs.iter().take(3).map(|leg| (leg.kind_name(), leg.place().unwrap().clone())).collect();
     let [near, middle, far] = outwards;
     assert_eq!(flown, [("DF", far), ("TF", middle), ("TF", near)]);
+}
+
+/// Hills south of the runway: the way home from anywhere keeps above them.
+struct Hills;
+
+impl Terrain for Hills {
+    fn elevation_m(&self, at: LatLon) -> Option<f64> {
+        let south = at.lat_deg < HOME.lat_deg - 0.01;
+        Some(if south && at.lon_deg < HOME.lon_deg { 500.0 } else { 200.0 })
+    }
+}
+
+/// Above the runway: 450 m from anywhere; over flat ground no higher than the path is, and over the hills as high as they ask for.
+#[test]
+fn an_emergency_plan_is_no_higher_than_where_it_is_drawn_from() {
+    let plan = made(Template::Survey);
+    let runway = plan.runways[0].clone();
+    let height_m = |from: Option<(LatLon, f64)>| {
+        let way = WayHome { from, ..home_to(&runway, &[]) };
+        let (id, edit) = emergency_plan(&plan, way, &Profile::default(), &Hills);
+        let with = edit.apply(&plan).unwrap();
+        let heights = with.emergency_plan(&id).unwrap().stages.iter().flat_map(|stage| &stage.legs);
+        let heights = heights.filter_map(|leg| match &leg.altitude {
+            Some(Altitude { metres: Value::Constant(metres), reference: AltitudeReference::Home }) => {
+                Some(*metres)
+            }
+            _ => None,
+        });
+        heights.fold(f64::MIN, f64::max)
+    };
+    let flat = HOME.destination(315.0, 4000.0);
+    let behind_hills = HOME.destination(200.0, 5000.0);
+    assert_eq!(height_m(None), 450.0);
+    assert_eq!(height_m(Some((flat, 474.0))), 270.0);
+    assert_eq!(height_m(Some((flat, 900.0))), 450.0);
+    assert_eq!(height_m(Some((behind_hills, 474.0))), 420.0, "300 m of hills and 120 m above them");
+}
+
+fn home_to<'a>(runway: &'a Runway, outwards: &'a [Place]) -> WayHome<'a> {
+    WayHome { runway, outwards, from: None }
 }
 
 /// Places on the centre line that are nearer than the automatic final are flown after its beginning, whatever else was drawn.
@@ -204,7 +245,7 @@ fn an_emergency_plan_drawn_along_the_centre_line_never_turns_back_out() {
         |before_m: f64, beside_m: f64| at(HOME.destination(270.0, before_m).destination(0.0, beside_m));
     for drawn in [vec![900.0, 1450.0], vec![2000.0], vec![900.0, 1450.0, 6000.0], vec![1300.0, 9000.0]] {
         let outwards: Vec<Place> = drawn.iter().map(|before_m| on_line(*before_m, 40.0)).collect();
-        let (id, edit) = emergency_plan(&plan, &runway, &outwards, &profile, &Flat(200.0));
+        let (id, edit) = emergency_plan(&plan, home_to(&runway, &outwards), &profile, &Flat(200.0));
         let with = edit.apply(&plan).unwrap();
         assert_eq!(errors(&with), Vec::<String>::new());
         let stages = &with.emergency_plan(&id).unwrap().stages;
@@ -221,7 +262,7 @@ fn an_emergency_plan_drawn_along_the_centre_line_never_turns_back_out() {
         assert!(with.fixes.iter().all(|fix| known(&fix.id)), "no fix is made for nothing");
     }
     let beside = [on_line(1000.0, 900.0)];
-    let (id, edit) = emergency_plan(&plan, &runway, &beside, &profile, &Flat(200.0));
+    let (id, edit) = emergency_plan(&plan, home_to(&runway, &beside), &profile, &Flat(200.0));
     let with = edit.apply(&plan).unwrap();
     let first = with.emergency_plan(&id).unwrap().stages[0].legs[0].place().cloned();
     assert_eq!(first.as_ref(), beside.first(), "a circuit comes from beside the runway");

@@ -1,6 +1,6 @@
 //! What legs use: fixes, runways, zones, variables, stages, emergency plans.
 
-use crate::template;
+use crate::template::{self, WayHome};
 use crate::uses::SlotMut;
 use crate::{
     Edit, EmergencyChoice, Fix, FlightPlan, Id, Leg, Place, Runway, Stage, StageKind, Thing, Turnaround,
@@ -122,17 +122,16 @@ pub fn shift_stage(plan: &FlightPlan, stage: &Id, by: isize) -> Option<Edit> {
 }
 
 /// An emergency plan that brings the aircraft to a runway from anywhere, with the fixes that it needs; the first of a plan
-/// becomes the plan's own. `outwards`: the places it leads through, from the runway outwards. It is flown inwards all the way: places on the
-/// centre line come after the beginning of the final, where that is farther out.
+/// becomes the plan's own. It is flown inwards all the way: places on the centre line come after the beginning of the final, where that
+/// is farther out.
 pub fn emergency_plan(
     plan: &FlightPlan,
-    runway: &Runway,
-    outwards: &[Place],
+    way: WayHome<'_>,
     profile: &Profile,
     terrain: &dyn Terrain,
 ) -> (Id, Edit) {
     let id = plan.unique_id("return");
-    let (fixes, emergency) = template::bring_home(plan, &id, (runway, outwards), profile, terrain);
+    let (fixes, emergency) = template::bring_home(plan, &id, way, profile, terrain);
     let mut edits: Vec<Edit> = fixes.into_iter().map(|fix| Edit::Add(Box::new(Thing::Fix(fix)))).collect();
     edits.push(Edit::Add(Box::new(Thing::EmergencyPlan(emergency))));
     if plan.emergency.by_cause.is_empty() {

@@ -92,6 +92,20 @@ impl<'a> Frame<'a> {
             .fold(self.runway.elevation_amsl_m, f64::max)
     }
 
+    /// The way to the final over these places no higher than its first one is flown, metres AMSL, unless the ground below it asks for more.
+    pub(super) fn no_higher_than(&mut self, flown_amsl_m: f64, over: &[LatLon], terrain: &dyn Terrain) {
+        let frame = LocalFrame::new(self.runway.threshold);
+        let places = over.iter().copied().chain([self.at(-self.final_m, 0.0)]);
+        let way: Vec<Vec2> = places.map(|at| frame.to_local(at)).collect();
+        let below = way.windows(2).filter_map(<[Vec2]>::as_array).flat_map(|[from, to]| along(*from, *to));
+        let elevation_m = self.runway.elevation_amsl_m;
+        let ground = below.filter_map(|at| terrain.elevation_m(frame.to_geo(at)));
+        let least_m = ground.fold(elevation_m, f64::max) - elevation_m + 2.0 * LOWEST_M;
+        let flown_m = ((flown_amsl_m - elevation_m) / 10.0).floor() * 10.0;
+        self.height_m = self.height_m.min(flown_m.max((least_m / 10.0).ceil() * 10.0));
+        self.height_m = self.height_m.max(self.final_height_m());
+    }
+
     /// From the departure along the mission's line, or around its area, to the final; and from either end to both.
     fn ways(&self, outline: &Outline) -> Vec<LatLon> {
         let heading_deg = self.runway.heading_deg;

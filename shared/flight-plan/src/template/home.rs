@@ -17,13 +17,24 @@ const HOME_REACH_M: f64 = 3000.0;
 const BESIDE_M: f64 = 50.0;
 const BESIDE_SHARE: f64 = 0.15;
 
+/// The way to a runway, as it is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct WayHome<'a> {
+    /// The runway.
+    pub runway: &'a Runway,
+    /// The places it leads through, from the runway outwards: those on the centre line after the beginning of the final, the others
+    /// before.
+    pub outwards: &'a [Place],
+    /// Where it is drawn from, and how high the path is there, metres AMSL: nobody climbs without need after an alarm.
+    pub from: Option<(LatLon, f64)>,
+}
+
 /// An emergency plan that brings the aircraft to a runway from anywhere, and the fixes that it needs. Fixes of the plan that are
-/// in the right places are used. `outwards`: the places it leads through, from the runway outwards: those on the centre line after
-/// the beginning of the final, the others before.
+/// in the right places are used.
 pub(crate) fn bring_home(
     plan: &FlightPlan,
     id: &Id,
-    (runway, outwards): (&Runway, &[Place]),
+    WayHome { runway, outwards, from }: WayHome<'_>,
     profile: &Profile,
     terrain: &dyn Terrain,
 ) -> (Vec<Fix>, EmergencyPlan) {
@@ -35,6 +46,10 @@ pub(crate) fn bring_home(
         height_m: 150.0,
     };
     let mut frame = Frame::new(&outline, profile, terrain);
+    if let Some((from, from_amsl_m)) = from {
+        let through: Vec<LatLon> = outwards.iter().rev().filter_map(|place| position(plan, place)).collect();
+        frame.no_higher_than(from_amsl_m, &[&[from], through.as_slice()].concat(), terrain);
+    }
     let mut made = Vec::new();
     let mut on_final = |name: &str, position: LatLon| {
         let known = plan.fixes.iter().find(|fix| fix.position.distance_m(position) < 1.0);
@@ -81,17 +96,20 @@ fn on_the_final(plan: &FlightPlan, runway: &Runway, outwards: &[Place], final_m:
     let frame = LocalFrame::new(runway.threshold);
     let ahead = Vec2::from_bearing_rad(runway.heading_deg.to_radians());
     let on_it = |place: &Place| {
-        let at = match place {
-            Place::Fix(fix) => plan.fix(fix)?.position,
-            Place::Position(Value::Constant(at)) => *at,
-            Place::Position(Value::Expression(_)) => return None,
-        };
-        let from_threshold = frame.to_local(at);
+        let from_threshold = frame.to_local(position(plan, place)?);
         let (before_m, beside_m) = (-from_threshold.dot(ahead), from_threshold.cross(ahead).abs());
         let is_on_line = beside_m <= BESIDE_M + BESIDE_SHARE * before_m;
         ((0.0..final_m).contains(&before_m) && is_on_line).then(|| (before_m, place.clone()))
     };
     outwards.iter().map_while(on_it).collect()
+}
+
+fn position(plan: &FlightPlan, place: &Place) -> Option<LatLon> {
+    match place {
+        Place::Fix(fix) => plan.fix(fix).map(|fix| fix.position),
+        Place::Position(Value::Constant(at)) => Some(*at),
+        Place::Position(Value::Expression(_)) => None,
+    }
 }
 
 /// Lets a stage come to its first leg from the last of these places, by way of the others.
