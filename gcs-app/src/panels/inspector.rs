@@ -8,6 +8,7 @@ mod fixes;
 mod form;
 mod formula;
 pub mod inherited;
+mod landing;
 mod level;
 mod list;
 mod page;
@@ -105,6 +106,7 @@ fn part(ui: &mut Ui, scene: &Scene<'_>, draft: Draft, queue: &mut Queue) {
         Subject::Plan => hint(ui),
         Subject::Variable(name) => aboard::variable(ui, scene, name, queue),
         Subject::Runway(id) => runway::other_direction(ui, scene, id, queue),
+        Subject::Stage(id) => landing::without_approach(ui, scene, id, queue),
         Subject::Leg(id) if ui.button("Delete this leg").clicked() => {
             queue.edit(Edit::DeleteLeg { leg: id.clone() });
         }

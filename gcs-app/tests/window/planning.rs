@@ -329,3 +329,21 @@ fn figures_of_a_path_that_is_out_of_date_say_so() {
     assert!(window.triangles_within("Map", weak) > map, "the path on the map is grey");
     assert!(grey(&window, "Vertical profile") > 0, "the path in the profile is grey");
 }
+
+#[test]
+fn a_landing_without_an_approach_says_so_and_gets_one() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.select_row(("LND land", 0));
+    window.steps(2);
+    assert!(window.shows("No approach leads to it"));
+    window.click("Add an approach stage");
+    window.steps(2);
+    let plan = window.plan();
+    let kinds: Vec<_> = plan.stages.iter().rev().take(2).map(|stage| stage.kind).collect();
+    assert_eq!(kinds, [flight_plan::StageKind::Land, flight_plan::StageKind::Approach]);
+    assert_eq!(window.selected(), plan.stages[plan.stages.len() - 2].id.as_str());
+    window.select_row(("LND land", 0));
+    window.steps(2);
+    assert!(!window.shows("No approach leads to it"));
+}
