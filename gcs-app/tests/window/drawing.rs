@@ -362,3 +362,18 @@ fn a_new_leg_has_the_altitude_of_its_neighbours() {
         assert_ne!(window.selected(), "leg1");
     }
 }
+
+#[test]
+fn no_length_is_told_where_the_pointer_has_just_clicked() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.press(Key::A);
+    let at = window.centre("Map") + vec2(60.0, 60.0);
+    window.tap_at(at);
+    window.harness.hover_at(at);
+    window.steps(2);
+    assert!(!window.paints("0 m ·"));
+    window.harness.hover_at(at + vec2(80.0, 0.0));
+    window.steps(2);
+    assert!(window.paints("m · 0"), "the track of its first edge");
+}

@@ -226,10 +226,10 @@ impl Pen {
         }
         self.paint_snap(painter, canvas, p);
         let (Some(last), Some(pointer)) = (self.marks.last(), &self.pointer) else { return };
-        let mut words = self.size(last.at, pointer.at, canvas.scene.units());
-        if let Some(fault) = self.fault {
-            words = format!("{words} · {fault}");
-        }
+        let size = self.size(last.at, pointer.at, canvas.scene.units());
+        let words: Vec<&str> =
+            [size.as_str()].into_iter().chain(self.fault).filter(|w| !w.is_empty()).collect();
+        let words = words.join(" · ");
         let at = canvas.view.place(pointer.at) + vec2(10.0, -10.0);
         text::haloed(painter, at, Align2::LEFT_BOTTOM, &words, 13.0, p.text, p);
     }
@@ -256,6 +256,8 @@ impl Pen {
     fn size(&self, from: LatLon, to: LatLon, units: Units) -> String {
         match self.figure {
             Figure::Circle => format!("radius {}", length(from.distance_m(to), units)),
+            // where the pointer has just clicked there is no direction
+            _ if from.distance_m(to) < 1.0 => String::new(),
             _ => way(from, to, units),
         }
     }
