@@ -192,7 +192,7 @@ impl App {
 
     pub(super) fn ask_export(&mut self) {
         if let Some(exported) = &self.view.exported {
-            self.files.ask_export(file_name(&exported.name, exported.format.name()), exported.clone());
+            self.files.ask_export(self.export_name(exported), exported.clone());
         }
     }
 
@@ -364,6 +364,12 @@ impl App {
         )
     }
 
+    /// As the document's file is called, else as the plan is.
+    fn export_name(&self, exported: &Exported) -> String {
+        let stem = self.document.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy());
+        file_name(stem.as_deref().unwrap_or(&exported.name), exported.format.name())
+    }
+
     /// Asks in the window, beginning where the document's file is.
     pub(super) fn ask_here(&mut self, purpose: Purpose) {
         self.files.desktop = false;
@@ -376,7 +382,7 @@ impl App {
         }
         let name = match (purpose, &self.view.exported) {
             (Purpose::Open, _) => String::new(),
-            (Purpose::Export(format), Some(exported)) => file_name(&exported.name, format.name()),
+            (Purpose::Export(_), Some(exported)) => self.export_name(exported),
             (Purpose::Save | Purpose::Export(_), _) => self.suggested_name(),
         };
         let folder = folder.unwrap_or_else(|| ".".into());

@@ -136,6 +136,20 @@ fn plan_is_exported_after_its_losses_were_shown() {
 }
 
 #[test]
+fn export_is_called_as_the_file_of_the_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window_on(&folder.path().join("mine.xml"), SQUARE);
+    window.click("Legwork");
+    window.click("Export");
+    window.click("Export as GPX…");
+    window.until("the export", |app| app.view().exported.is_some());
+    window.steps(3);
+    window.press(Key::Enter);
+    until_listed(&mut window);
+    assert_eq!(window.app().view().browsing.as_ref().unwrap().name, "mine.gpx");
+}
+
+#[test]
 fn plan_that_cannot_be_flown_is_not_exported() {
     let mut window = window(&SQUARE.replace("aircraft=\"trainer\"", "aircraft=\"zeppelin\""));
     window.click("Legwork");
