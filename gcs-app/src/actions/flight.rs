@@ -88,7 +88,7 @@ pub(super) fn connect(scene: &Scene<'_>) -> Asked {
 
 /// Without a link no command arrives.
 fn linked(scene: &Scene<'_>) -> Result<(), &'static str> {
-    scene.vehicle.open_link().map(drop).ok_or(panel::NOT_CONNECTED)
+    scene.vehicle.open_link().map(drop).ok_or("Not connected")
 }
 
 pub(super) fn commit(scene: &Scene<'_>) -> Asked {

@@ -1,15 +1,20 @@
-//! What became of the last command, in one line: no button moves for it.
+//! What became of the last command, in the height of a button: none moves for it.
 
 use super::bar::PUSH;
 use super::{Scene, field};
-use crate::command::{FlyCommand, Queue};
+use crate::command::{FlyCommand, Queue, ViewCommand};
 use crate::state::{Outcome, Request};
 use crate::{theme, units};
-use egui::{Align, Label, Layout, Rect, Response, RichText, Sense, Ui, UiBuilder, vec2};
+use egui::text::LayoutJob;
+use egui::{
+    Align, Color32, FontId, Label, Layout, Rect, Response, RichText, Sense, TextStyle, Ui, UiBuilder, vec2,
+};
 use flight_plan::in_words;
 
 /// Least width of the line, screen points: where the buttons leave less, it has a row of its own.
 const LEAST: f32 = 120.0;
+/// Of two lines in the height of a button, screen points.
+const SMALL: f32 = 11.5;
 
 /// Draws it behind the commands: pending, accepted, or refused and why, until it is put aside.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -29,10 +34,28 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             (format!("{}: refused, {}", request.label, why_not(scene, request, why)), p.caution)
         }
     };
-    let response = line.add(Label::new(RichText::new(text).color(colour)).truncate());
+    let response = say(&mut line, &text, colour, queue);
     if let Outcome::Refused(why) = &request.outcome {
         with_codes(response, why);
     }
+}
+
+/// In one line or, smaller, in two. What takes more ends with a button that shows all of it over the map.
+fn say(line: &mut Ui, text: &str, colour: Color32, queue: &mut Queue) -> Response {
+    let own = TextStyle::Body.resolve(line.style());
+    if line.painter().layout_no_wrap(text.to_owned(), own, colour).size().x <= line.available_width() {
+        return line.label(RichText::new(text).color(colour));
+    }
+    let small = |width| {
+        let mut job = LayoutJob::simple(text.to_owned(), FontId::proportional(SMALL), colour, width);
+        job.wrap.max_rows = 2;
+        job
+    };
+    let is_cut = line.painter().layout_job(small(line.available_width())).elided;
+    if is_cut && field::small_button(line, "⋯", "Read all of this answer") {
+        queue.view(ViewCommand::Notice(text.to_owned()));
+    }
+    line.add(Label::new(small(line.available_width())).wrap())
 }
 
 /// `, waits until 40 m above home`: what was accepted is not done yet.

@@ -64,9 +64,12 @@ type Row = fn(&mut Ui, &Scene<'_>);
 /// What nobody flies without: in sight at every size. That of the link is in the bar.
 const VITAL: [Row; 4] = [leg, next, above_ground, battery];
 
-/// The alarms, in a part of what is left of the panel.
+/// Height of what is vital, with the gaps around it, points.
+const VITAL_HEIGHT: f32 = VITAL.len() as f32 * 18.0 + 8.0;
+
+/// The alarms, in all that is left of the panel above what is vital: they say what to do.
 fn raised(ui: &mut Ui, scene: &Scene<'_>) {
-    let most = ui.available_height() * 0.5;
+    let most = (ui.available_height() - VITAL_HEIGHT).max(0.0);
     ScrollArea::vertical().id_salt("raised alarms").max_height(most).show(ui, |ui| alarms::show(ui, scene));
     ui.add_space(4.0);
 }
@@ -217,10 +220,10 @@ fn gps(ui: &mut Ui, scene: &Scene<'_>) {
 }
 
 /// Why no command can be given.
-pub const NOT_CONNECTED: &str = "Not connected: no command reaches the aircraft";
+const NOT_CONNECTED: &str = "Not connected: no command reaches the aircraft";
 
 /// Who should obey does not hear.
-pub const NOT_HEARD: &str = "The autopilot is silent: nobody hears a command now";
+const NOT_HEARD: &str = "The autopilot is silent: nobody hears a command now";
 
 /// The strip of commands; each is there when it makes sense. Without a link none of them would arrive.
 pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {

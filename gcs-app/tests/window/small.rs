@@ -12,8 +12,8 @@ use super::whatif::FIRE_WATCH;
 use super::{SQUARE, Window};
 use egui::{Key, Rect, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
-use flight_exec::{Foresight, IterationPlace};
-use gcs_app::link::{Reply, Telemetry};
+use flight_exec::{Command, Foresight, IterationPlace};
+use gcs_app::link::{Call, Reply, Telemetry};
 use usal::contract::{Alarm, Power, Severity, Stamped};
 
 #[test]
@@ -81,6 +81,50 @@ fn rect(window: &Window, label: &str) -> Rect {
 /// Where the tool in use says this.
 fn said(window: &Window, words: &str) -> Rect {
     window.harness.get_by_label_contains(words).rect()
+}
+
+/// They were cut where they say what to do.
+#[test]
+fn alarms_and_answers_are_read_whole() {
+    for size in [SMALL, SMALL / 0.8] {
+        let (mut window, value) = flying();
+        window.harness.set_size(size);
+        let alarm = |id: &str, advice: &str| Alarm {
+            id: id.into(),
+            severity: Severity::Warning,
+            source: "gateway".into(),
+            advice: advice.into(),
+            cause: None,
+        };
+        let sinks = "The aircraft sinks although it is given full throttle: the engine may have failed. Land at the nearest runway \
+                     within gliding reach.";
+        let taken = "A pilot, another station or a failsafe of the autopilot decides what is flown, and not the plan. Resume when he \
+                     gives it back.";
+        window.receive_gateway(vec![alarm("engine-suspected", sinks), alarm("not-in-command", taken)]);
+        window.receive_status(value);
+        let first = window.harness.get_all_by_label_contains("circuit ▸ side2").last().unwrap().rect().top();
+        for advice in [sinks, taken] {
+            assert!(
+                window.paints_whole(advice) && said(&window, advice).bottom() <= first,
+                "{size}: {advice}"
+            );
+        }
+        let hold = rect(&window, "⏸ Hold");
+        let told = |window: &mut Window, why: &str| {
+            window.click("⏸ Hold");
+            let asked = std::iter::from_fn(|| window.asked());
+            let (ticket, _) = asked.filter(|(_, call)| *call == Call::Plan(Command::Hold)).last().unwrap();
+            window.answer(ticket, Err(why.into()));
+            window.paints_whole(why)
+        };
+        let dropped = "nobody took it for 4 s, so it was dropped and will not be done: check the link, then give it again";
+        assert!(told(&mut window, dropped) && !window.shows("Read all of this answer"), "{size}");
+        let long = "a sentence that says what to do, ".repeat(12);
+        assert!(!told(&mut window, &long), "{size}: it has two lines");
+        window.click("Read all of this answer");
+        assert!(window.paints_whole(&long), "{size}: over the map");
+        assert_eq!(rect(&window, "⏸ Hold"), hold, "{size}: no button moves for it");
+    }
 }
 
 #[test]
