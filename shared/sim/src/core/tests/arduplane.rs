@@ -317,7 +317,7 @@ fn sent_to_its_landing_it_flies_straight_there() {
     ground.fly_until(25.0, |_| false);
     let (at, track_deg) = (ground.position(), ground.sim.autopilot.aircraft.state().track_deg());
     let off_deg = (track_deg - at.bearing_deg(home) + 540.0).rem_euclid(360.0) - 180.0;
-    assert!(off_deg.abs() < 3.0, "{off_deg}");
+    assert!(off_deg.abs() < 5.0, "{off_deg}");
 }
 
 #[test]
