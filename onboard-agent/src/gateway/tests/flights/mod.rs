@@ -397,6 +397,7 @@ mod gliding;
 mod late;
 mod met_in_flight;
 mod million;
+mod misfortunes;
 mod narrow;
 mod off_path;
 mod px4;
