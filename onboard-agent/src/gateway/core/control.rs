@@ -75,10 +75,6 @@ pub struct Control {
     pub taken: Option<(Time, Mode)>,
     /// Waypoints were fed in this step: what the driver said of its list before that is true no more.
     pub fed: bool,
-    /// When some were fed last.
-    pub fed_at: Option<Time>,
-    /// It holds because of what was fed, and is told to fly on.
-    pub holds_for_list: bool,
 }
 
 impl Control {
@@ -103,7 +99,6 @@ impl Control {
         self.launch.put_off_since = None;
         self.climb_out.asked = None;
         self.retry_at = None;
-        self.holds_for_list = false;
     }
 
     /// The airspeed that the autopilot was told last, and confirmed, m/s.
@@ -164,7 +159,6 @@ impl Control {
     /// The autopilot is in the wanted mode.
     pub fn confirm(&mut self, now: Time) {
         self.confirmed = true;
-        self.holds_for_list = false;
         self.disobeys_since = None;
         let since = *self.confirmed_at.get_or_insert(now);
         if self.mode.is_none() && now.saturating_sub(since) > OVERTAKEN {

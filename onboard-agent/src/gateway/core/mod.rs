@@ -330,7 +330,7 @@ impl Gateway {
     /// Cancels and appends, as one transaction.
     fn feed_driver(&mut self, cancel_after: Option<Token>, waypoints: Vec<Waypoint>, out: &mut Vec<Output>) {
         let order = self.buffer.feed(cancel_after, waypoints);
-        (self.control.fed, self.control.fed_at) = (true, Some(self.now));
+        self.control.fed = true;
         self.order(order, out);
     }
 

@@ -42,14 +42,7 @@ impl Gateway {
             // an order of ours that has been overtaken: what is wanted is ordered again
             self.control.overtaken(mode);
             self.note_disobedience(now);
-        } else if self.holds_for_its_list(now, mode, wanted) {
-            self.control.overtaken(mode);
-            self.control.holds_for_list = true;
-            self.note_disobedience(now);
-        } else if self.control.confirmed
-            || self.control.holds_for_list
-            || Some(mode) != self.control.mode_before
-        {
+        } else if self.control.confirmed || Some(mode) != self.control.mode_before {
             let cause = self.who_switched(now, wanted);
             self.control.set_intent(Intent::Nothing, Some(mode));
             self.control.taken = Some((now, wanted));
@@ -58,17 +51,6 @@ impl Gateway {
         } else {
             self.note_disobedience(now);
         }
-    }
-
-    /// It holds because of the list that it was given a moment ago, and says so: nobody has chosen that. What it has by now may well be
-    /// flown.
-    fn holds_for_its_list(&self, now: Time, mode: Mode, wanted: Mode) -> bool {
-        let lately = self.control.fed_at.filter(|at| now.saturating_sub(*at) < SHOWS_WITHIN);
-        let says_so = |fed_at: Time| {
-            let said = self.telemetry.said.as_ref().filter(|(at, _)| *at >= fed_at);
-            said.is_some_and(|(_, words)| words.to_lowercase().contains("mission"))
-        };
-        (mode, wanted) == (Mode::Hold, Mode::Waypoints) && lately.is_some_and(says_so)
     }
 
     fn note_disobedience(&mut self, now: Time) {

@@ -52,20 +52,18 @@ fn a_list_that_is_not_accepted_is_the_reason_if_it_is_told_soon() {
     assert!(!refused(&core), "it is had back");
 }
 
-/// A list that can't be flown was followed by one that can.
+/// It warns of a list, a new one is fed, and it holds: only a pilot's switch or a failsafe of its does that.
 #[test]
-fn a_hold_that_it_says_comes_of_what_was_fed_is_nobodys_takeover_for_a_moment() {
+fn a_hold_behind_words_of_a_mission_and_a_feed_is_still_a_takeover() {
     use crate::gateway::order::Aim;
-    for (words, is_takeover) in [("No mission to fly: holding", false), ("Battery failsafe", true)] {
+    for failsafe in [false, true] {
         let mut core = Core::in_nav();
-        core.gateway.control.fed_at = Some(core.now);
-        core.step(Input::Report(Report::Says(words.into())));
+        let feed = Feed { cancel_after: Some(Token(4)), waypoints: vec![] };
+        assert_eq!(core.answer(Input::Feed(4, feed, fp_manager())), Answer::Feed(FeedAnswer::Accepted));
+        core.step(Input::Report(Report::Says("Mission rejected; Battery 1 is low".into())));
         core.out.clear();
-        core.run(1, &[beat(Mode::Hold, true)]);
-        assert_eq!(core.gateway.state() == GatewayState::Manual, is_takeover, "{words}");
-        assert_eq!(core.was_ordered(&Order::Steer(Aim::Waypoints)), !is_takeover, "{words}");
-        core.run(4, &[beat(Mode::Hold, true)]);
-        assert_eq!(core.gateway.state(), GatewayState::Manual, "{words}: it goes on holding");
+        taken(&mut core, Mode::Hold, failsafe);
+        assert!(!core.was_ordered(&Order::Steer(Aim::Waypoints)), "failsafe: {failsafe}");
     }
 }
 

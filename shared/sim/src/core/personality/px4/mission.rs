@@ -116,7 +116,7 @@ impl Px4 {
         let current = if items.is_empty() { Some(0) } else { current };
         // on the ground only MISSION_CURRENT tells that a list is unfit
         if self.problem.is_some() && a.is_armed() && a.mode() == Mode::Auto {
-            a.say(Severity::Critical, "No mission to fly: holding");
+            a.say(Severity::Critical, "No valid mission available, loitering");
             a.set_mode(Mode::Loiter);
         }
         a.replace_mission(items, current);
