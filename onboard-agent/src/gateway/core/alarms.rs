@@ -6,6 +6,7 @@ mod watches;
 use super::off_path::{Beside, OFF_PATH_M};
 use super::telemetry::{FRESH, Telemetry};
 use crate::gateway::order::Time;
+use aircraft::GRAVITY_MPS2;
 use climb::Climb;
 use geometry::LatLon;
 use std::time::Duration;
@@ -27,11 +28,9 @@ const THROTTLE: f64 = 0.1;
 /// Throttle at which an aircraft that sinks does all it can, 0..1.
 const FULL_THROTTLE: f64 = 0.9;
 /// So long does an engine seem to have failed whose autopilot says so.
-const TOLD: Duration = Duration::from_millis(500);
-/// It slows down by more than this, m/s².
-const SLOWING_MPS2: f64 = -0.2;
-/// It sinks faster than this, m/s.
-const SINKING_MPS: f64 = 0.5;
+const TOLD: Duration = Duration::from_secs(2);
+/// A height that changes by less than this has become less, with what the airspeed is worth, m/s.
+const LOSING_MPS: f64 = -0.5;
 /// The autopilot did not follow an order for so long.
 const DISOBEYS: Duration = Duration::from_secs(4);
 
@@ -84,7 +83,7 @@ pub struct Alarms {
     raised: Vec<Watch>,
     /// What may be raised or cleared soon, and since when.
     changing: Vec<(Watch, Time)>,
-    /// What it shows of its engine by climbing.
+    /// What it shows of its engine by climbing, or by staying up.
     climb: Climb,
     /// Where it stood when it was found to stand still.
     stands_at: Option<LatLon>,
@@ -205,18 +204,19 @@ impl Alarms {
         }
     }
 
-    /// It sinks or slows down at full throttle and does not tell how its engine turns; of one whose autopilot warned of it, one of these
-    /// is enough. Once that was seen, until it has climbed as nothing does
-    /// without an engine, or tells that it turns: on the way down nothing else shows it. An autopilot that pulls up to keep the altitude
-    /// gives away its speed first.
+    /// It sinks or slows down at full throttle, far from what it was told, and does not tell how its engine turns; of one whose autopilot
+    /// warned of it, it need not be far from that yet. Words alone are never enough, nor is full throttle in a climb.
+    /// Once that was seen, until it has flown as nothing does without an engine, or tells that it turns: on the way down nothing else
+    /// shows it. An autopilot that pulls up to keep the altitude gives away its speed first.
     fn is_engine_doubtful(&self, now: Time, t: &Telemetry, inputs: AlarmInputs, raised: bool) -> bool {
         let full = |(at, throttle): (Time, f64)| now.saturating_sub(at) < FRESH && throttle > FULL_THROTTLE;
         match t.engine(now) {
             // that it stands is an alarm of its own
             Some(engine) => raised && engine.rpm < STOPPED_RPM && !self.raised.contains(&Watch::EngineOut),
             None if raised => inputs.slow || !self.climb.shows_an_engine(now, t),
-            None if t.warns_of_engine(now) => t.throttle.is_some_and(full) || loses_energy(now, t),
-            None => (inputs.sinks == Some(true) || inputs.slow) && t.throttle.is_some_and(full),
+            None if !t.throttle.is_some_and(full) => false,
+            None if t.warns_of_engine(now) => energy_mps(now, t).is_some_and(|mps| mps < LOSING_MPS),
+            None => inputs.sinks == Some(true) || inputs.slow,
         }
     }
 
@@ -257,9 +257,10 @@ fn has_stopped(engine: usal::contract::Engine, needed: bool) -> bool {
     engine.rpm < STOPPED_RPM && (needed || engine.throttle > THROTTLE)
 }
 
-/// It sinks, or slows down.
-fn loses_energy(now: Time, t: &Telemetry) -> bool {
-    t.fix_now(now).is_some_and(|fix| fix.down_mps > SINKING_MPS) || t.airspeed.gains_mps2() < SLOWING_MPS2
+/// How fast its height grows, with that which its airspeed is worth, m/s. `None`: where it is, is not known.
+fn energy_mps(now: Time, t: &Telemetry) -> Option<f64> {
+    let airspeed_mps = t.air.map_or(0.0, |(_, air)| air.airspeed_mps);
+    t.fix_now(now).map(|fix| airspeed_mps * t.airspeed.gains_mps2() / GRAVITY_MPS2 - fix.down_mps)
 }
 
 fn is_stale(now: Time, t: &Telemetry) -> bool {

@@ -72,7 +72,7 @@ pub struct Telemetry {
     pub list_unfit: bool,
     /// What it warned of, in its own words.
     pub said: Timed<String>,
-    /// When it warned last that its engine has failed.
+    /// When it warned last, in the air, that its engine has failed.
     pub engine_fails: Option<Time>,
     /// What it no longer says.
     pub stopped: Vec<&'static str>,
@@ -161,10 +161,14 @@ impl Telemetry {
             Report::Home { position, altitude_amsl_m } => {
                 self.home = Some((*position, *altitude_amsl_m));
             }
-            Report::OnGround(v) => self.on_ground = Some(*v),
+            Report::OnGround(v) => {
+                self.on_ground = Some(*v);
+                // what it said of its engine down there is not about this flight
+                self.engine_fails = self.engine_fails.filter(|_| !v);
+            }
             Report::ListUnfit(v) => self.list_unfit = *v,
             Report::Says(words) => self.said = Some((now, words.clone())),
-            Report::EngineFails => self.engine_fails = Some(now),
+            Report::EngineFails => self.engine_fails = self.is_up(now).then_some(now),
             Report::Stopped(what) => self.stopped.clone_from(what),
             Report::Links(v) => self.links = Some((now, v.clone())),
             _ => {}

@@ -239,16 +239,13 @@ impl Simulator {
         if new.low_battery != old.low_battery {
             self.autopilot.aircraft.set_battery_share(if new.low_battery { LOW_BATTERY_SHARE } else { 1.0 });
         }
-        let changes = [
-            (old.gps_lost, new.gps_lost, "GPS: fix lost", "GPS: fix is back"),
-            (old.engine_out, new.engine_out, "Engine failure", "Engine runs again"),
-        ];
-        for (was, is, begins, ends) in changes {
-            match (was, is) {
-                (false, true) => self.autopilot.say(Severity::Critical, begins),
-                (true, false) => self.autopilot.say(Severity::Info, ends),
-                _ => {}
-            }
+        match (old.gps_lost, new.gps_lost) {
+            (false, true) => self.autopilot.say(Severity::Critical, "GPS: fix lost"),
+            (true, false) => self.autopilot.say(Severity::Info, "GPS: fix is back"),
+            _ => {}
+        }
+        if let Some(text) = self.rules.engine_text.filter(|_| new.engine_out && !old.engine_out) {
+            self.autopilot.say(Severity::Critical, text);
         }
     }
 

@@ -149,8 +149,61 @@ fn a_suspicion_ends_with_a_climb_that_only_an_engine_gives() {
         ("a climb and faster", 12, 2.0, Some((20.0, 0.5)), false),
         ("its airspeed is not told", 12, 3.5, None, true),
         ("its airspeed is not told, and it goes on", 30, 3.5, None, false),
+        ("level, and no slower", 20, 0.0, steady, true),
+        ("level, and no slower for longer", 32, 0.0, steady, false),
+        ("level, and slower", 32, 0.0, Some((35.0, -0.5)), true),
+        ("level, and its airspeed is not told", 60, 0.0, None, true),
+        ("a glide", 60, -2.0, steady, true),
     ] {
         assert_eq!(is_suspected_after(seconds, climb_mps, airspeed), suspected, "{what}");
+    }
+}
+
+/// Its autopilot warns of its engine, on the ground or in the air, and then flies like this for 10 s: throttle, climb, m/s, and airspeed
+/// with its change, m/s and m/s². When it is suspected, seconds behind the warning.
+fn suspected_behind_words(
+    on_ground: bool,
+    throttle: f64,
+    climb_mps: f64,
+    (mps, gains_mps2): (f64, f64),
+) -> Option<f64> {
+    let (mut alarms, mut telemetry) = (Alarms::default(), Telemetry::default());
+    let air = |s: f64| Air {
+        airspeed_mps: mps + gains_mps2 * s,
+        wind_east_mps: 0.0,
+        wind_north_mps: 0.0,
+        pressure_hpa: 960.0,
+        temperature_c: 15.0,
+    };
+    good(0).iter().take(2).for_each(|report| telemetry.take(Duration::ZERO, report));
+    telemetry.take(Duration::ZERO, &Report::OnGround(on_ground));
+    telemetry.take(Duration::ZERO, &Report::EngineFails);
+    (0..100_u32).find_map(|tenth| {
+        let (now, s) = (Duration::from_millis(100 * u64::from(tenth)), f64::from(tenth) / 10.0);
+        good(i64::from(tenth)).iter().take(2).for_each(|report| telemetry.take(now, report));
+        let reports = [moving(-climb_mps), Report::Throttle(throttle), Report::Air(air(s))];
+        reports.iter().for_each(|report| telemetry.take(now, report));
+        alarms.update(now, &telemetry, AlarmInputs::default(), &mut vec![]);
+        alarms.engine_has_failed().then_some(s)
+    })
+}
+
+#[test]
+fn an_autopilot_that_warns_of_its_engine_is_believed_in_the_air_when_full_throttle_gives_no_energy() {
+    for (what, on_ground, throttle, climb_mps, airspeed, suspected) in [
+        ("it sinks", false, 1.0, -2.0, (25.0, 0.0), true),
+        ("it slows down", false, 1.0, 0.0, (25.0, -0.8), true),
+        ("take-off, warned of before it", true, 1.0, 4.0, (20.0, 1.0), false),
+        ("it sinks, warned of before the take-off", true, 1.0, -2.0, (25.0, 0.0), false),
+        ("a climb at full throttle", false, 1.0, 4.0, (25.0, 0.0), false),
+        ("a climb that costs speed", false, 1.0, 4.0, (30.0, -0.5), false),
+        ("a planned descent", false, 0.2, -2.0, (25.0, 0.0), false),
+        ("a lower speed", false, 0.2, 0.0, (30.0, -0.5), false),
+        ("level at full throttle", false, 1.0, 0.0, (30.0, 0.0), false),
+    ] {
+        let at_s = suspected_behind_words(on_ground, throttle, climb_mps, airspeed);
+        assert_eq!(at_s.is_some(), suspected, "{what}: {at_s:?}");
+        assert!(at_s.is_none_or(|s| (2.0..5.0).contains(&s)), "{what}: {at_s:?}");
     }
 }
 

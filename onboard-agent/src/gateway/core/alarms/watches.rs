@@ -123,7 +123,7 @@ const WORDS: [Words; WATCHES.len()] = [
         id: "engine-suspected",
         severity: Severity::Warning,
         source: "engine",
-        advice: "The aircraft sinks or slows down as without an engine, at full throttle or after its autopilot warned of the engine: it may have failed. Land at the nearest runway within gliding reach.",
+        advice: "The aircraft sinks or slows down as without an engine, at full throttle: the engine may have failed. Land at the nearest runway within gliding reach.",
         cause: Some(Cause::Engine),
         patience: Duration::from_secs(5),
     },

@@ -15,7 +15,7 @@ use super::mirror::Mirror;
 use super::mission::{Mission, Outcome};
 use super::streams::Streams;
 use super::telemetry::Readings;
-use super::words::Words;
+use super::words::{self, Words};
 use super::{Peer, is_for};
 use crate::gateway::driver::{FromLink, Setup, SignedBy};
 use crate::gateway::order::{Report, Time};
@@ -279,8 +279,8 @@ impl Session {
             }
             MavMessage::STATUSTEXT(text) => {
                 self.streams.said(text);
-                if self.words.hear(now, text) {
-                    let fails = self.words.tell_of_engine().then_some(Report::EngineFails);
+                if let Some(warning) = self.words.hear(now, text) {
+                    let fails = words::tells_of_engine(warning).then_some(Report::EngineFails);
                     let said = self.words.lately(now).map(Report::Says);
                     events.extend(said.into_iter().chain(fails).map(SessionEvent::Telemetry));
                 }

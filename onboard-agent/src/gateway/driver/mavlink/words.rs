@@ -11,6 +11,11 @@ const LATELY: Duration = Duration::from_secs(20);
 const MOST: usize = 6;
 /// A text may come in pieces, up to this length in bytes.
 const LONGEST: usize = 250;
+/// Parts of the texts that tell in flight that an engine gives no power any more: PX4's, of its failure detector, and ArduPlane's.
+const ENGINE_FAILS: [&[&str]; 3] =
+    [&["motor failure: motor ", " undercurrent"], &["motor failure detected"], &["uncommanded engine stop"]];
+/// In front of what an autopilot says of its engine on the ground only.
+const ON_GROUND: [&str; 2] = ["prearm:", "arm:"];
 
 /// Its last warnings.
 #[derive(Debug, Clone, Default)]
@@ -29,37 +34,31 @@ struct Text {
 }
 
 impl Words {
-    /// It says something.
-    /// True: it is a warning.
-    pub fn hear(&mut self, now: Time, message: &STATUSTEXT_DATA) -> bool {
+    /// It says something. The warning that this is, as far as it has come by now.
+    pub fn hear(&mut self, now: Time, message: &STATUSTEXT_DATA) -> Option<&str> {
         // not every autopilot keeps to the alphabet
-        let Ok(piece) = message.text.to_str() else { return false };
+        let piece = message.text.to_str().ok()?;
         tracing::info!(piece, "the autopilot says");
         if message.severity as u32 > MavSeverity::MAV_SEVERITY_WARNING as u32 {
-            return false;
+            return None;
         }
         let id = message.id;
-        let begun = self.texts.iter_mut().find(|text| id > 0 && text.id == id);
-        if let Some(text) = begun.filter(|_| message.chunk_seq > 0) {
+        let begun = self.texts.iter().position(|text| id > 0 && text.id == id);
+        if let Some(at) = begun.filter(|_| message.chunk_seq > 0) {
+            let text = self.texts.get_mut(at)?;
             let follows = message.chunk_seq == text.piece.wrapping_add(1);
-            if follows && text.text.len() + piece.len() <= LONGEST {
-                text.text.push_str(piece);
-                text.piece = message.chunk_seq;
+            if !follows || text.text.len() + piece.len() > LONGEST {
+                return None;
             }
-            return true;
+            text.text.push_str(piece);
+            text.piece = message.chunk_seq;
+            return Some(&text.text);
         }
-        self.texts.push_back(Text { at: now, id, piece: message.chunk_seq, text: piece.into() });
-        if self.texts.len() > MOST {
+        if self.texts.len() == MOST {
             self.texts.pop_front();
         }
-        true
-    }
-
-    /// The last of them tells that its engine gives no power any more.
-    pub fn tell_of_engine(&self) -> bool {
-        let text = self.texts.back().map(|text| text.text.to_lowercase()).unwrap_or_default();
-        let has = |words: &[&str]| words.iter().any(|word| text.contains(word));
-        has(&["engine", "motor"]) && has(&["fail", "stop", "flameout"])
+        self.texts.push_back(Text { at: now, id, piece: message.chunk_seq, text: piece.into() });
+        self.texts.back().map(|text| text.text.as_str())
     }
 
     /// What it said lately, each once.
@@ -73,6 +72,14 @@ impl Words {
         }
         (!said.is_empty()).then(|| said.join("; "))
     }
+}
+
+/// A warning tells that an engine gives no power any more.
+pub fn tells_of_engine(warning: &str) -> bool {
+    let said = warning.to_lowercase();
+    let has_all = |parts: &[&str]| parts.iter().all(|part| said.contains(part));
+    !ON_GROUND.iter().any(|before| said.starts_with(before))
+        && ENGINE_FAILS.iter().any(|parts| has_all(parts))
 }
 
 #[cfg(test)]
@@ -105,16 +112,35 @@ mod tests {
 
     #[test]
     fn a_warning_that_its_engine_has_failed_is_known_by_its_words() {
-        let tells = |said: &str| {
-            let mut words = Words::default();
-            words.hear(Time::ZERO, &text(said, 0, 0)) && words.tell_of_engine()
-        };
-        for said in ["Engine failure", "Uncommanded engine stop", "Motor failure detected"] {
-            assert!(tells(said), "{said}");
+        for said in [
+            "Motor failure: Motor 1 undercurrent detected",
+            "Preflight Fail: Motor failure detected",
+            "Uncommanded engine stop",
+        ] {
+            assert!(tells_of_engine(said), "{said}");
         }
-        for said in ["Battery failsafe", "Engine temperature high", "GPS: fix lost"] {
-            assert!(!tells(said), "{said}");
+        for said in [
+            "Battery failsafe",
+            "Engine temperature high",
+            "Motor failure: Motor 1 overcurrent detected",
+            "PreArm: Motors Emergency Stopped",
+            "Arm: Motor failure detected",
+            "Preflight Fail: motor 3 has no telemetry",
+        ] {
+            assert!(!tells_of_engine(said), "{said}");
         }
+    }
+
+    #[test]
+    fn a_piece_is_heard_with_what_it_was_added_to_and_no_other_text() {
+        let (mut words, at) = (Words::default(), Duration::from_secs);
+        words.hear(at(0), &text("Battery 1: ", 3, 0));
+        let engine = words.hear(at(0), &text("Motor failure: Motor 1 ", 4, 0)).map(str::to_owned);
+        assert!(engine.is_some_and(|said| !tells_of_engine(&said)), "it is not whole");
+        words.hear(at(1), &text("GPS: fix lost", 0, 0));
+        assert!(words.hear(at(1), &text("undercurrent detected", 4, 1)).is_some_and(tells_of_engine));
+        assert_eq!(words.hear(at(60), &text("it is low", 3, 1)), Some("Battery 1: it is low"));
+        assert_eq!(words.hear(at(60), &text("it is low", 3, 5)), None, "what is between was lost");
     }
 
     #[test]

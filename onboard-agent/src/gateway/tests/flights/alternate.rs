@@ -22,13 +22,13 @@ fn height_m(whole: &Whole) -> f64 {
     whole.flight.sim.autopilot.aircraft.state().altitude_amsl_m - GROUND_M
 }
 
-/// On a leg, so high above home, the engine fails, and that is told within 3 s. Until it is on the ground.
+/// On a leg, so high above home, the engine fails, and that is told within 10 s. Until it is on the ground.
 fn glided(personality: Personality, plan: &str, leg: &str, least_m: f64) -> Whole {
     let mut whole = Whole::over(personality, hills(), 61, &[]);
     whole.start(plan);
     whole.run_until(900.0, leg, |w| w.entered(leg) && height_m(w) > least_m);
     assert!(whole.flight.sim.inject("engine-out".parse().unwrap()));
-    whole.run_until(3.0, "the alarm", |w| w.flight.station.gateway().snapshot().engine.is_some());
+    whole.run_until(10.0, "the alarm", |w| w.flight.station.gateway().snapshot().engine.is_some());
     whole.run_until(400.0, "down", |w| w.flight.state() == GatewayState::Stop);
     whole
 }

@@ -416,15 +416,30 @@ fn state_that_cannot_be_stored_is_an_alarm_until_it_can() {
     }
 }
 
+fn has_raised(flight: &Flight, id: &str) -> bool {
+    flight.events.iter().any(|(_, e)| matches!(e, GatewayEvent::AlarmRaised(a) if a.id == id))
+}
+
+/// As ArduPlane, which says nothing of an engine that fails.
 #[test]
 fn an_engine_that_fails_and_has_no_rpm_reading_is_suspected_before_the_ground() {
     let mut flight = Flight::on_zigzag(10, &["no-rpm", "engine-out@90"], 40, 300.0);
-    let raised = |f: &Flight, id: &str| {
-        f.events.iter().any(|(_, e)| matches!(e, GatewayEvent::AlarmRaised(a) if a.id == id))
-    };
-    flight.run_until(150.0, "engine-suspected", |f| raised(f, "engine-suspected"));
-    assert!(!raised(&flight, "engine-out"));
+    flight.run_until(150.0, "engine-suspected", |f| has_raised(f, "engine-suspected"));
+    assert!(has_raised(&flight, "sinks") && !has_raised(&flight, "engine-out"));
     assert!(flight.sim.autopilot.aircraft.state().altitude_amsl_m > 400.0);
+}
+
+/// As PX4, whose detector tells of it.
+#[test]
+fn an_engine_that_its_autopilot_warns_of_is_suspected_before_much_height_is_lost() {
+    let mut flight = Flight::on_ground(Personality::Px4, 10, &["no-rpm"]);
+    flight.launch(std::iter::once(take_off()).chain(zigzag(0, 40, 300.0)).collect());
+    flight.run(60.0);
+    let from_m = flight.sim.autopilot.aircraft.state().altitude_amsl_m;
+    assert!(flight.sim.inject("engine-out".parse().unwrap()));
+    flight.run_until(12.0, "engine-suspected", |f| has_raised(f, "engine-suspected"));
+    assert!(!has_raised(&flight, "sinks") && !has_raised(&flight, "engine-out"));
+    assert!(flight.sim.autopilot.aircraft.state().altitude_amsl_m > from_m - 20.0);
 }
 
 /// ArduPlane forgets what it was told with each change of its mode.

@@ -106,6 +106,8 @@ pub struct Rules {
     pub armed_texts: [&'static str; 2],
     /// How it begins when it says why it does not arm.
     pub refusal_text: &'static str,
+    /// What it says when its engine gives no power any more, if it finds that.
+    pub engine_text: Option<&'static str>,
     /// What it says when its own fence is crossed.
     pub fence_text: &'static str,
     /// It touches down before the place of its landing item, so many seconds of its airspeed: it flares early.

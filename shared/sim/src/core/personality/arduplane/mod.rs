@@ -33,6 +33,7 @@ pub(super) static RULES: Rules = Rules {
     tells_items: true,
     armed_texts: ["Throttle armed", "Throttle disarmed"],
     refusal_text: "PreArm",
+    engine_text: None,
     fence_text: "Circle fence breached",
     // 31 to 50 m in nine landings at 25 m/s
     lands_short_s: 1.6,

@@ -50,6 +50,7 @@ const FIXED_WING: Rules = Rules {
     tells_items: false,
     armed_texts: ["Armed", "Disarmed"],
     refusal_text: "Preflight check",
+    engine_text: Some("Motor failure: Motor 1 undercurrent detected"),
     fence_text: "Maximum distance from home exceeded",
     lands_short_s: 0.0,
     params: params::fixed_wing,

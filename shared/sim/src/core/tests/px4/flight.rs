@@ -68,6 +68,16 @@ fn the_same_list_again_changes_nothing_even_with_another_item_marked() {
 }
 
 #[test]
+fn an_engine_that_stops_is_told_of_once() {
+    let home = Config::default().home.position;
+    let mut ground = Ground::px4_airborne(&circuit(home));
+    ground.sim.inject("engine-out".parse().unwrap());
+    ground.fly_until(5.0, |_| false);
+    let told = ground.all_texts().into_iter().filter(|text| text.contains("undercurrent")).count();
+    assert_eq!(told, 1);
+}
+
+#[test]
 fn an_item_reached_is_told_again_every_second() {
     let home = Config::default().home.position;
     let mut ground = Ground::px4_airborne(&circuit(home));
