@@ -118,7 +118,27 @@ impl Chain {
         while self.entries.get(1).is_some_and(|fed| fed.serial == left) {
             self.entries.remove(1);
         }
+        self.skip_active();
+    }
+
+    /// Leave what is steered to for whatever comes next, of the same waypoint or not.
+    pub fn skip_active(&mut self) {
         self.left_behind = self.entries.len() > 1;
+    }
+
+    /// The entry at a position and the one behind it are of the same waypoint.
+    pub fn is_one(&self, position: u64) -> bool {
+        let serial = |position: u64| {
+            let index = usize::try_from(position.checked_sub(self.first)?).ok()?;
+            self.entries.get(index).map(|fed| fed.serial)
+        };
+        serial(position).is_some_and(|one| serial(position + 1) == Some(one))
+    }
+
+    /// The last entry that a feed behind `after` leaves.
+    pub fn last_up_to(&self, after: Serial) -> Option<Item> {
+        let kept = self.entries.iter().take_while(|fed| fed.serial <= after).last();
+        kept.map(|fed| Item::of(&fed.waypoint))
     }
 
     /// The aircraft steers to `position` now.

@@ -1,16 +1,56 @@
 //! The landing that ends a list, and one that is left.
+//!
+//! PX4 judges a landing by the entry before it, and takes no list in which that is steeper than it is set to. A glide may need more height
+//! where its final begins, and nothing is to be told lower than it was fed for that: so a waypoint of its own, close in on the line between
+//! the two, stands before such a landing. It has the landing's number.
 
 use super::{Window, ring};
 use crate::gateway::driver::mavlink::item::{Item, ItemKind};
+use crate::gateway::order::{Fed, Fix};
 use geometry::near::distance_m;
+use geometry::{LatLon, LocalFrame, Vec2};
 use usal::contract::{Action, Waypoint};
 
-/// It refuses a list whose landing comes from more steeply than this above the place of the touch-down (its default), or from below it,
-/// degrees and metres.
+/// It refuses a list whose landing comes from more steeply than this above the place of the touch-down (its default), degrees.
 const STEEPEST_DEG: f64 = 5.0;
-const LEAST_M: f64 = 1.0;
 /// It takes this whatever it is set to, degrees.
 const EASY_DEG: f64 = 3.0;
+/// What stands before a landing that is come to more steeply is so far before it, metres, and no farther than this share of the way to it.
+const CLOSE_M: f64 = 60.0;
+const CLOSE_SHARE: f64 = 0.5;
+
+/// The waypoints, with one more before each landing that PX4 would find too steep; `before`: what comes before the first of them.
+pub(super) fn with_close_ins(mut before: Option<Item>, waypoints: Vec<Fed>) -> Vec<Fed> {
+    let with_its_own = |fed: Fed| {
+        let from = before.replace(Item::of(&fed.waypoint));
+        [from.and_then(|from| close_in(&from, &fed)), Some(fed)].into_iter().flatten()
+    };
+    waypoints.into_iter().flat_map(with_its_own).collect()
+}
+
+fn close_in(from: &Item, landing: &Fed) -> Option<Fed> {
+    let Waypoint { position, altitude_amsl_m, .. } = landing.waypoint;
+    let way_m = distance_m(from.position, position);
+    let is_steep = from.altitude_amsl_m - altitude_amsl_m > way_m * STEEPEST_DEG.to_radians().tan();
+    let is_landing = matches!(landing.waypoint.action, Action::Land { .. });
+    let is_flown = matches!(from.kind, ItemKind::Fly(_));
+    (is_landing && is_flown && is_steep && way_m > 0.0).then(|| {
+        let (position, height_m) = before_landing(position, from.position, CLOSE_M.min(CLOSE_SHARE * way_m));
+        let waypoint = Waypoint {
+            position,
+            altitude_amsl_m: altitude_amsl_m + height_m,
+            action: Action::Fly,
+            end_of_plan: false,
+            ..landing.waypoint.clone()
+        };
+        Fed { waypoint, ..*landing }
+    })
+}
+
+/// A place so many metres before a landing, as seen from another, and its height above that.
+fn before_landing(landing: LatLon, from: LatLon, metres: f64) -> (LatLon, f64) {
+    (landing.destination(landing.bearing_deg(from), metres), metres * EASY_DEG.to_radians().tan())
+}
 
 impl Window {
     /// A landing that is left for something else does not end the list, and is not flown any more. What led to it stands in its place:
@@ -20,26 +60,34 @@ impl Window {
         ring::passing(before.unwrap_or(landing))
     }
 
-    /// The entry of a waypoint at a position. What leads to a landing is no higher there than PX4 takes.
-    pub(super) fn item_of(&self, position: u64, waypoint: &Waypoint) -> Item {
-        let item = ring::item_of(waypoint);
-        let landing = self.chain.at(position + 1).filter(|next| matches!(next.action, Action::Land { .. }));
-        match (item.kind, landing) {
-            (ItemKind::Fly(_), Some(landing)) => no_steeper(item, landing, STEEPEST_DEG),
-            _ => item,
-        }
-    }
-
     /// What a landing that is flown to at once comes from: where the aircraft is. PX4 judges by it whether that is too steep or begins too
     /// low, and then flies no list at all.
     pub(super) fn comes_from(&self, landing: u64) -> Option<Item> {
-        let at = self.chain.at(landing).filter(|_| landing == self.chain.first())?;
-        let item = Item {
-            position: self.fix?.position,
-            altitude_amsl_m: f64::INFINITY,
-            ..ring::passing(ring::item_of(at))
+        let first = self.chain.first();
+        let is_next = landing == first || (landing == first + 1 && self.chain.is_left_behind(first));
+        let at = self.chain.at(landing).filter(|at| is_next && matches!(at.action, Action::Land { .. }))?;
+        let from = self.fix.map(|fix| fix.position).or_else(|| Some(self.chain.before(landing)?.position))?;
+        let (position, height_m) =
+            before_landing(at.position, from, distance_m(from, at.position).max(CLOSE_M));
+        Some(Item { position, altitude_amsl_m: at.altitude_amsl_m + height_m, ..ring::passing(Item::of(at)) })
+    }
+
+    /// What leads to a landing lies behind the aircraft, which had another height there than PX4 wants, and circles for it: nobody turns
+    /// round for it close in, nor for one that it is below. Without an engine it would circle until it is down.
+    pub(super) fn leave_behind_what_leads_in(&mut self, fix: &Fix) {
+        let first = self.chain.first();
+        let lands =
+            |position| self.chain.at(position).is_some_and(|w| matches!(w.action, Action::Land { .. }));
+        let is_close_in = |position| self.chain.is_one(position) && lands(position + 1);
+        let leads_in = lands(first + 1) || is_close_in(first + 1);
+        let Some(active) = self.chain.at(first).filter(|w| leads_in && w.action == Action::Fly) else {
+            return;
         };
-        Some(no_steeper(item, at, EASY_DEG))
+        let to_place = LocalFrame::new(fix.position).to_local(active.position);
+        let lies_behind = to_place.dot(Vec2::new(fix.east_mps, fix.north_mps)) < 0.0;
+        if lies_behind && (is_close_in(first) || fix.altitude_amsl_m < active.altitude_amsl_m) {
+            self.chain.skip_active();
+        }
     }
 
     /// It is to land at a position, and nothing comes behind that.
@@ -52,10 +100,4 @@ impl Window {
     pub(super) fn landing(&self) -> Option<u64> {
         (self.chain.first()..self.end).find(|p| self.ends_at(*p))
     }
-}
-
-fn no_steeper(item: Item, landing: &Waypoint, degrees: f64) -> Item {
-    let most_m = distance_m(item.position, landing.position) * degrees.to_radians().tan();
-    let altitude_amsl_m = item.altitude_amsl_m.min(landing.altitude_amsl_m + most_m.max(LEAST_M));
-    Item { altitude_amsl_m, ..item }
 }

@@ -76,6 +76,7 @@ pub struct Window {
 
 impl Feeding for Window {
     fn feed(&mut self, after: Serial, waypoints: Vec<Fed>) {
+        let waypoints = landing::with_close_ins(self.chain.last_up_to(after), waypoints);
         self.chain.feed(after, waypoints, self.entered);
         self.end = self.end.min(self.chain.end());
     }
@@ -101,7 +102,8 @@ impl Feeding for Window {
             return None;
         }
         let first = u64::from(current);
-        let (up_to, known) = ring::known_on_board(list, first, waypoints);
+        let before = current.checked_sub(1).and_then(|before| list.get(usize::from(before)).copied());
+        let (up_to, known) = ring::known_on_board(list, first, landing::with_close_ins(before, waypoints));
         *self = Self {
             lists: vec![list.to_vec()],
             installed: true,
@@ -179,6 +181,7 @@ impl Feeding for Window {
         self.fix = Some(*fix);
         if self.entered {
             self.chain.leave_climb_out_behind(fix);
+            self.leave_behind_what_leads_in(fix);
         }
     }
 
@@ -225,7 +228,7 @@ impl Feeding for Window {
             return Target::None;
         }
         let Some(active) = self.chain.active() else { return Target::End };
-        let item = self.item_of(self.chain.first(), &active.waypoint);
+        let item = ring::item_of(&active.waypoint);
         if self.steered_to().is_some_and(|steered| matches(&steered, &item)) {
             Target::Waypoint(active.serial)
         } else {
@@ -314,9 +317,14 @@ impl Window {
     fn wanted(&self, position: u64) -> Option<Item> {
         match self.chain.at(position) {
             Some(waypoint) if position < self.end => {
-                let item = self.item_of(position, waypoint);
+                let item = ring::item_of(waypoint);
                 let is_left = item.kind == ItemKind::Land && !self.ends_at(position);
-                Some(if is_left { self.instead_of_landing(position, item) } else { item })
+                let leads_nowhere = self.chain.is_left_behind(position);
+                match (is_left, leads_nowhere) {
+                    (true, _) => Some(self.instead_of_landing(position, item)),
+                    (false, true) => Some(self.comes_from(position + 1).unwrap_or(item)),
+                    (false, false) => Some(item),
+                }
             }
             _ => {
                 let before = self.chain.before(position).or_else(|| self.aboard(position))?;

@@ -1,6 +1,7 @@
 //! Lists that end with a landing.
 
 use super::*;
+use crate::gateway::driver::mavlink::item::Pass;
 
 /// A take-off, waypoints and a landing.
 fn whole_flight(before: u64) -> Vec<Fed> {
@@ -115,8 +116,8 @@ fn a_list_that_is_lost_on_final_comes_again_with_what_its_landing_comes_from() {
     rig.flying = false;
     rig.settle();
     let list = &rig.autopilot.list;
-    assert!(matches(&list[0], &Item::of(&waypoint(6, Action::Fly))), "{list:?}");
-    assert_eq!(list[1].kind, ItemKind::Land);
+    assert_is_taken(list);
+    assert_eq!((list.len(), list[1].kind), (2, ItemKind::Land));
     assert_eq!(rig.window.target(), Target::Waypoint(Serial(7)));
 }
 
@@ -148,4 +149,122 @@ fn px4_sees_a_take_off_first_and_what_each_landing_comes_from() {
         }
         assert_eq!(rig.autopilot.target.unwrap().kind, ItemKind::Land, "{before}");
     }
+}
+
+/// A way by five waypoints, and the last of it comes to the landing at 8°, over 700 m.
+fn steep() -> Vec<Fed> {
+    let mut plan = whole_flight(5);
+    let [.., gate, land] = &mut plan[..] else { panic!() };
+    gate.waypoint.position = land.waypoint.position.destination(180.0, 700.0);
+    gate.waypoint.altitude_amsl_m = land.waypoint.altitude_amsl_m + 700.0 * 8_f64.to_radians().tan();
+    plan
+}
+
+/// Number and place of the steep way's waypoints.
+fn steep_place(n: u64) -> LatLon {
+    steep()[(n - 1) as usize].waypoint.position
+}
+
+fn on_the_steep_way(reached: usize) -> Rig {
+    let mut rig = Rig::flying(steep(), steep_place);
+    for _ in 0..reached {
+        rig.reach();
+        rig.settle();
+    }
+    rig
+}
+
+/// By PX4's rule: above the landing, and not steeper than it is set to.
+fn assert_is_taken(list: &[Item]) {
+    for pair in list.windows(2).filter(|pair| pair[1].kind == ItemKind::Land) {
+        let height_m = pair[0].altitude_amsl_m - pair[1].altitude_amsl_m;
+        let steepest = 5.1_f64.to_radians().tan();
+        let way_m = pair[0].position.distance_m(pair[1].position);
+        assert!(height_m > 0.0 && height_m < steepest * way_m, "{pair:?}");
+    }
+}
+
+#[test]
+fn a_landing_that_is_come_to_steeply_is_flown_from_the_height_that_was_fed() {
+    let mut rig = on_the_steep_way(0);
+    let gate = Item::of(&steep()[5].waypoint);
+    assert!(rig.autopilot.list.iter().any(|item| matches(item, &ring::passing(gate))), "it is told as fed");
+    for reached in 1..9 {
+        assert_is_taken(&rig.autopilot.list);
+        rig.reach();
+        rig.settle();
+        let landing = rig.autopilot.target.is_some_and(|item| item.kind == ItemKind::Land);
+        assert_eq!(landing, reached > 7, "{reached}: {:?}", rig.autopilot.target);
+    }
+    let close_in = rig.autopilot.list[rig.autopilot.list.len() - 2];
+    assert!((59.0..61.0).contains(&close_in.position.distance_m(steep_place(7))), "{close_in:?}");
+}
+
+#[test]
+fn a_landing_that_px4_takes_has_nothing_before_it_but_what_was_fed() {
+    let mut plan = steep();
+    plan[5].waypoint.altitude_amsl_m = 500.0 + 700.0 * 4.9_f64.to_radians().tan();
+    let rig = Rig::flying(plan, steep_place);
+    let [.., before, land] = &rig.autopilot.list[..] else { panic!() };
+    assert_eq!((land.kind, before.position), (ItemKind::Land, steep_place(6)));
+}
+
+/// A gateway that starts anew, wherever on the way, knows all that is aboard.
+#[test]
+fn a_steep_landing_is_known_again_on_the_way_to_it() {
+    for reached in 1..9 {
+        let rig = on_the_steep_way(reached);
+        let Target::Waypoint(next) = rig.window.target() else { panic!("{reached}") };
+        let left: Vec<Fed> = steep().into_iter().filter(|fed| fed.serial >= next).collect();
+        let mut anew = Window::default();
+        let known = anew.adopt(&rig.autopilot.list, rig.autopilot.seq, left.clone());
+        assert_eq!((known, anew.target()), (Some(left.len()), Target::Waypoint(next)), "{reached}");
+        assert!(anew.ready() && anew.next_change(false, None).is_none(), "{reached}");
+    }
+}
+
+/// With another height than PX4 wants where it passes what leads to the landing, it would circle there: close in, so high, metres AMSL.
+#[test]
+fn what_leads_to_a_landing_is_left_behind_when_it_is_passed_too_low_or_close_in() {
+    for (reached, altitude_amsl_m, is_left) in [(6, 560.0, true), (6, 650.0, false), (7, 520.0, true)] {
+        let mut rig = on_the_steep_way(reached);
+        let target = rig.autopilot.target.unwrap();
+        assert_eq!(target.kind, ItemKind::Fly(Pass::By));
+        let (altitude_home_m, north_mps, east_mps, down_mps) = (altitude_amsl_m - 500.0, 25.0, 0.0, 2.0);
+        let at = |bearing_deg: f64| {
+            let position = target.position.destination(bearing_deg, 30.0);
+            Fix { position, altitude_amsl_m, altitude_home_m, north_mps, east_mps, down_mps }
+        };
+        rig.window.moved(&at(180.0));
+        assert_eq!(rig.begin(), None, "it is flown to");
+        rig.window.moved(&at(0.0));
+        rig.settle();
+        assert_eq!(rig.autopilot.target != Some(target), is_left, "{reached}, {altitude_amsl_m} m");
+        assert!(rig.window.ready());
+    }
+}
+
+/// High above the runway it is to land at once.
+#[test]
+fn a_landing_that_is_fed_in_place_of_all_else_is_come_to_from_where_the_aircraft_is() {
+    let mut rig = on_the_steep_way(4);
+    let fix = Fix {
+        position: steep_place(7).destination(90.0, 800.0),
+        altitude_amsl_m: 900.0,
+        altitude_home_m: 400.0,
+        north_mps: 25.0,
+        east_mps: 0.0,
+        down_mps: 2.0,
+    };
+    rig.window.moved(&fix);
+    let anew = waypoint(107, Action::Land { heading_deg: 0.0 });
+    let anew = Waypoint { position: steep_place(7), ..anew };
+    rig.window.feed(Serial(0), vec![Fed { serial: Serial(8), waypoint: anew }]);
+    while let Some(change) = rig.begin() {
+        rig.autopilot.obey(&change);
+        rig.window.done();
+        rig.window.reported(rig.autopilot.seq);
+        assert_is_taken(&rig.autopilot.list);
+    }
+    assert_eq!(rig.window.target(), Target::Waypoint(Serial(8)));
 }
