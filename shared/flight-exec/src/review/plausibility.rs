@@ -39,7 +39,7 @@ pub struct Context<'a> {
     pub terrain: Option<&'a dyn Terrain>,
     /// Wind speed, m/s.
     pub wind_mps: f64,
-    /// Its engine is out: it sinks as it does, however steep the way is that it is told.
+    /// Its engine is out: it sinks as it does, however steeply it is told to.
     pub glides: bool,
 }
 
@@ -128,12 +128,15 @@ fn distance(_: &Context, p: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
 
 /// Climb or descent along the segment against what the aircraft does at that ground speed.
 fn gradient(c: &Context, p: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
-    let previous = p.filter(|_| !c.glides)?;
+    let previous = p?;
     if matches!(previous.action, Action::TakeOff { .. }) || matches!(w.action, Action::TakeOff { .. }) {
         return None;
     }
     let length_m = previous.position.distance_m(w.position);
     let rise_m = w.altitude_amsl_m - previous.altitude_amsl_m;
+    if c.glides && rise_m <= 0.0 {
+        return None;
+    }
     let rate = if rise_m > 0.0 { c.profile.max_climb_mps } else { c.profile.max_descent_mps };
     let ground_mps = (w.airspeed_mps + c.wind_mps).max(1.0);
     // ten metres of grace: corners are rounded, and short segments carry rounded altitudes
@@ -264,18 +267,19 @@ mod tests {
         }
     }
 
-    /// Refused, it would be flown by nobody, and the aircraft come down no higher.
+    /// Refused, it would be flown by nobody, and the aircraft come down no higher. A climb is none of a glide's.
     #[test]
-    fn of_a_glide_the_gradient_is_not_judged_but_the_ground_is() {
+    fn of_a_glide_a_descent_is_not_judged_but_a_climb_and_the_ground_are() {
         let profile = Profile::default();
-        let [here, high, low] = [600.0, 900.0, 310.0].map(|altitude_amsl_m| Waypoint {
+        let [here, high, steep, low] = [600.0, 900.0, 330.0, 310.0].map(|altitude_amsl_m| Waypoint {
             altitude_amsl_m,
             ..waypoint(0.0, if altitude_amsl_m == 600.0 { 0.0 } else { 500.0 })
         });
         let codes = |glides, last| -> Vec<_> {
             faults(&context(&profile, glides), None, Some(&here), last).into_iter().map(|f| f.code).collect()
         };
-        assert_eq!((codes(false, &high), codes(true, &high)), (vec!["gradient"], vec![]));
+        assert_eq!((codes(false, &steep), codes(true, &steep)), (vec!["gradient"], vec![]));
+        assert_eq!((codes(false, &high), codes(true, &high)), (vec!["gradient"], vec!["gradient"]));
         assert_eq!(codes(true, &low), ["below-terrain"]);
     }
 
