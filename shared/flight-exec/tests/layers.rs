@@ -10,6 +10,7 @@ const LAYERS: &[&str] = &[
     "layout::elevations",
     "layout::path",
     "layout::world",
+    "layout::above_ground",
     "layout::homeward",
     "layout::touch_down",
     "layout::expand",

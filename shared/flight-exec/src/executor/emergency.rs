@@ -23,6 +23,11 @@ impl Executor {
             let reason = "no emergency plan applies here: the gateway's Safe mode decides, or name a plan";
             return Err(refusal("no-emergency-plan", reason));
         };
+        if self.is_blocked_by_ground(index) {
+            out.push(Output::Event(Event::EmergencyUnanswered { cause }));
+            let reason = "each glide to its runway that the height suffices for leads into the ground: the gateway's Safe mode decides";
+            return Err(refusal("glide-into-terrain", reason));
+        }
         self.switch_to(index, Emergency { cause, plan, from_leg }, out);
         Ok(())
     }

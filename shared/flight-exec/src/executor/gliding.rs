@@ -1,14 +1,26 @@
 //! The engine is out, and an emergency plan is flown: as much of it as the height allows. Where it does not suffice for the rest of the
-//! plan, what lies between is left out; a holding is left when the way home from there takes what is left. Where it is more than the way
-//! to the landing can lose, that is said in time.
+//! plan, what lies between is left out; a holding is left when the way home from there takes what is left. A way that leads into the
+//! ground is none; where the height suffices for no other, the gateway's Safe mode decides. Where it is more than the way to the landing
+//! can lose, that is said in time.
 
 use super::Executor;
-use crate::api::{AircraftState, Event, Output};
+use crate::api::{Action, AircraftState, Event, Output};
 use crate::layout::cursor::Cursor;
-use crate::layout::homeward::{Arrival, GlideIn, Halt, halts};
+use crate::layout::homeward::{Arrival, GlideIn, Halt, halts, is_clear};
 use crate::layout::touch_down::TouchDown;
 use aircraft::glide::GlideStart;
 use flight_plan::{Id, Runway};
+use geometry::geodesy::normalise_180;
+
+/// How the rest of an emergency plan is glided.
+enum Rest {
+    /// As it is written.
+    Whole,
+    /// A part of it is gone to at once.
+    Shortened(Shortcut),
+    /// Each way that the height suffices for leads into the ground.
+    Blocked,
+}
 
 /// A part of the plan that is gone to at once.
 struct Shortcut {
@@ -30,11 +42,17 @@ impl Executor {
             return;
         }
         // perhaps a while ago: it was held, or somebody else flew
-        let stopped_since = self.flight.emergencies.is_laid_out();
-        match self.shortcut(&state) {
-            Some(shortcut) => self.take(shortcut, out),
-            None if stopped_since => self.replan(out),
-            None => {}
+        let stopped_since = self.flight.emergencies.takes_stopped_engine();
+        let is_taken = match self.rest(&state, stopped_since) {
+            Rest::Shortened(shortcut) => self.take(shortcut, out),
+            Rest::Blocked if stopped_since => {
+                out.push(Output::Safe);
+                false
+            }
+            Rest::Whole | Rest::Blocked => false,
+        };
+        if stopped_since && !is_taken {
+            self.replan(out);
         }
         self.tell_long_landing(&state, out);
     }
@@ -66,59 +84,91 @@ impl Executor {
         (end.beyond_m > 0.0).then(|| (landing.place.leg.clone(), runway.id.clone(), end))
     }
 
+    /// The engine is out, and each glide home by an emergency plan that the height suffices for leads into the ground.
+    pub(super) fn is_blocked_by_ground(&self, section: usize) -> bool {
+        matches!(self.rest_of(section), Some(Rest::Blocked))
+    }
+
     /// The beginning of an emergency plan, or with the engine out the first part of it that the height suffices for: what is out of reach
     /// is not handed out.
     pub(super) fn begun_in_reach(&self, begin: Cursor, out: &mut Vec<Output>) -> Cursor {
-        let glides = self.life.aircraft().filter(|state| state.engine_out && !self.is_muted());
-        let shortcut =
-            glides.zip(begin.section).and_then(|(s, section)| self.shortcut_from(s, section, (0, 0), false));
-        let target = shortcut.as_ref().and_then(|shortcut| self.setup.program.path(&shortcut.to));
-        let Some((shortcut, target)) = shortcut.zip(target) else { return begin };
+        let Some(Rest::Shortened(shortcut)) = begin.section.and_then(|section| self.rest_of(section)) else {
+            return begin;
+        };
+        let Some(target) = self.setup.program.path(&shortcut.to) else { return begin };
         out.push(shortcut.told());
         begin.moved_to(&target, &self.world())
     }
 
-    /// Where to go at once, if the height does not suffice for all that is ahead.
-    fn shortcut(&self, state: &AircraftState) -> Option<Shortcut> {
-        let front = self.flight.horizon.front()?;
-        let path = self.setup.program.path(&front.place.leg)?;
-        let leg = (path.stage, path.indices.first().copied().unwrap_or(0));
-        self.shortcut_from(state, path.emergency_plan?, leg, front.waypoint.on_arc)
+    /// How an emergency plan that begins is glided, if the engine is out.
+    fn rest_of(&self, section: usize) -> Option<Rest> {
+        let state = self.life.aircraft().filter(|state| state.engine_out && !self.is_muted())?;
+        self.rest_from(state, section, (0, 0), false, true)
+    }
+
+    /// How what is ahead is glided. `begins`: it is not flown yet, and may lead into the ground.
+    fn rest(&self, state: &AircraftState, begins: bool) -> Rest {
+        let ahead = || {
+            let front = self.flight.horizon.front()?;
+            let path = self.setup.program.path(&front.place.leg)?;
+            let leg = (path.stage, path.indices.first().copied().unwrap_or(0));
+            self.rest_from(state, path.emergency_plan?, leg, front.waypoint.on_arc, begins)
+        };
+        ahead().unwrap_or(Rest::Whole)
     }
 
     /// The same from a leg of an emergency plan on (indices of its stage and, in that, of the leg): the first part from which the height
-    /// suffices, else the landing. `circles`: around a place on the final approach.
-    fn shortcut_from(
+    /// suffices and the way is clear, else the landing. `circles`: around a place on the final approach.
+    fn rest_from(
         &self,
         state: &AircraftState,
         section: usize,
         leg: (usize, usize),
         circles: bool,
-    ) -> Option<Shortcut> {
+        begins: bool,
+    ) -> Option<Rest> {
         let plan = self.setup.program.flown().emergency_plans.get(section)?;
         let runway = self.setup.program.plan.runway(&plan.runway)?;
         let halts = halts(&self.world(), section, leg);
         let last = halts.len().checked_sub(1)?;
-        let spare_m = |from: usize| {
-            // whoever leaves the circles of a landing need not go back to where its final begins
-            let ahead = if last == 0 { &[] } else { halts.get(from..)? };
-            let arrival = self.arrival(state, ahead, runway);
-            Some((arrival, arrival.map_or(f64::NEG_INFINITY, |a| a.spare_m())))
-        };
+        let runway = &if circles && last == 0 { self.landed_on(runway) } else { runway.clone() };
+        // whoever leaves the circles of a landing need not go back to where its final begins
+        let ahead = |from: usize| if last == 0 { &[] } else { halts.get(from..).unwrap_or_default() };
+        let arrival = |from: usize| self.arrival(state, ahead(from), runway).filter(|a| a.spare_m() >= 0.0);
+        let clears = |from: usize| self.clears(state, ahead(from), runway);
         // on the final approach nothing can be left out but the circles before it
-        if spare_m(0)?.1 >= 0.0 || (last == 0 && !circles) {
-            return None;
+        if (last == 0 && !circles) || (arrival(0).is_some() && (!begins || clears(0))) {
+            return Some(Rest::Whole);
         }
-        let enough = (1..last).find(|from| spare_m(*from).is_some_and(|(_, spare_m)| spare_m >= 0.0));
-        let chosen = halts.get(enough.unwrap_or(last))?;
+        let enough =
+            (1..last).filter_map(|from| Some((from, arrival(from)?))).find(|(from, _)| clears(*from));
+        let chosen = halts.get(enough.map_or(last, |(from, _)| from))?;
         let (arrival, from_other_end) = match enough {
-            Some(from) => (spare_m(from)?.0, false),
+            Some((_, arrival)) => (Some(arrival), false),
             None => {
                 let lands = GlideIn::of(&self.world(), state.wind(), glide_from(state), runway);
+                if lands.is_blocked() {
+                    return Some(Rest::Blocked);
+                }
                 (lands.arrival, lands.from_other_end)
             }
         };
-        Some(Shortcut { to: chosen.id.clone(), arrival, from_other_end })
+        Some(Rest::Shortened(Shortcut { to: chosen.id.clone(), arrival, from_other_end }))
+    }
+
+    /// A runway, from the end that the way ahead lands at.
+    fn landed_on(&self, runway: &Runway) -> Runway {
+        let lands = self.flight.horizon.back().map(|last| last.waypoint.action);
+        let off_deg = |heading_deg| normalise_180(heading_deg - runway.heading_deg).abs();
+        match lands {
+            Some(Action::Land { heading_deg }) if off_deg(heading_deg) > 90.0 => runway.from_other_end(),
+            _ => runway.clone(),
+        }
+    }
+
+    fn clears(&self, state: &AircraftState, halts: &[Halt], runway: &Runway) -> bool {
+        let places = halts.iter().filter_map(|halt| halt.place);
+        is_clear(&self.world(), state.wind(), glide_from(state), places, runway)
     }
 
     /// The glide from here by way of what is ahead.
@@ -127,11 +177,13 @@ impl Executor {
         Arrival::of(&self.world(), state.wind(), glide_from(state), places, runway)
     }
 
-    fn take(&mut self, shortcut: Shortcut, out: &mut Vec<Output>) {
+    /// True: that is flown now.
+    fn take(&mut self, shortcut: Shortcut, out: &mut Vec<Output>) -> bool {
         let section = self.flight.horizon.tail().and_then(|tail| tail.section);
-        let Ok(cursor) = self.cursor_at(&shortcut.to, section) else { return };
+        let Ok(cursor) = self.cursor_at(&shortcut.to, section) else { return false };
         out.push(shortcut.told());
         self.jump(cursor, out);
+        true
     }
 }
 

@@ -132,7 +132,7 @@ impl Executor {
         if cursor.section.is_none() {
             self.flight.emergencies.end();
         }
-        self.flight.emergencies.is_laid_out();
+        self.flight.emergencies.takes_stopped_engine();
         self.flight.emergencies.another_way();
         self.flight.horizon.clear_issued();
         self.flight.questions.forget_distant();

@@ -73,7 +73,7 @@ impl Emergencies {
     }
 
     /// The way ahead is laid out anew; true: since it was before, the engine has stopped.
-    pub fn is_laid_out(&mut self) -> bool {
+    pub fn takes_stopped_engine(&mut self) -> bool {
         std::mem::take(&mut self.engine_stopped)
     }
 

@@ -1,9 +1,10 @@
 //! The glide home with the engine out: where the rest of an emergency plan leads, and the height with which a glide arrives.
 
+use super::above_ground::clears_ground;
 use super::path::distance_m;
 use super::world::World;
 use aircraft::Wind;
-use aircraft::glide::{GlideStart, glide, may_land_unnamed, reserve_m};
+use aircraft::glide::{GlidePoint, GlideStart, glide, may_land_unnamed, reserve_m};
 use flight_plan::{Id, Runway, Stage, StageKind};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
@@ -12,6 +13,8 @@ use geometry::geodesy::normalise_180;
 pub const ALIGNED_DEG: f64 = 30.0;
 /// Final approaches that a glide may fly, as shares of the whole one.
 const FINALS: [f64; 3] = [1.0, 0.5, 0.3];
+/// The other end of a runway, of which only the place is known, may be so much higher or lower by the elevation model, metres.
+const LEVEL_M: f64 = 8.0;
 /// Most legs on the way home that are looked at.
 const MAX_HALTS: usize = 200;
 
@@ -95,13 +98,38 @@ impl Arrival {
         places: impl Iterator<Item = LatLon>,
         runway: &Runway,
     ) -> Option<Self> {
-        let way: Vec<LatLon> = places.chain([runway.threshold]).collect();
-        let end = *glide(world.profile, wind.into(), from, &way, runway.heading_deg)?.last()?;
+        Self::along(&points(world, wind, from, places, runway)?, runway)
+    }
+
+    fn along(points: &[GlidePoint], runway: &Runway) -> Option<Self> {
+        let (from, end) = (points.first()?, points.last()?);
         Some(Self {
             height_m: end.altitude_amsl_m - runway.elevation_amsl_m,
             taken_m: from.altitude_amsl_m - end.altitude_amsl_m,
         })
     }
+}
+
+fn points(
+    world: &World,
+    wind: Wind,
+    from: GlideStart,
+    places: impl Iterator<Item = LatLon>,
+    runway: &Runway,
+) -> Option<Vec<GlidePoint>> {
+    let way: Vec<LatLon> = places.chain([runway.threshold]).collect();
+    glide(world.profile, wind.into(), from, &way, runway.heading_deg)
+}
+
+/// A glide by way of some places to a runway is above the ground all the way.
+pub fn is_clear(
+    world: &World,
+    wind: Wind,
+    from: GlideStart,
+    places: impl Iterator<Item = LatLon>,
+    runway: &Runway,
+) -> bool {
+    points(world, wind, from, places, runway).is_some_and(|points| clears_ground(world.terrain, &points))
 }
 
 /// How a glide that goes to a landing at once flies in.
@@ -115,29 +143,43 @@ pub struct GlideIn {
     pub final_m: Option<f64>,
     /// `None`: the wind does not let it get there.
     pub arrival: Option<Arrival>,
+    /// It is above the ground all the way.
+    clears: bool,
 }
 
 impl GlideIn {
-    /// By the longest final approach that the height suffices for, to the end that the plan names before the other one. Nobody goes back to
-    /// where it begins from nearer on the runway's line. If it suffices for none: straight to the end that is named, if it gets there, else
-    /// to the one that is lacking least.
+    /// Above the ground by the longest final approach that the height suffices for with the whole reserve, to the end that the plan names
+    /// before the other one; else without the reserve, else straight. Nobody goes back to where a final begins from nearer on the runway's
+    /// line. If the height suffices for none: straight to the end that is named, or to the other one if less is lacking there.
     pub fn of(world: &World, wind: Wind, from: GlideStart, runway: &Runway) -> Self {
-        let whole_m = world.config.final_approach_m;
         let by = |end: &(Runway, bool), final_m| Self::by(world, wind, from, end, final_m);
-        let end = (runway.clone(), false);
-        let named = by(&end, None);
-        if named.gets_there() && is_on_final(from.position, final_begins_at(runway, whole_m), runway) {
-            return named;
-        }
-        let other = (runway.from_other_end(), true);
-        let other = Some(other).filter(|(other, _)| may_land_unnamed(world.profile, wind, other.heading_deg));
-        let ends = [Some(&end), other.as_ref()].into_iter().flatten();
-        let mut finals = ends.flat_map(|end| FINALS.map(|share| by(end, Some(share * whole_m))));
-        if let Some(aligned) = finals.find(Self::gets_there) {
-            return aligned;
+        let other = other_end(world, wind, runway).map(|other| (other, true));
+        let ends: Vec<(Runway, bool)> = [(runway.clone(), false)].into_iter().chain(other).collect();
+        let in_line =
+            ends.iter().flat_map(|end| finals(world, from.position, &end.0).map(move |m| by(end, m)));
+        let in_line: Vec<Self> = in_line.filter(Self::gets_there).collect();
+        let straight: Vec<Self> = ends.iter().map(|end| by(end, None)).collect();
+        let clear =
+            |ways: &[Self], best: fn(&Self) -> bool| ways.iter().find(|way| best(way) && way.clears).cloned();
+        let found = clear(&in_line, Self::keeps_reserve).or_else(|| clear(&in_line, Self::gets_there));
+        let found = found.or_else(|| clear(&straight, Self::gets_there));
+        found.unwrap_or_else(|| {
+            Self::as_near_as_it_gets(&in_line, straight, by(&(runway.clone(), false), None))
+        })
+    }
+
+    /// Nothing that gets there is clear of the ground, or nothing gets there.
+    fn as_near_as_it_gets(in_line: &[Self], straight: Vec<Self>, named: Self) -> Self {
+        if let Some(way) = in_line.first() {
+            return way.clone();
         }
         let lacks_less = |other: &Self| !named.gets_there() && other.height_m() > named.height_m();
-        other.as_ref().map(|end| by(end, None)).filter(lacks_less).unwrap_or(named)
+        straight.into_iter().find(lacks_less).unwrap_or(named)
+    }
+
+    /// It would get there if no ground were in its way.
+    pub fn is_blocked(&self) -> bool {
+        self.gets_there() && !self.clears
     }
 
     fn by(
@@ -148,8 +190,11 @@ impl GlideIn {
         final_m: Option<f64>,
     ) -> Self {
         let begins = final_m.map(|metres| final_begins_at(runway, metres));
-        let arrival = Arrival::of(world, wind, from, begins.into_iter(), runway);
-        Self { runway: runway.clone(), from_other_end: *from_other_end, final_m, arrival }
+        let points = points(world, wind, from, begins.into_iter(), runway);
+        let arrival = points.as_deref().and_then(|points| Arrival::along(points, runway));
+        let gets_there = arrival.is_some_and(|arrival| arrival.height_m >= 0.0);
+        let clears = gets_there && points.is_some_and(|points| clears_ground(world.terrain, &points));
+        Self { runway: runway.clone(), from_other_end: *from_other_end, final_m, arrival, clears }
     }
 
     /// Above the threshold, metres.
@@ -160,4 +205,25 @@ impl GlideIn {
     fn gets_there(&self) -> bool {
         self.height_m() >= 0.0
     }
+
+    fn keeps_reserve(&self) -> bool {
+        self.arrival.is_some_and(|arrival| arrival.spare_m() >= 0.0)
+    }
+}
+
+/// Lengths of the final approaches to an end of a runway that may be flown from a place; `None`: it is on one.
+fn finals(world: &World, here: LatLon, runway: &Runway) -> impl Iterator<Item = Option<f64>> + use<> {
+    let whole_m = world.config.final_approach_m;
+    let is_there = is_on_final(here, final_begins_at(runway, whole_m), runway);
+    let shares = FINALS.into_iter().filter(move |_| !is_there).map(move |share| Some(share * whole_m));
+    shares.chain(is_there.then_some(None))
+}
+
+/// The other end of a runway, if a glide may land there and it is not known to lie higher or lower.
+fn other_end(world: &World, wind: Wind, runway: &Runway) -> Option<Runway> {
+    let other = runway.from_other_end();
+    let is_level = |ground_m: f64| (ground_m - other.elevation_amsl_m).abs() <= LEVEL_M;
+    let may_land = may_land_unnamed(world.profile, wind, other.heading_deg);
+    let fits = may_land && world.terrain.elevation_m(other.threshold).is_none_or(is_level);
+    fits.then_some(other)
 }

@@ -4,6 +4,9 @@ use crate::grid::{GROUND_M, HOME, document_with};
 use crate::rig::Rig;
 use flight_exec::{Action, Command, Event};
 use flight_plan::Cause;
+use geometry::LatLon;
+use std::sync::Arc;
+use terrain::Terrain;
 
 /// An emergency plan that goes to a fix, holds there until it is released, and lands.
 fn holding_first() -> String {
@@ -237,4 +240,87 @@ fn of_a_landing_that_ends_on_the_runway_nothing_is_told() {
         rig.report();
         assert_eq!(told_long(&rig), [""; 0], "{height_m} m: it is lost in circles");
     }
+}
+
+/// Flat, with a wall so high above it, metres, 1 km north of the runway and so long to the west and to the east of its threshold.
+struct Wall {
+    height_m: f64,
+    west_m: f64,
+    east_m: f64,
+}
+
+impl Terrain for Wall {
+    fn elevation_m(&self, place: LatLon) -> Option<f64> {
+        let (east, north) = (HOME.destination(90.0, self.east_m), HOME.destination(0.0, 1000.0));
+        let west = HOME.destination(270.0, self.west_m);
+        let is_in = (west.lon_deg..east.lon_deg).contains(&place.lon_deg)
+            && (place.lat_deg - north.lat_deg).abs() < 1e-3;
+        Some(if is_in { GROUND_M + self.height_m } else { GROUND_M })
+    }
+}
+
+/// 3 km north of the runway, 420 m above it, heading for it, and the engine fails behind such a wall. What is answered to the emergency.
+fn behind_a_wall(wall: Wall) -> (Rig, Result<(), String>) {
+    let mut rig = Rig::over(Arc::new(wall)).in_flight(&holding_first());
+    rig.fly_to("b");
+    (rig.position, rig.altitude_amsl_m) = (HOME.destination(0.0, 3000.0), Some(GROUND_M + 420.0));
+    rig.engine_out = true;
+    rig.report();
+    rig.events.clear();
+    let answer = rig.command(Command::Emergency { cause: Cause::Engine, plan: None }).map(drop);
+    (rig, answer.map_err(|refusal| refusal.code))
+}
+
+#[test]
+fn a_glide_whose_ways_all_lead_into_a_hill_is_left_to_safe_mode() {
+    let (rig, answer) = behind_a_wall(Wall { height_m: 350.0, west_m: 1400.0, east_m: 1500.0 });
+    assert_eq!(answer, Err("glide-into-terrain".into()));
+    assert!(rig.events.contains(&Event::EmergencyUnanswered { cause: Cause::Engine }), "{:?}", rig.events);
+    assert!(rig.buffer.iter().all(|w| w.leg.as_str() == "b" || w.leg.as_str() == "land"), "{:?}", rig.buffer);
+}
+
+#[test]
+fn a_hill_that_is_low_enough_is_glided_over() {
+    let (rig, answer) = behind_a_wall(Wall { height_m: 120.0, west_m: 1400.0, east_m: 1500.0 });
+    assert_eq!(answer, Ok(()));
+    assert!(
+        left_out(&rig).is_some_and(|told| format!("{told:?}").contains("there it is")),
+        "{:?}",
+        rig.events
+    );
+}
+
+#[test]
+fn a_hill_before_the_end_that_the_plan_names_is_passed_beside_to_the_other_end() {
+    let (rig, answer) = behind_a_wall(Wall { height_m: 350.0, west_m: 1400.0, east_m: 300.0 });
+    assert_eq!(answer, Ok(()));
+    let land = rig.buffer.back().map(|w| w.action);
+    assert!(matches!(land, Some(Action::Land { heading_deg }) if heading_deg == 270.0), "{land:?}");
+}
+
+/// Where the ways in differ by their reserve only: 500 m behind the runway's other end, on its line, 120 m high. Straight back keeps all of
+/// it; first out to where the whole final of that end begins keeps nothing.
+#[test]
+fn a_way_in_that_keeps_the_reserve_is_flown_before_a_longer_final() {
+    let mut rig = emergency_at(1500.0, true);
+    rig.fly_to("b-hold");
+    rig.position = HOME.destination(90.0, 600.0 + 500.0);
+    rig.altitude_amsl_m = Some(GROUND_M + 120.0);
+    rig.report();
+    let [land] = rig.buffer.make_contiguous() else { panic!("{:?}", rig.buffer) };
+    assert!(matches!(land.action, Action::Land { heading_deg } if heading_deg == 270.0), "{land:?}");
+}
+
+/// What a glide has is all that it can be told: an autopilot that circles a waypoint until it has its altitude would be down there.
+#[test]
+fn no_waypoint_of_a_glide_is_told_far_above_what_it_has() {
+    let (rig, _) = behind_a_wall(Wall { height_m: 120.0, west_m: 1400.0, east_m: 1500.0 });
+    let has_m = |w: &flight_exec::Waypoint| {
+        GROUND_M + 420.0 - HOME.destination(0.0, 3000.0).distance_m(w.position) / 12.0
+    };
+    let ahead = rig.buffer.iter().filter(|w| !matches!(w.action, Action::Land { .. }));
+    for w in ahead.clone() {
+        assert!(w.altitude_amsl_m < has_m(w) + 10.0, "{} m, {w:?}", has_m(w));
+    }
+    assert!(ahead.count() > 0);
 }

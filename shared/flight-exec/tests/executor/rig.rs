@@ -9,7 +9,7 @@ use flight_plan::{Program, VariableValue};
 use geometry::LatLon;
 use std::collections::VecDeque;
 use std::sync::Arc;
-use terrain::Flat;
+use terrain::{Flat, Terrain};
 
 pub use crate::grid::{GROUND_M, HOME, document_with, fix};
 
@@ -48,7 +48,12 @@ pub struct Rig {
 
 impl Rig {
     pub fn new() -> Self {
-        let executor = Executor::new(Config::default(), Arc::new(Flat(GROUND_M)), Profile::default());
+        Self::over(Arc::new(Flat(GROUND_M)))
+    }
+
+    /// The executor knows this ground.
+    pub fn over(terrain: Arc<dyn Terrain>) -> Self {
+        let executor = Executor::new(Config::default(), terrain, Profile::default());
         Self {
             executor,
             now: Time::ZERO,
@@ -75,7 +80,12 @@ impl Rig {
     }
 
     pub fn flying(document: &str) -> Self {
-        let mut rig = Self::new();
+        Self::new().in_flight(document)
+    }
+
+    /// A plan, committed and started.
+    pub fn in_flight(self, document: &str) -> Self {
+        let mut rig = self;
         rig.update(&program(document)).unwrap();
         rig.command(Command::Start).unwrap();
         rig

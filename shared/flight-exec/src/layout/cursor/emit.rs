@@ -91,8 +91,8 @@ impl Cursor {
         needed_m().unwrap_or(f64::NEG_INFINITY)
     }
 
-    /// With the engine out: the altitude that a waypoint is told at least, metres AMSL. One that is out of reach leads over the ground all
-    /// the same: told to fly higher than it can, it sinks no faster, and no gateway takes a way into the ground.
+    /// With the engine out: the altitude that a waypoint is told at least, metres AMSL, as far as what it has there lets it: some autopilots
+    /// circle a waypoint until they have its altitude. A way that has less leads into the ground, and no gateway takes it.
     fn least_in_a_glide(point: Point, world: &World) -> f64 {
         let ground_m = world.glides_in.and_then(|_| world.terrain.elevation_m(point.position));
         ground_m.map_or(f64::NEG_INFINITY, |metres| metres + TERRAIN_MARGIN_M)
@@ -119,7 +119,9 @@ impl Cursor {
                 let (down_m, up_m) = (descent_m + CLIMB_LEAD_M, climb_m + CLIMB_LEAD_M);
                 let commanded_m =
                     ahead_m.max(from.commanded_amsl_m - down_m).min(from.commanded_amsl_m + up_m);
-                (commanded_m.max(Self::least_in_a_glide(point, world)), towards(from.predicted_amsl_m, 0.0))
+                let predicted_m = towards(from.predicted_amsl_m, 0.0);
+                let least_m = Self::least_in_a_glide(point, world).min(predicted_m + CLIMB_LEAD_M);
+                (commanded_m.max(least_m), predicted_m)
             }
         };
         self.path = PathState {

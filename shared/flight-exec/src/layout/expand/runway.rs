@@ -4,7 +4,7 @@ use super::arc::vertices;
 use super::track::SAME_PLACE_M;
 use super::{ExpandError, Point};
 use crate::api::Action;
-use crate::layout::homeward::{ALIGNED_DEG, Arrival, GlideIn, is_on_final};
+use crate::layout::homeward::{ALIGNED_DEG, Arrival, GlideIn, final_begins_at, is_on_final};
 use crate::layout::path::{Level, PathState, distance_m};
 use crate::layout::world::World;
 use aircraft::Wind;
@@ -50,7 +50,7 @@ pub fn land(stage: &Stage, path: &PathState, world: &World) -> Result<Vec<Point>
             || normalise_180(from.bearing_deg(gate.position) - runway.heading_deg).abs() <= ALIGNED_DEG
     };
     if let Some(wind) = world.glides_in {
-        return Ok(gliding_in(gate, path, runway, (wind, world)));
+        return Ok(gliding_in(path, runway, (wind, world)));
     }
     let mut from = path.last.position;
     let threshold_m = |at| distance_m(at, runway.threshold);
@@ -83,21 +83,22 @@ fn touch_down(runway: &Runway) -> Point {
 /// With the engine out a final approach begins at its gate, if the height suffices for the way by it; nothing is flown to line up for it.
 /// Nearer on the runway's line nobody goes back to it: what the steepest descent can't lose is lost in circles there. Where the height
 /// does not suffice for this end of the runway, and for the other one it does, it is landed on from there.
-fn gliding_in(gate: Point, path: &PathState, runway: &Runway, (wind, world): (Wind, &World)) -> Vec<Point> {
+fn gliding_in(path: &PathState, runway: &Runway, (wind, world): (Wind, &World)) -> Vec<Point> {
     let (position, altitude_amsl_m) = (path.last.position, path.predicted_amsl_m);
     let from = GlideStart { position, altitude_amsl_m, course_deg: path.course_deg };
     let lands = GlideIn::of(world, wind, from, runway);
+    let (runway, final_m) = (&lands.runway, world.config.final_approach_m);
     let left_s = distance_m(position, runway.threshold) / path.last.airspeed_mps.max(1.0);
     let is_too_high = altitude_amsl_m - world.profile.max_descent_mps * left_s > runway.elevation_amsl_m;
     let mut points = if let Some(final_m) = lands.final_m {
-        losing_height(on_final(&lands.runway, final_m, world), path, &lands.runway, (wind, world))
-    } else if is_too_high && is_on_final(position, gate.position, runway) {
+        losing_height(on_final(runway, final_m, world), path, runway, (wind, world))
+    } else if is_too_high && is_on_final(position, final_begins_at(runway, final_m), runway) {
         // it is there
         losing_height(Point::fly(position), path, runway, (wind, world)).split_off(1)
     } else {
         Vec::new()
     };
-    points.push(touch_down(&lands.runway));
+    points.push(touch_down(runway));
     points
 }
 
