@@ -139,10 +139,15 @@ fn overlapping(widgets: &[Widget]) -> Vec<String> {
     faults
 }
 
-/// Texts end with an ellipsis where there is no room for all of them, and then a tooltip has the rest.
+/// Names have no more words than this; what has more is a sentence, also on the map.
+const NAME_WORDS: usize = 3;
+
+/// Texts end with an ellipsis where there is no room for all of them, and then a tooltip has the rest. Only the name of something on the
+/// map may hang over its edge, as what is called so does.
 fn cut_texts(window: &Window, widgets: &[Widget]) -> Vec<String> {
-    let map = window.harness.query_all_by_label_contains("Map").map(|node| node.rect());
-    let charts: Vec<Rect> = map.chain(widgets.iter().filter(|w| is_typed(w)).map(|w| w.seen)).collect();
+    let maps: Vec<Rect> =
+        window.harness.query_all_by_label_contains("Map").map(|node| node.rect().expand(2.0)).collect();
+    let typed: Vec<Rect> = widgets.iter().filter(|w| is_typed(w)).map(|w| w.seen).collect();
     let mut faults = Vec::new();
     for clipped in &window.harness.output().shapes {
         for text in texts(&clipped.shape) {
@@ -152,8 +157,11 @@ fn cut_texts(window: &Window, widgets: &[Widget]) -> Vec<String> {
             if words.trim().is_empty() || seen.width() < 1.0 || seen.height() < 1.0 {
                 continue;
             }
-            let on_chart = charts.iter().any(|chart| chart.expand(2.0).contains_rect(seen));
-            if rect.width() > seen.width() + 1.5 && !on_chart && !scrolls_sideways(widgets, seen) {
+            let is_typed = typed.iter().any(|field| field.expand(2.0).contains_rect(seen));
+            let is_name = words.split_whitespace().count() <= NAME_WORDS
+                && maps.iter().any(|map| map.contains_rect(seen));
+            let is_cut = rect.width() > seen.width() + 1.5;
+            if is_cut && !is_typed && !is_name && !scrolls_sideways(widgets, seen) {
                 faults.push(format!("text cut off: {words:?} at {rect}, clip {clip}"));
             }
             if text.galley.elided && !has_tooltip(widgets, seen.center()) {
