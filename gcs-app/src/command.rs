@@ -212,6 +212,8 @@ pub enum ViewCommand {
     ResetLayout,
     /// Show a message.
     Notice(String),
+    /// Show one that goes by itself.
+    Toast(String),
     /// Take a message away.
     DismissNotice,
     /// The name of a file as it is typed.

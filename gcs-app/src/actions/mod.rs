@@ -281,7 +281,7 @@ mod tests {
             ],
         ),
         ("a field or slider has the keyboard", &["Preview::Scrub", "Preview::WhatIf"]),
-        ("nobody asks for it", &["Document::Dropped", "View::Notice"]),
+        ("nobody asks for it", &["Document::Dropped", "View::Notice", "View::Toast"]),
     ];
 
     /// `View::Fit` of all commands.

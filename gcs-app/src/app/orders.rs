@@ -213,6 +213,7 @@ impl App {
             ViewCommand::Edge(edge) => self.view.edge = edge,
             ViewCommand::ResetLayout => self.dock.reset(&self.panels),
             ViewCommand::Notice(text) => self.view.notice = Some(text),
+            ViewCommand::Toast(text) => self.toasts.add(now_s, Level::Info, text),
             ViewCommand::DismissNotice => self.view.notice = None,
             ViewCommand::NameFile(name) => {
                 self.view.browsing.iter_mut().for_each(|browsing| browsing.name.clone_from(&name));

@@ -342,6 +342,7 @@ fn a_zone_is_selected_by_a_click_inside_and_moved_by_a_drag_there() {
     assert!(from.distance_m(to) > 50.0 && same_m == radius_m, "{from:?} {to:?}");
     assert!(window.centre("Fix A").distance(fix) < 1.0, "the map stays");
     assert!(window.shows("Moved the selected zone. Ctrl+Z takes it back."));
+    assert_eq!(window.app().view().notice, None, "it goes by itself");
     window.click("Undo");
     assert_eq!(window.plan(), before, "one step");
     // beside it nothing is selected

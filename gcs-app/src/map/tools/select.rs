@@ -230,7 +230,7 @@ impl Tool for Select {
         self.inserting = None;
         if self.zone.take().is_some() && std::mem::take(&mut self.zone_moves) {
             // who meant the map sees what he did
-            queue.view(ViewCommand::Notice("Moved the selected zone. Ctrl+Z takes it back.".into()));
+            queue.view(ViewCommand::Toast("Moved the selected zone. Ctrl+Z takes it back.".into()));
         }
         self.group.release();
         (self.grabbed, self.dragged, self.bent) = (None, None, None);
