@@ -592,10 +592,10 @@ fn an_alternate_that_is_named_says_how_it_would_count_unnamed() {
     );
     let (unnamed, named) = (out_of_glide(&unnamed), out_of_glide(&named));
     let share = unnamed.split(" % of the flight").next().and_then(|text| text.rsplit(' ').next()).unwrap();
-    assert!(unnamed.contains("of the flight, by a glide straight to the runway."), "{unnamed}");
+    assert!(unnamed.contains("so a glide straight to the runway counts"), "{unnamed}");
     // as What if calls them
-    let along = "by a glide along all of `home`; ";
-    let straight = format!("by a glide straight to the runway on {share} %");
+    let along = "by a glide along all of it";
+    let straight = format!("by a glide straight to the runway it is {share} %");
     assert!(named.contains(along) && named.contains(&straight), "{unnamed}\n{named}");
 }
 

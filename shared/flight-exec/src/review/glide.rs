@@ -127,12 +127,12 @@ fn out_of_reach(
     let plan = &alternate.plan.id;
     if let Some(straight) = straight_percent {
         let message = format!(
-            "engine failure: out of glide on {percent:.0} % of the flight where it answers, by a glide along all of `{plan}`; by a glide straight to the runway on {straight:.0} %. How it is flown is between these: places that the height does not suffice for are left out. At worst, from {from}, a glide along all of it {what}, or name a nearer emergency plan for an engine failure"
+            "engine failure: `{plan}` is out of glide on {percent:.0} % of the flight where it answers. That is by a glide along all of it, for it is named for an engine failure; by a glide straight to the runway it is {straight:.0} %. How it is flown is between these: places that the height does not suffice for are left out. At worst, from {from}, a glide along all of it {what}, or name a nearer emergency plan for an engine failure"
         );
         return Problem::warning("glide-out-of-reach", message).of(&from.leg).with_place(from.position);
     }
     let message = format!(
-        "engine failure: out of glide on {percent:.0} % of the flight, by a glide straight to the runway. Be ready to land elsewhere, no emergency plan is named for the cause `engine`; at worst, from {from}, it {what}, or name a nearer plan for this cause"
+        "engine failure: runway out of glide on {percent:.0} % of the flight. Be ready to land elsewhere: no emergency plan is named for the cause `engine`, so a glide straight to the runway counts; at worst, from {from}, it {what}, or name a nearer plan for this cause"
     );
     Problem::warning("glide-out-of-reach", message).of(plan).with_place(from.position)
 }
