@@ -109,7 +109,7 @@ pub fn fly(source: &Source, air: Air, selection: &Selection) -> anyhow::Result<R
     selection.prepare(&mut loaded)?;
     let scenario = selection.scenario(&loaded.reading.plan)?;
     let conditions = (!selection.anyway).then(|| air.conditions());
-    let air = Air { autopilot: selection.autopilot, ..air };
+    let air = selection.flown_in(air);
     let flown = export::flown(&loaded, conditions, |program, profile| {
         forecast::Ahead { program, profile, terrain: &loaded.terrain, air, scenario: &scenario }.fly()
     });
@@ -245,6 +245,24 @@ mod tests {
         let square = include_str!("../../../assets/plans/square.xml");
         let error = begun(square, Some("36.3,-84.1,500,0")).err().unwrap();
         assert!(error.to_string().contains("--begin"), "{error}");
+    }
+
+    #[test]
+    fn in_warm_air_it_is_flown_faster_by_an_autopilot() {
+        #[derive(clap::Parser)]
+        struct Line {
+            #[command(flatten)]
+            selection: Selection,
+        }
+        let square = include_str!("../../../assets/plans/square.xml");
+        let took_s = |deviation: &str| {
+            let options = ["expand", "--autopilot=arduplane", deviation];
+            let line = <Line as clap::Parser>::parse_from(options);
+            flown(square, &line.selection).unwrap_or_else(|_| panic!("not flown")).preview.time_s
+        };
+        let [cold_s, usual_s, warm_s] =
+            ["--isa-deviation=-20", "--isa-deviation=0", "--isa-deviation=20"].map(took_s);
+        assert!(warm_s + 2.0 < usual_s && usual_s + 2.0 < cold_s, "{cold_s} {usual_s} {warm_s}");
     }
 
     /// Their altitudes count from ground that nothing is known of.

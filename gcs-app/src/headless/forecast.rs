@@ -81,8 +81,12 @@ impl Ahead<'_> {
 
     fn flown(self, report: &mut dyn FnMut(&Advance) -> bool) -> Flown {
         let Self { program, profile, terrain, air, scenario } = self;
-        let options =
-            Options { track_every_s: TRACK_EVERY_S, autopilot: air.autopilot, ..Options::default() };
+        let options = Options {
+            track_every_s: TRACK_EVERY_S,
+            autopilot: air.autopilot,
+            isa_deviation_c: air.isa_deviation_c,
+            ..Options::default()
+        };
         let start = start(program, terrain.as_ref(), air.begin);
         preview_as_far_as_possible(program, profile, terrain, air.wind, start, scenario, &options, report)
     }

@@ -57,7 +57,7 @@ pub fn run(source: &Source, air: Air, selection: &Selection, target: &Target) ->
     // a diagram shows the geometry even if it breaks a rule
     let looks = target.diagram.is_none() && !selection.anyway;
     let forbidden = if looks { loaded.forbidden(air.conditions()) } else { Vec::new() };
-    let air = Air { autopilot: selection.autopilot, ..air };
+    let air = selection.flown_in(air);
     let (terrain, scenario) = (&loaded.terrain, &scenario);
     let ahead = forecast::Ahead { program: &program, profile, terrain, air, scenario };
     let (preview, cut_short) = match ahead.fly_as_far_as_possible() {

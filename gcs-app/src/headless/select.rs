@@ -1,6 +1,7 @@
 //! What of a plan is flown: values of variables, branches, an emergency plan.
 
 use super::source::Loaded;
+use super::wind::{self, Air};
 use aircraft::Autopilot;
 use anyhow::{anyhow, bail};
 use flight_exec::rehearse::{Act, Preview, Scenario, Trigger, When};
@@ -43,6 +44,10 @@ pub struct Selection {
     /// airspeeds; without this option the plan is flown close to its lines at true airspeeds, as by the review in any case.
     #[arg(long, value_name = "AUTOPILOT")]
     pub autopilot: Option<Autopilot>,
+    /// How much warmer than the standard atmosphere the air is (°C): in warm air it is faster at the same indicated airspeed.
+    #[arg(long, value_name = "DEGREES", value_parser = wind::deviation, default_value = "0", allow_hyphen_values = true)]
+    #[arg(requires = "autopilot")]
+    pub isa_deviation: f64,
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {
@@ -56,6 +61,11 @@ fn cause(text: &str) -> Result<Cause, String> {
 }
 
 impl Selection {
+    /// The air, with whose habits it is flown in, and how warm it is.
+    pub fn flown_in(&self, air: Air) -> Air {
+        Air { autopilot: self.autopilot, isa_deviation_c: self.isa_deviation, ..air }
+    }
+
     /// Sets the variables' initial values.
     ///
     /// # Errors

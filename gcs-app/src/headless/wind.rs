@@ -1,5 +1,6 @@
-//! Wind on the command line.
+//! Wind and air on the command line.
 
+use aircraft::air::MOST_DEVIATION_C;
 use aircraft::{Autopilot, Wind};
 use flight_exec::Conditions;
 use flight_exec::rehearse::Start;
@@ -25,6 +26,9 @@ pub struct Air {
     /// The autopilot whose habits it is flown with; a review has none.
     #[arg(skip)]
     pub autopilot: Option<Autopilot>,
+    /// How much warmer than the standard's the air is for it, °C.
+    #[arg(skip)]
+    pub isa_deviation_c: f64,
 }
 
 impl Air {
@@ -64,6 +68,17 @@ pub fn parse(text: &str) -> Result<Wind, String> {
         }
         _ => Err("write DIRECTION,SPEED, as 270,5: degrees it comes from, 0 to 360, and m/s up to 50".into()),
     }
+}
+
+/// How much warmer it is than the standard's air, °C.
+///
+/// # Errors
+/// How to write it.
+pub fn deviation(text: &str) -> Result<f64, String> {
+    let degrees = text.trim().parse::<f64>().ok().filter(|degrees| degrees.abs() <= MOST_DEVIATION_C);
+    degrees.ok_or_else(|| {
+        format!("write the degrees that it is warmer than the standard, from -{MOST_DEVIATION_C} to {MOST_DEVIATION_C}")
+    })
 }
 
 /// `LAT,LON,ALT,COURSE`.
@@ -120,6 +135,14 @@ mod tests {
     fn near_a_pole_that_is_what_is_wrong() {
         assert!(in_flight("89.5,0,500,0").is_err_and(|why| why.contains("pole")));
         assert!(in_flight("95,0,500,0").is_err_and(|why| why.starts_with("write LAT,LON")));
+    }
+
+    #[test]
+    fn warmth_of_the_air() {
+        assert_eq!([deviation("20"), deviation(" -7.5 ")], [Ok(20.0), Ok(-7.5)]);
+        for bad in ["", "warm", "NaN", "41", "-41"] {
+            assert!(deviation(bad).unwrap_err().contains("from -40 to 40"), "{bad}");
+        }
     }
 
     #[test]
