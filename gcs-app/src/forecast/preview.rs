@@ -34,6 +34,7 @@ struct World {
     energy_share: f64,
     decisions: BTreeMap<Id, Id>,
     autopilot: Option<Autopilot>,
+    isa_deviation_c: f64,
 }
 
 impl World {
@@ -43,6 +44,7 @@ impl World {
             energy_share: what_if.energy_share,
             decisions: what_if.decisions.clone(),
             autopilot: what_if.autopilot,
+            isa_deviation_c: what_if.isa_deviation_c,
         }
     }
 }

@@ -65,6 +65,23 @@ fn wind_changes_the_preview_and_not_the_document() {
 }
 
 #[test]
+fn in_warm_air_an_autopilot_is_faster() {
+    let mut window = opened(SQUARE);
+    let usual_s = duration_s(&window);
+    slide(&mut window, "ISA deviation", 20.0);
+    assert_eq!(duration_s(&window), usual_s, "true airspeeds are the same in any air");
+    window.connect();
+    let as_reviewed = window.app().analysis().forecast.clone();
+    window.receive_autopilot("PX4 fixed wing", "px4");
+    window.until("the vehicle's way", |app| !Arc::ptr_eq(&app.analysis().forecast, &as_reviewed));
+    let warm_s = duration_s(&window);
+    assert!(window.shows("What if: air 20 °C warmer than standard"));
+    slide(&mut window, "ISA deviation", -20.0);
+    let cold_s = duration_s(&window);
+    assert!(cold_s > warm_s + 5.0 && window.shows("air 20 °C colder than standard"), "{cold_s} {warm_s}");
+}
+
+#[test]
 fn what_is_being_drawn_is_tried_in_the_wind_that_is_set() {
     let mut window = opened(SQUARE);
     window.press(egui::Key::O);

@@ -1,9 +1,10 @@
-//! The wind at the runway, and other winds at other heights.
+//! The wind at the runway, other winds at other heights, and the warmth of the air.
 
 use super::world::{si_slider, slider};
 use crate::panels::{Scene, field};
 use crate::units::Unit;
 use aircraft::Wind;
+use aircraft::air::MOST_DEVIATION_C;
 use egui::{Button, Slider, Ui};
 use flight_exec::rehearse::WhatIf;
 
@@ -14,6 +15,7 @@ const ALOFT_M: f64 = 500.0;
 const LOWEST_M: f64 = 50.0;
 const HIGHEST_M: f64 = 4000.0;
 const DEGREES: Unit = Unit { symbol: "°", per_si: 1.0, decimals: 0 };
+const CELSIUS: Unit = Unit { symbol: "°C", per_si: 1.0, decimals: 0 };
 
 /// All of them.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, chosen: &mut WhatIf) {
@@ -42,6 +44,11 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, chosen: &mut WhatIf) {
         let (from_m, wind) = highest.unwrap_or((ground_m, chosen.wind));
         chosen.aloft.push(((from_m + ALOFT_M).min(ground_m + HIGHEST_M).round(), wind));
     }
+    let deviation_c = &mut chosen.isa_deviation_c;
+    let range = -MOST_DEVIATION_C..=MOST_DEVIATION_C;
+    let slider = ui.scope(|ui| si_slider(ui, "ISA deviation", deviation_c, range, CELSIUS));
+    let about = "So much warmer than standard is the air: an autopilot, which holds indicated airspeeds, is faster in it";
+    slider.response.on_hover_text(about);
 }
 
 fn wind(ui: &mut Ui, scene: &Scene<'_>, name: &str, wind: &mut Wind) {

@@ -48,6 +48,9 @@ pub fn world(what_if: &WhatIf, plan: &FlightPlan, units: Units) -> String {
     if let Some(autopilot) = what_if.autopilot {
         parts.push(format!("flown by {}", autopilot::name(autopilot)));
     }
+    if let Some(warmth) = warmth(what_if.isa_deviation_c) {
+        parts.push(warmth);
+    }
     for (name, value) in &what_if.variables {
         let unit = plan.variable(name).map_or("", |variable| variable.unit.as_str());
         parts.push(format!("{name} {}", value_in_words(value, unit)));
@@ -57,6 +60,16 @@ pub fn world(what_if: &WhatIf, plan: &FlightPlan, units: Units) -> String {
         branches.map(|(leg, branch)| format!("{}: {}", plan.label(leg), plan.branch_label(leg, branch))),
     );
     parts.join(" · ")
+}
+
+/// `air 20 °C warmer than standard`; `None`: it is as the standard's.
+fn warmth(isa_deviation_c: f64) -> Option<String> {
+    let compared = match isa_deviation_c.round() {
+        0.0 => return None,
+        colder if colder < 0.0 => "colder",
+        _ => "warmer",
+    };
+    Some(format!("air {:.0} °C {compared} than standard", isa_deviation_c.abs()))
 }
 
 /// `Engine failure at 3:20`.
