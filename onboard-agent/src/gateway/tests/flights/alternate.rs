@@ -22,14 +22,29 @@ fn height_m(whole: &Whole) -> f64 {
     whole.flight.sim.autopilot.aircraft.state().altitude_amsl_m - GROUND_M
 }
 
-/// On a leg, so high above home, the engine fails, and that is told within 10 s. Until it is on the ground.
-fn glided(personality: Personality, plan: &str, leg: &str, least_m: f64) -> Whole {
-    let mut whole = Whole::over(personality, hills(), 61, &[]);
+/// The wind of these flights, from the side of the runway, and one that is against the landing.
+const ASIDE: (f64, f64) = (270.0, 5.0);
+const AGAINST: (f64, f64) = (HEADING_DEG, 5.0);
+
+/// So far beside the runway it has to be above the ground, metres.
+const NEAR_M: f64 = 300.0;
+
+/// In a wind from there, m/s, on a leg, so high above home, the engine fails, and that is told within 10 s. Until it is on the ground, which
+/// is nowhere but near the runway.
+fn glided(personality: Personality, wind: (f64, f64), plan: &str, leg: &str, least_m: f64) -> Whole {
+    let hills = hills();
+    let mut whole = Whole::over(personality, hills.clone(), 61, &[]);
+    whole.flight.sim.autopilot.wind = aircraft::Wind::from_direction(wind.0, wind.1);
     whole.start(plan);
     whole.run_until(900.0, leg, |w| w.entered(leg) && height_m(w) > least_m);
     assert!(whole.flight.sim.inject("engine-out".parse().unwrap()));
     whole.run_until(10.0, "the alarm", |w| w.flight.station.gateway().snapshot().engine.is_some());
-    whole.run_until(400.0, "down", |w| w.flight.state() == GatewayState::Stop);
+    whole.run_until(400.0, "down", |w| {
+        let (here, ground_m) = (place(w), hills.elevation_m(place(w)));
+        let is_above = ground_m.is_none_or(|ground_m| height_m(w) + GROUND_M > ground_m);
+        assert!(is_above || STRIP.beside_m(here) < NEAR_M, "{personality}: {here:?} is in a hill");
+        w.flight.state() == GatewayState::Stop
+    });
     whole
 }
 
@@ -62,7 +77,7 @@ fn place(whole: &Whole) -> LatLon {
 #[test]
 fn an_engine_that_fails_low_on_a_circuit_is_followed_by_its_alternate_as_far_as_the_height_allows() {
     for personality in PERSONALITIES {
-        let whole = glided(personality, SQUARE, "side2", 128.0);
+        let whole = glided(personality, ASIDE, SQUARE, "side2", 128.0);
         assert_flies_its_alternate(&whole, "return");
         // the turn towards it takes more than there is: as near as it gets
         let beside_m = STRIP.beside_m(place(&whole));
@@ -73,12 +88,23 @@ fn an_engine_that_fails_low_on_a_circuit_is_followed_by_its_alternate_as_far_as_
 #[test]
 fn an_alternate_by_a_detour_is_cut_short_over_the_hills_that_the_glide_does_not_cross() {
     for personality in PERSONALITIES {
-        let whole = glided(personality, SURVEY, "scan", 290.0);
+        let whole = glided(personality, ASIDE, SURVEY, "scan", 290.0);
         assert_flies_its_alternate(&whole, "return2");
         assert!(
             STRIP.is_landed_on(place(&whole)),
             "{personality}: {:.0} m beside it",
             STRIP.beside_m(place(&whole))
         );
+    }
+}
+
+/// Against the wind the final takes more height than PX4 takes a landing from.
+#[test]
+fn a_glide_against_the_wind_comes_down_on_the_runway_and_not_before_it() {
+    for personality in PERSONALITIES {
+        let whole = glided(personality, AGAINST, SURVEY, "scan", 290.0);
+        assert_flies_its_alternate(&whole, "return2");
+        let beside_m = STRIP.beside_m(place(&whole));
+        assert!(STRIP.is_landed_on(place(&whole)), "{personality}: {beside_m:.0} m beside it");
     }
 }
