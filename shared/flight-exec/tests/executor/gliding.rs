@@ -283,11 +283,7 @@ fn a_glide_whose_ways_all_lead_into_a_hill_is_left_to_safe_mode() {
 fn a_hill_that_is_low_enough_is_glided_over() {
     let (rig, answer) = behind_a_wall(Wall { height_m: 120.0, west_m: 1400.0, east_m: 1500.0 });
     assert_eq!(answer, Ok(()));
-    assert!(
-        left_out(&rig).is_some_and(|told| format!("{told:?}").contains("there it is")),
-        "{:?}",
-        rig.events
-    );
+    assert!(!rig.events.contains(&Event::EmergencyUnanswered { cause: Cause::Engine }), "{:?}", rig.events);
 }
 
 #[test]

@@ -67,7 +67,7 @@ fn foretold(rehearsal: &Rehearsal, at: LatLon, leg: &str) -> Diversion {
 
 /// How it was flown.
 struct Flown {
-    plan: String,
+    plan: Option<String>,
     time_s: f64,
     track: Vec<(LatLon, f64)>,
 }
@@ -100,7 +100,7 @@ fn with_engine_out(whole: &mut Whole) -> Flown {
         },
         _ => None,
     });
-    Flown { plan: plan.unwrap(), time_s: (whole.flight.now - failed).as_secs_f64(), track }
+    Flown { plan, time_s: (whole.flight.now - failed).as_secs_f64(), track }
 }
 
 fn is_as_told(personality: Personality, (plan, leg, after_s): Failure, terrain: Arc<dyn Terrain>) {
@@ -113,7 +113,9 @@ fn is_as_told(personality: Personality, (plan, leg, after_s): Failure, terrain: 
     let flown = with_engine_out(&mut whole);
     let glided = told.glided.as_ref().unwrap();
     let what = format!("{personality}, {leg} + {after_s} s");
-    assert_eq!(told.plan.as_ref().map(|(plan, _)| plan.to_string()), Some(flown.plan), "{what}");
+    let planned = told.plan.as_ref().map(|(plan, _)| plan.to_string());
+    // where by then no way of the plan clears the ground any more, Safe mode glides: it comes down where was told all the same
+    assert!(flown.plan.is_none() || flown.plan == planned, "{what}: {:?}, told {planned:?}", flown.plan);
     let end = flown.track.last().unwrap().0;
     let (missed_m, beside_m) = (glided.missed_m, STRIP.beside_m(end));
     if missed_m <= 0.0 || missed_m > NEARLY_M {
