@@ -75,7 +75,7 @@ impl App {
             made.label(&id)
         );
         let climb_m =
-            from.and_then(|(_, from_m)| Some(begins_amsl_m(&made, &id)? - from_m)).filter(|m| *m > 1.0);
+            from.and_then(|(_, from_m)| Some(begins_amsl_m(made, &id)? - from_m)).filter(|m| *m > 1.0);
         let climbs = climb_m.map(|climb_m| {
             format!(
                 "“{}” begins {} above the path where it was drawn from: the ground on its way asks for that",

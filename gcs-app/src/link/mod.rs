@@ -146,7 +146,7 @@ pub enum Telemetry {
     Power(Stamped<Power>),
     Links(Stamped<AutopilotLinks>),
     Navigation(Stamped<Navigation>),
-    Gateway(Stamped<GatewayStatus>),
+    Gateway(Box<Stamped<GatewayStatus>>),
     Status(Box<Stamped<Status>>),
     Ahead(Stamped<Ahead>),
     Variables(Stamped<PlanVariables>),

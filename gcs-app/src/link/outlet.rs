@@ -126,7 +126,7 @@ mod tests {
             safe_return_in_s: None,
             alarms: Vec::new(),
         };
-        Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value })
+        Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }.into())
     }
 
     /// A plain put in its name hid the emergency that the true one flies; and the one that flies may answer later than one that was

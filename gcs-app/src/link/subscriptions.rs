@@ -59,7 +59,7 @@ const DECODED: &[Decoded] = &[
     variable!(gateway::POWER, Telemetry::Power),
     variable!(gateway::LINKS, Telemetry::Links),
     variable!(gateway::NAVIGATION, Telemetry::Navigation),
-    variable!(gateway::STATE, Telemetry::Gateway),
+    variable!(gateway::STATE, |status| Telemetry::Gateway(Box::new(status))),
     events!(gateway::EVENTS, Telemetry::GatewayEvent),
     variable!(fp_manager::STATUS, |status| Telemetry::Status(Box::new(status.convert()))),
     variable!(fp_manager::AHEAD, Telemetry::Ahead),

@@ -230,7 +230,7 @@ impl Vehicle {
             Telemetry::Power(v) => remember!(self.power, v, now_s),
             Telemetry::Links(v) => remember!(self.links, v, now_s),
             Telemetry::Navigation(v) => remember!(self.navigation, v, now_s),
-            Telemetry::Gateway(v) => self.gateway_status(v, now_s),
+            Telemetry::Gateway(v) => self.gateway_status(*v, now_s),
             Telemetry::Status(v) => {
                 self.follow(&v.value);
                 remember!(self.status, *v, now_s);

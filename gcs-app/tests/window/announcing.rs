@@ -80,7 +80,7 @@ fn what_keeps_an_autopilot_from_being_started_is_said_on_connecting_and_start_is
     window.harness.set_size(egui::vec2(960.0, 600.0));
     let says = |window: &mut Window, unfit: Option<&str>| {
         let value = GatewayStatus { unfit: unfit.map(Into::into), ..gateway_status(GatewayState::Stop) };
-        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }.into()));
     };
     says(&mut window, Some(NEED));
     assert!(window.shows("No plan aboard") && window.shows(&format!("⚠ Can't be started. {NEED}")));

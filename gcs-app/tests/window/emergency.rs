@@ -84,7 +84,7 @@ fn banner_says_who_leads_the_aircraft_and_no_time_of_another_flight() {
         (GatewayState::Manual, "the pilot has it", "EMERGENCY: not in command: the pilot has it"),
     ] {
         let value = GatewayStatus { cause: cause.into(), ..gateway_status(state) };
-        window.receive(Telemetry::Gateway(Stamped { time_s: 4.0, validity_s: 2.0, value }));
+        window.receive(Telemetry::Gateway(Stamped { time_s: 4.0, validity_s: 2.0, value }.into()));
         assert!(window.shows(said) && !window.shows("EMERGENCY: flying"), "{said}");
         let button = ["Emergency: fly the", "Emergency: flying"].map(|label| window.shows(label));
         assert_eq!(button, [true, false], "the button says no more than the banner");

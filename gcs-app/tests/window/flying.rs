@@ -358,7 +358,7 @@ fn what_a_silent_autopilot_said_looks_as_old_as_it_is_and_its_commands_say_that_
     let p = gcs_app::theme::palette(true);
     let silent = |window: &mut Window, autopilot_age_s: f64| {
         let gateway = GatewayStatus { autopilot_age_s, ..gateway_status(GatewayState::Nav) };
-        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value: gateway }));
+        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value: gateway }.into()));
         window.receive_status(value.clone());
         let way = navigation(812.0);
         window.receive(Telemetry::Navigation(Stamped { time_s: 1.0, validity_s: 2.0, value: way }));
@@ -389,7 +389,7 @@ fn what_was_asked_for_in_the_climb_says_until_when_it_waits() {
     let (mut window, mut value) = flying();
     let climb = |window: &mut Window, waits_for_height_m: Option<f64>| {
         let gateway = GatewayStatus { waits_for_height_m, ..gateway_status(GatewayState::TakeOff) };
-        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value: gateway }));
+        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value: gateway }.into()));
     };
     climb(&mut window, None);
     window.click("⏸ Hold");
@@ -557,7 +557,7 @@ fn an_aircraft_that_was_taken_over_says_by_whom_and_offers_to_resume() {
             cause: None,
         };
         let value = GatewayStatus { cause: cause.into(), alarms: vec![alarm], ..gateway_status(state) };
-        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }.into()));
         assert_eq!(window.colour_of(said), Some(p.caution), "{state:?}");
         assert!(window.shows("NOT IN COMMAND") && window.shows("Resume when the pilot gives it back"));
         assert!(!window.shows("Flying circuit"), "that is not true any more");

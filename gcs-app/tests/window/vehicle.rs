@@ -109,20 +109,20 @@ impl Window {
 
     pub fn receive_gateway(&mut self, alarms: Vec<usal::contract::Alarm>) {
         let value = GatewayStatus { cause: "waypoints".into(), alarms, ..gateway_status(GatewayState::Nav) };
-        self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }.into()));
     }
 
     /// Standing disarmed, or flying armed.
     pub fn receive_gateway_state(&mut self, state: GatewayState) {
         let value = gateway_status(state);
-        self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }.into()));
     }
 
     /// A gateway that says which autopilot it has.
     pub fn receive_autopilot(&mut self, name: &str, habits: &str) {
         let autopilot = Some(AutopilotKind { name: name.into(), habits: Some(habits.into()) });
         let value = GatewayStatus { autopilot, ..gateway_status(GatewayState::Stop) };
-        self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }));
+        self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }.into()));
     }
 
     /// The next question that was asked, if there is one.

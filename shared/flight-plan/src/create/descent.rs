@@ -21,7 +21,7 @@ pub(super) fn on_slope(plan: &FlightPlan, leg: &Leg, at: &Spot) -> Option<Altitu
     };
     before_m
         .is_none_or(|before_m| height_m < before_m)
-        .then(|| Altitude { metres: Value::Constant(metres), reference })
+        .then_some(Altitude { metres: Value::Constant(metres), reference })
 }
 
 /// The stages of the plan that a place is in, and the index of its own.
