@@ -147,6 +147,10 @@ impl Executor {
         if self.life.mode.is_holding() {
             return Err(refusal("already-holding", "it holds already: resume to go on"));
         }
+        if self.is_gliding() {
+            let why = "without an engine it would sink while it holds, and lack that height before the runway: it goes on gliding";
+            return Err(refusal("engine-out", why));
+        }
         self.hold(out);
         Ok(())
     }

@@ -38,7 +38,7 @@ impl Executor {
         if state.engine_out != was_out {
             self.flight.emergencies.engine_changes(state.engine_out);
         }
-        if !state.engine_out || self.flight.emergencies.plan().is_none() || self.is_muted() {
+        if !self.is_gliding() || self.is_muted() {
             return;
         }
         // perhaps a while ago: it was held, or somebody else flew
@@ -55,6 +55,11 @@ impl Executor {
             self.replan(out);
         }
         self.tell_long_landing(&state, out);
+    }
+
+    /// An emergency plan is flown without an engine.
+    pub(super) fn is_gliding(&self) -> bool {
+        self.life.aircraft().is_some_and(|state| state.engine_out) && self.flight.emergencies.plan().is_some()
     }
 
     /// The way down that is laid out up to its landing ends beyond the runway, whatever is left out of it: told once, until another way is

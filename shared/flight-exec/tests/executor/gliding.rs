@@ -320,3 +320,18 @@ fn no_waypoint_of_a_glide_is_told_far_above_what_it_has() {
     }
     assert!(ahead.count() > 0);
 }
+
+/// Somebody pressed it by habit, circled for 20 s, and came down 0.9 km from the runway.
+#[test]
+fn nobody_holds_who_glides() {
+    let mut rig = emergency_at(1500.0, true);
+    rig.fly_to("b-hold");
+    rig.events.clear();
+    assert_eq!(
+        rig.command(Command::Hold).map(drop).map_err(|refusal| refusal.code),
+        Err("engine-out".into())
+    );
+    rig.engine_out = false;
+    rig.report();
+    assert!(rig.command(Command::Hold).is_ok());
+}
