@@ -195,6 +195,7 @@ impl Guidance {
             Some(acceptance_m) => acceptance_m,
             None => corner.map_or(0.0, |c| self.early_m(leg, c, state)),
         };
+        let early_m = if self.goes_by_distance(leg) { along_m(early_m, place) } else { early_m };
         let (altitude_m, slope) = leg.altitude_at(place.remaining_m);
         let along_mps = place.velocity.dot(leg.along).max(0.0);
         let mut demand = self.demand(leg, state, altitude_m, slope * along_mps);
@@ -203,6 +204,11 @@ impl Guidance {
         let mut guided = self.guided(leg, place, demand, altitude_m - state.altitude_amsl_m);
         guided.late_s = late_s.max(0.0);
         guided.reached_if(leg.is_a_point() || place.remaining_m <= early_m)
+    }
+
+    /// It goes on within a distance of its target, or behind it (ArduPlane's `Plane::verify_nav_wp`).
+    fn goes_by_distance(&self, leg: &Leg) -> bool {
+        leg.target.acceptance_m.is_some() || matches!(self.habits.corners, Corners::Radius(_))
     }
 
     /// How far before a corner it goes on to the next leg, metres.
@@ -278,6 +284,12 @@ impl Guidance {
             altitude_error_m,
         }
     }
+}
+
+/// How far before its target along the line it comes within a distance of it, metres: from beside the line later. In the middle of a circle it
+/// is at none of its corners.
+fn along_m(distance_m: f64, place: &Place) -> f64 {
+    (distance_m * distance_m - place.cross_track_m * place.cross_track_m).max(0.0).sqrt()
 }
 
 impl Guided {

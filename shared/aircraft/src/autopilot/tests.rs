@@ -177,6 +177,25 @@ fn arduplane_flies_the_corners_that_a_review_sees() {
     }
 }
 
+/// All that was left of a circle was passed over there at once, and with it the height that it was to take.
+#[test]
+fn from_the_middle_of_a_circle_none_of_its_corners_is_reached() {
+    let (profile, radius_m) = (Profile::default(), 180.0);
+    let corner = |i: u32| Target {
+        acceptance_m: Some(arc_acceptance_m(25.0)),
+        ..fly_to(HOME.destination(45.0 * f64::from(i), radius_m))
+    };
+    let aircraft = Aircraft::in_flight(profile.clone(), HOME, 900.0, 0.0);
+    for i in 0..8 {
+        let mut guidance = Guidance::with(profile.clone(), Habits::arduplane(&profile));
+        guidance.direct(
+            Aircraft::in_flight(profile.clone(), corner(i).position, 900.0, 0.0).state(),
+            corner(i + 1),
+        );
+        assert!(!guidance.step(aircraft.state(), Some(&corner(i + 2))).reached, "{i}");
+    }
+}
+
 #[test]
 fn a_target_given_twice_is_passed_without_a_turn() {
     let [there, on] = [1500.0, 3000.0].map(|away_m| fly_to(HOME.destination(140.0, away_m)));

@@ -76,3 +76,35 @@ fn an_engine_that_fails_on_the_way_home_makes_it_choose_again() {
     flight.run_until(900.0, "down", |f| f.state() == GatewayState::Stop);
     assert_on_runway(&flight, near);
 }
+
+/// Its engine fails near an end of the runway, so high above it, on its way along a course off the runway's heading.
+fn fails_near_the_end(height_m: f64, off_deg: f64) -> Flight {
+    let mut flight = Flight::new(54, &[]);
+    flight.store_runway();
+    let near = HOME.destination(HEADING_DEG, 1100.0);
+    let along = |m: f64| near.destination(HEADING_DEG + off_deg, m);
+    let out = |m: f64| HOME.destination(HEADING_DEG, m);
+    let way = [out(2500.0), out(4500.0), along(-2500.0), along(-1500.0), near, along(2000.0)];
+    let way = way.map(|place| waypoint(place, GROUND_M + height_m, Action::Fly));
+    flight.launch(std::iter::once(take_off()).chain(way).collect());
+    let crosses = |f: &Flight| f.has_reached(6) && place(f).distance_m(near) < 150.0;
+    flight.run_until(600.0, "near the end of the runway", crosses);
+    fail_engine(&mut flight);
+    flight
+}
+
+/// Of the circles that were to take the height only a corner or two were flown: it came to rest up to 150 m behind the far threshold.
+#[test]
+fn height_that_is_too_much_near_the_runway_is_lost_before_the_landing() {
+    for height_m in [150.0, 270.0] {
+        for off_deg in [0.0, 45.0, 90.0, 180.0, 240.0, 300.0] {
+            let mut flight = fails_near_the_end(height_m, off_deg);
+            let is_out =
+                |f: &Flight| f.station.gateway().status(f.now).alarms.iter().any(|a| a.id == "engine-out");
+            flight.run_until(10.0, "the engine's alarm", is_out);
+            flight.ask(GatewayRequest::Safe).unwrap();
+            flight.run_until(900.0, "down", |f| f.state() == GatewayState::Stop);
+            assert_on_runway(&flight, HOME);
+        }
+    }
+}
