@@ -51,6 +51,7 @@ fn aircraft(n: u64) -> AircraftState {
         fuel: None,
         on_ground: false,
         engine_out: false,
+        heading_deg: None,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Pure: the executor's view of the aircraft, out of the gateway's variables.
 
 use flight_exec::AircraftState;
-use usal::contract::{Air, Position, Power};
+use usal::contract::{Air, Attitude, Position, Power};
 
 /// The latest of each.
 #[derive(Debug, Clone, Default)]
@@ -9,6 +9,7 @@ pub struct Aircraft {
     position: Option<Position>,
     air: Option<Air>,
     power: Option<Power>,
+    attitude: Option<Attitude>,
 }
 
 impl Aircraft {
@@ -31,6 +32,13 @@ impl Aircraft {
     pub fn power(&mut self, power: Power) {
         if power.battery.is_finite() {
             self.power = Some(power);
+        }
+    }
+
+    /// A fresh attitude.
+    pub fn attitude(&mut self, attitude: Attitude) {
+        if attitude.heading_deg.is_finite() {
+            self.attitude = Some(attitude);
         }
     }
 
@@ -58,6 +66,7 @@ impl Aircraft {
             fuel: self.power.and_then(|p| p.fuel).filter(|f| f.is_finite()).map(|f| f.clamp(0.0, 1.0)),
             on_ground: p.on_ground,
             engine_out,
+            heading_deg: self.attitude.filter(|_| p.on_ground).map(|a| a.heading_deg),
         })
     }
 }

@@ -6,7 +6,8 @@ use flight_exec::{Command, Event, Input, Phase, Token};
 use service::Time;
 use usal::Instance;
 use usal::contract::{
-    Air, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Gps, Navigation, Position, Power,
+    Air, Attitude, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Gps, Navigation, Position,
+    Power,
 };
 use wire::Convert;
 
@@ -17,6 +18,8 @@ pub enum Report {
     Position(Position),
     /// How it flies through the air.
     Air(Air),
+    /// How it is turned.
+    Attitude(Attitude),
     /// The energy left.
     Power(Power),
     /// The satellites, and their time.
@@ -41,6 +44,7 @@ impl Manager {
         match report {
             Report::Position(position) => self.aircraft().position(position),
             Report::Air(air) => self.aircraft().air(air),
+            Report::Attitude(attitude) => self.aircraft().attitude(attitude),
             Report::Power(power) => self.aircraft().power(power),
             Report::Gps(gps) => gps.unix_s.into_iter().for_each(|unix_s| self.time_of_day(now, unix_s)),
             Report::State(status) => self.gateway_status(now, &status, out),

@@ -159,6 +159,7 @@ mod tests {
             fuel: None,
             on_ground: true,
             engine_out: false,
+            heading_deg: None,
         };
         let program = Arc::new(program);
         for input in [

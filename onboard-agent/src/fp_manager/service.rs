@@ -122,6 +122,7 @@ impl Service for FpManager {
         wiring.started(|| Input::Started);
         follow(wiring, gateway::POSITION, Report::Position);
         follow(wiring, gateway::AIR, Report::Air);
+        follow(wiring, gateway::ATTITUDE, Report::Attitude);
         follow(wiring, gateway::POWER, Report::Power);
         follow(wiring, gateway::GPS, Report::Gps);
         wiring.appeared(GATEWAY, || Input::GatewayAppeared);

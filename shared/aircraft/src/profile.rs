@@ -91,6 +91,11 @@ impl Profile {
         wings.min_by(|a, b| off_by(a).total_cmp(&off_by(b))).unwrap_or("trainer")
     }
 
+    /// It takes off and lands upright, wherever its nose points then.
+    pub fn rises_upright(&self) -> bool {
+        self.name == VTOL
+    }
+
     /// A profile that comes with the product.
     ///
     /// # Errors

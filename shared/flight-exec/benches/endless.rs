@@ -84,5 +84,6 @@ fn state(position: LatLon) -> AircraftState {
         fuel: None,
         on_ground: false,
         engine_out: false,
+        heading_deg: None,
     }
 }

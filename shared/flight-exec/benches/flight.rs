@@ -71,6 +71,7 @@ impl Flying {
             fuel: None,
             on_ground: false,
             engine_out: false,
+            heading_deg: None,
         };
         self.step(Input::Aircraft(state));
     }

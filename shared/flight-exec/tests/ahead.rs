@@ -98,6 +98,7 @@ impl Flight {
             fuel: None,
             on_ground,
             engine_out: false,
+            heading_deg: None,
         }));
     }
 

@@ -129,6 +129,7 @@ impl Flight {
             fuel: None,
             on_ground: false,
             engine_out: false,
+            heading_deg: None,
         }));
         let current = self.buffer.front().map(|w| w.token);
         if current.is_some() || reached.end_of_plan {
@@ -259,5 +260,6 @@ fn reported(report: Report) -> AircraftState {
         on_ground: report.on_ground,
         // nothing is left to run it with
         engine_out: battery <= 0.0,
+        heading_deg: report.on_ground.then_some(track_deg),
     }
 }

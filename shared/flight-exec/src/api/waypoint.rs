@@ -92,6 +92,9 @@ pub struct AircraftState {
     /// The engine gives no power any more, as far as is known: it glides.
     #[serde(default)]
     pub engine_out: bool,
+    /// Where its nose points while it stands, degrees true; `None`: it flies, or that is not known.
+    #[serde(default)]
+    pub heading_deg: Option<f64>,
 }
 
 impl AircraftState {
@@ -111,6 +114,7 @@ impl AircraftState {
             self.wind_north_mps,
             self.battery,
             self.fuel.unwrap_or(0.0),
+            self.heading_deg.unwrap_or(0.0),
         ];
         self.position.is_valid() && numbers.iter().all(|n| n.is_finite())
     }

@@ -2,7 +2,7 @@
 
 use super::Executor;
 use super::proposal::too_far;
-use crate::api::{Action, Command, FARTHEST_M, Output, Phase, Refusal, Token};
+use crate::api::{Action, AircraftState, Command, FARTHEST_M, Output, Phase, Refusal, Token};
 use crate::flight::{Flight, refusal};
 use crate::layout::cursor::control::is_call;
 use crate::layout::cursor::{Cursor, Step};
@@ -10,7 +10,11 @@ use crate::layout::path::{PathState, distance_m};
 use crate::layout::stretch::IssuedWaypoint;
 use crate::layout::world::World;
 use flight_plan::suggest::did_you_mean_leg;
-use flight_plan::{Id, Leg, LegKind, LegPath, Program, StageKind, VariableValue};
+use flight_plan::{Id, Leg, LegKind, LegPath, Program, Runway, StageKind, VariableValue};
+use geometry::geodesy::normalise_180;
+
+/// An aircraft that stands farther off a runway's heading would roll the other way, degrees. Less may be a throw by hand across it.
+const MOST_OFF_DEG: f64 = 90.0;
 
 impl Executor {
     pub(crate) fn command(
@@ -72,14 +76,17 @@ impl Executor {
         Ok(())
     }
 
-    /// The aircraft stands where the flight is to take off.
+    /// The aircraft stands where the flight is to take off, and does not point the other way: an autopilot takes off to where it points.
     fn check_at_runway(&self) -> Result<(), Refusal> {
         let stage = self.later_flight().map_or(0, |cursor| cursor.stage);
         let stage = self.setup.program.flown().stages.get(stage).filter(|s| s.kind == StageKind::TakeOff);
         let runway = stage.and_then(|s| self.setup.program.plan.runway(s.runway.as_ref()?));
         let Some((runway, aircraft)) = runway.zip(self.life.aircraft()) else { return Ok(()) };
-        if !aircraft.on_ground || runway.strip().is_near(aircraft.position) {
+        if !aircraft.on_ground {
             return Ok(());
+        }
+        if runway.strip().is_near(aircraft.position) {
+            return self.check_direction(runway, aircraft);
         }
         let away_m = distance_m(aircraft.position, runway.threshold);
         let reason = format!(
@@ -88,6 +95,18 @@ impl Executor {
             runway.id
         );
         Err(refusal("not-at-the-runway", reason))
+    }
+
+    fn check_direction(&self, runway: &Runway, aircraft: &AircraftState) -> Result<(), Refusal> {
+        let off_deg = aircraft.heading_deg.map_or(0.0, |deg| normalise_180(deg - runway.heading_deg).abs());
+        if off_deg <= MOST_OFF_DEG || self.setup.profile.rises_upright() {
+            return Ok(());
+        }
+        let reason = format!(
+            "the aircraft stands {off_deg:.0}° off the heading of runway `{}`, and would take off the wrong way: turn it",
+            runway.id
+        );
+        Err(refusal("wrong-way", reason))
     }
 
     /// At the beginning of the flight that is to be started now, if others of the plan were flown before it: then what they left behind

@@ -284,6 +284,7 @@ impl<'a> Flight<'a> {
             fuel: None,
             on_ground: state.on_ground,
             engine_out: !self.at.aircraft.engine().healthy,
+            heading_deg: None,
         };
         let waits = matches!(self.at.executor.status_phase(), Phase::Holding | Phase::AwaitingDecision);
         let since_us = self.at.now_us - self.at.stepped_us;

@@ -101,6 +101,7 @@ impl Circumstances<'_> {
             track_deg: to.heading_deg,
             battery: 1.0 - to.used_j / self.profile.energy_j,
             on_ground: to.on_ground,
+            heading_deg: None,
             ..aircraft
         });
         executor.put_aircraft(aircraft);

@@ -528,3 +528,20 @@ fn nobody_takes_off_elsewhere_than_from_the_runway_of_the_plan() {
     rig.report();
     rig.command(Command::Start).unwrap();
 }
+
+/// After an engine failure it had landed from the other end, and took off over that again.
+#[test]
+fn nobody_takes_off_the_wrong_way_along_a_runway() {
+    let start = |heading_deg| {
+        let mut rig = Rig::new();
+        rig.update(&program(&document(r#"<TF id="a" fix="B1"/>"#))).unwrap();
+        rig.step(Input::Aircraft(AircraftState { heading_deg, ..rig.state() }));
+        rig.command(Command::Start)
+    };
+    let runway_deg = program(&document(r#"<TF id="a" fix="B1"/>"#)).plan.home().unwrap().heading_deg;
+    let refusal = start(Some(runway_deg + 178.0)).unwrap_err();
+    assert!(refusal.code == "wrong-way" && refusal.reason.contains("178° off"), "{refusal}");
+    for heading_deg in [None, Some(runway_deg - 352.0), Some(runway_deg + 80.0)] {
+        start(heading_deg).unwrap();
+    }
+}

@@ -180,6 +180,7 @@ impl Rig {
             fuel: self.fuel,
             on_ground: self.flown.is_empty(),
             engine_out: self.engine_out,
+            heading_deg: None,
         }
     }
 

@@ -494,6 +494,7 @@ impl Flight {
             fuel: None,
             on_ground: self.position == HOME,
             engine_out: false,
+            heading_deg: None,
         }
     }
 

@@ -384,6 +384,7 @@ pub fn landing() -> Vec<Waypoint> {
     ]
 }
 
+mod aftermath;
 mod alternate;
 mod by_hand;
 mod climb_out;

@@ -162,6 +162,9 @@ impl Whole {
         if let Some((_, air)) = gateway.telemetry().air {
             manager.aircraft().air(air);
         }
+        if let Some((_, attitude)) = gateway.telemetry().attitude {
+            manager.aircraft().attitude(attitude);
+        }
         manager.tick(now, &mut effects);
         self.perform(effects);
     }
