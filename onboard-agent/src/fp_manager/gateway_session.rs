@@ -226,7 +226,9 @@ impl GatewaySession {
         if !answer.accepted {
             let new = self.last_reason != answer.reason;
             self.last_reason.clone_from(&answer.reason);
-            return Err(new.then_some(answer.reason));
+            // who flew for it before waits for the aircraft, and its state says who has that
+            let waits = self.controlled && self.joined_at.is_some();
+            return Err((new && !waits).then_some(answer.reason));
         }
         tracing::info!(highest = answer.highest.0, "joined the gateway");
         self.last_reason.clear();

@@ -104,6 +104,18 @@ impl Alarms {
         self.raised.iter().any(|watch| watch.alarm().cause == Some(Cause::Engine))
     }
 
+    /// The worst emergency of those that are raised, in words.
+    pub fn emergency(&self) -> Option<&'static str> {
+        let worst = self.raised.iter().filter_map(|watch| watch.alarm().cause).max()?;
+        Some(match worst {
+            Cause::Engine => "the engine is out, or seems to be",
+            Cause::Energy => "little energy is left",
+            Cause::Gps => "the position is not known",
+            // of these the gateway knows nothing
+            Cause::Link | Cause::Traffic | Cause::Payload | Cause::Operator => return None,
+        })
+    }
+
     /// The alarm of an engine that has failed, or seems to, for a gateway that follows this one: on the way down nothing else shows it.
     pub fn of_engine(&self) -> Option<String> {
         let engine = [Watch::EngineOut, Watch::EngineSuspected];

@@ -158,7 +158,12 @@ impl Gateway {
     }
 
     fn safe_by_command(&mut self, now: Time, out: &mut Vec<Output>) -> Result<(), String> {
-        self.enter_safe(now, "by command", out);
+        // the FP Manager asks for it where no emergency plan answers an alarm
+        let cause = match self.alarms.emergency() {
+            Some(emergency) => format!("asked for while {emergency}"),
+            None => "by command".to_owned(),
+        };
+        self.enter_safe(now, &cause, out);
         match self.state {
             GatewayState::SafeHold | GatewayState::SafeReturn => {
                 self.control.safe_until_command = true;

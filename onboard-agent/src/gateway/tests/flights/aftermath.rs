@@ -1,9 +1,9 @@
 //! What is told after a failure, and what may be started then: by the whole agent.
 
 use super::alternate::SQUARE;
-use super::whole::Whole;
+use super::whole::{Whole, plan};
 use super::*;
-use flight_exec::Command;
+use flight_exec::{Command, Event};
 
 const RUNWAY: &str = "R05";
 
@@ -40,4 +40,18 @@ fn an_aircraft_that_stands_the_wrong_way_on_its_runway_is_not_started_until_it_i
         turned(&mut whole);
         whole.command(Command::Start).unwrap();
     }
+}
+
+#[test]
+fn safe_mode_says_why_it_was_asked_for_and_nobody_is_told_of_a_join() {
+    let without = plan(0.0).replace(r#" emergency="home""#, "");
+    let (before, _) = without.split_once("<emergencyPlans>").unwrap();
+    let mut whole = Whole::flying(Personality::ArduPlane, 64, &[], &format!("{before}</flightPlan>"));
+    assert!(whole.flight.sim.inject("gps-loss+20".parse().unwrap()));
+    whole.run_until(10.0, "Safe.Hold", |w| w.flight.state() == GatewayState::SafeHold);
+    let cause = whole.flight.station.gateway().status(whole.flight.now).cause;
+    assert_eq!(cause, "asked for while the position is not known");
+    whole.run(15.0);
+    let joins = |event: &&Event| matches!(event, Event::NotGranted { request, .. } if request == "join");
+    assert_eq!(whole.happened.iter().find(joins), None);
 }
