@@ -65,7 +65,7 @@ impl Aircraft {
             battery: self.power.map_or(1.0, |p| p.battery.clamp(0.0, 1.0)),
             fuel: self.power.and_then(|p| p.fuel).filter(|f| f.is_finite()).map(|f| f.clamp(0.0, 1.0)),
             on_ground: p.on_ground,
-            engine_out,
+            engine_out: engine_out && !p.on_ground,
             heading_deg: self.attitude.filter(|_| p.on_ground).map(|a| a.heading_deg),
         })
     }

@@ -31,6 +31,8 @@ const FULL_THROTTLE: f64 = 0.9;
 const TOLD: Duration = Duration::from_secs(2);
 /// A height that changes by less than this has become less, with what the airspeed is worth, m/s.
 const LOSING_MPS: f64 = -0.5;
+/// An engine that has failed, or seems to.
+const ENGINE: [Watch; 2] = [Watch::EngineOut, Watch::EngineSuspected];
 /// The autopilot did not follow an order for so long.
 const DISOBEYS: Duration = Duration::from_secs(4);
 
@@ -118,14 +120,12 @@ impl Alarms {
 
     /// The alarm of an engine that has failed, or seems to, for a gateway that follows this one: on the way down nothing else shows it.
     pub fn of_engine(&self) -> Option<String> {
-        let engine = [Watch::EngineOut, Watch::EngineSuspected];
-        engine.into_iter().find(|watch| self.raised.contains(watch)).map(|watch| watch.alarm().id)
+        ENGINE.into_iter().find(|watch| self.raised.contains(watch)).map(|watch| watch.alarm().id)
     }
 
     /// Takes that up again, until it is seen to be over.
     pub fn take_up(&mut self, id: &str, out: &mut Vec<GatewayEvent>) {
-        let engine = [Watch::EngineOut, Watch::EngineSuspected];
-        let was = engine.into_iter().find(|watch| watch.alarm().id == id && !self.raised.contains(watch));
+        let was = ENGINE.into_iter().find(|watch| watch.alarm().id == id && !self.raised.contains(watch));
         if let Some(watch) = was {
             self.raised.push(watch);
             out.push(GatewayEvent::AlarmRaised(self.alarm(watch)));
@@ -145,6 +145,13 @@ impl Alarms {
             alarm.advice += &format!(" Ignored since the join: {}.", self.ignored);
         }
         alarm
+    }
+
+    /// What is known of the engine counts no more: a person has started the autopilot anew, or takes off with one that does not tell how its
+    /// engine turns.
+    pub fn forget_engine(&mut self, out: &mut Vec<GatewayEvent>) {
+        let forgotten = self.raised.extract_if(.., |watch| ENGINE.contains(watch));
+        out.extend(forgotten.map(|watch| GatewayEvent::AlarmCleared { id: watch.alarm().id }));
     }
 
     /// Looks at everything once; events go to `out`.
@@ -173,13 +180,16 @@ impl Alarms {
         let age = |since: Option<Time>| since.map(|s| now.saturating_sub(s));
         match watch {
             Watch::GpsLost => t.gps.is_some_and(|(_, g)| !g.fix_3d),
+            // come down, nothing mends it until it is seen to run; one that was well is stopped there
+            Watch::EngineOut if !t.is_up(now) => raised && !is_seen_to_run(now, t),
             Watch::EngineOut => {
                 let needed = raised || inputs.sinks_below_target;
                 let stands = |e| has_stopped(e, needed);
                 // one that stood when it was last told of stands
-                t.is_up(now) && t.engine(now).map_or(raised, stands)
+                t.engine(now).map_or(raised, stands)
             }
-            Watch::EngineSuspected => t.is_up(now) && self.is_engine_doubtful(now, t, inputs, raised),
+            Watch::EngineSuspected if !t.is_up(now) => raised && !is_seen_to_run(now, t),
+            Watch::EngineSuspected => self.is_engine_doubtful(now, t, inputs, raised),
             // if nothing comes at all, that is another alarm
             Watch::StreamStopped => {
                 // some say of the wind, or of an engine, only what they measure in the air
@@ -267,6 +277,10 @@ impl Alarms {
 /// the height that is missing. An engine that idles on a descent is well.
 fn has_stopped(engine: usal::contract::Engine, needed: bool) -> bool {
     engine.rpm < STOPPED_RPM && (needed || engine.throttle > THROTTLE)
+}
+
+fn is_seen_to_run(now: Time, t: &Telemetry) -> bool {
+    t.engine(now).is_some_and(|engine| engine.rpm >= STOPPED_RPM)
 }
 
 /// How fast its height grows, with that which its airspeed is worth, m/s. `None`: where it is, is not known.

@@ -119,7 +119,7 @@ impl Gateway {
         let since = sinks.then(|| self.control.climb_out.sinks_since.unwrap_or(self.now));
         let climbs = down_mps.is_none_or(|mps| mps < -CLIMBING_MPS);
         let is_over = t.is_above_home(CLEAR_M)
-            || self.alarms.engine_has_failed()
+            || self.glides()
             || since.is_some_and(|since| self.now.saturating_sub(since) >= SINKS_FOR)
             || (self.is_dry() && !climbs);
         // on the ground it has not begun

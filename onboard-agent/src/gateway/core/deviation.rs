@@ -67,7 +67,7 @@ impl Gateway {
         let closing_mps = -fix.down_mps * missing_m.signum();
         let left_s = self.seconds_to_target().unwrap_or(0.0).max(1.0);
         let asked_mps = (CLOSING_SHARE * missing_m.abs() / left_s).min(CLOSING_MPS);
-        Some(flies && missing_m.abs() > OFF_M && closing_mps < asked_mps && !self.alarms.engine_has_failed())
+        Some(flies && missing_m.abs() > OFF_M && closing_mps < asked_mps && !self.glides())
     }
 
     /// It flies far faster through the air than it was told to, and does not slow down.

@@ -185,7 +185,7 @@ impl Gateway {
             profile: &self.settings.profile,
             terrain,
             wind_mps: self.telemetry.wind_mps(),
-            glides: self.alarms.engine_has_failed(),
+            glides: self.glides(),
         };
         let here = self.here(feed);
         let previous = self.buffer.predecessor(feed.cancel_after).or(here.as_ref());

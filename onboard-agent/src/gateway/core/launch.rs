@@ -57,7 +57,18 @@ impl Gateway {
         let Launch { arm, stand_down, .. } = self.control.launch;
         self.control.launch = Launch { since: Some(self.now), arm, stand_down, ..Launch::default() };
         self.control.set_intent(Intent::Fly, self.telemetry.mode);
+        if self.telemetry.engine(self.now).is_none() {
+            // only the take-off shows that it runs, and from the lift-off on it would count as failed
+            self.forget_engine(out);
+        }
         out.push(Output::Save);
+    }
+
+    /// On the ground: what was known of it before is not known of it now.
+    fn forget_engine(&mut self, out: &mut Vec<Output>) {
+        let mut events = vec![];
+        self.alarms.forget_engine(&mut events);
+        out.extend(events.into_iter().map(Output::Event));
     }
 
     /// A launch waits until the list is aboard and the autopilot flies it, armed or not, but not for long, nor for an autopilot that is
@@ -81,6 +92,10 @@ impl Gateway {
     pub(super) fn rebooted(&mut self, out: &mut Vec<Output>) {
         if self.control.launch.since.is_some() {
             self.give_up_launch("the autopilot started anew", out);
+        }
+        if !is_flying(self.state) {
+            self.forget_engine(out);
+            out.push(Output::Save);
         }
     }
 

@@ -143,7 +143,8 @@ impl Gateway {
 
     /// What does not belong to a list is known again.
     pub(super) fn take_up(&mut self, known: &Snapshot, out: &mut Vec<Output>) {
-        if let Some(engine) = &known.engine {
+        // on the ground somebody may have mended it while nobody looked
+        if let Some(engine) = known.engine.as_ref().filter(|_| self.telemetry.is_up(self.now)) {
             let mut events = vec![];
             self.alarms.take_up(engine, &mut events);
             out.extend(events.into_iter().map(Output::Event));

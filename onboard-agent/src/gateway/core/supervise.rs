@@ -150,7 +150,7 @@ impl Gateway {
             GatewayState::SafeHold => {
                 let due = self.control.safe_since.is_some_and(|s| now >= s + seconds(self.safe.t2_s));
                 // height that is circled away is missing before the runway
-                if due || self.alarms.engine_has_failed() {
+                if due || self.glides() {
                     self.return_home(now, out);
                 }
             }
@@ -173,7 +173,7 @@ impl Gateway {
     /// When an FP Manager that was given the aircraft back has to have sent waypoints: without an engine it circles away its height.
     fn waypoints_due(&self) -> Option<Time> {
         let since = self.fp_manager.awaited_since.filter(|_| self.state == GatewayState::Hold);
-        let patience_s = if self.alarms.engine_has_failed() { self.safe.t1_s } else { self.safe.t2_s };
+        let patience_s = if self.glides() { self.safe.t1_s } else { self.safe.t2_s };
         since.map(|since| since + seconds(patience_s))
     }
 
@@ -210,7 +210,7 @@ impl Gateway {
 
     /// What the way home was chosen for is not so, or none could be chosen; and a way can be looked for (again).
     fn wants_another_way(&self, now: Time) -> bool {
-        let glides = self.alarms.engine_has_failed();
+        let glides = self.glides();
         let suits = self.control.way_home_glides == Some(glides);
         let is_due = |(at, for_glide): (Time, bool)| for_glide != glides || now >= at + LOOKS_AGAIN;
         !suits
@@ -253,7 +253,7 @@ impl Gateway {
                 cause
             }
             None if self.control.intent == Intent::Return => NONE_IN_REACH.to_owned(),
-            None if self.alarms.engine_has_failed() => {
+            None if self.glides() => {
                 "no runway known within reach of a glide: the way that was chosen with the engine is flown on"
                     .to_owned()
             }
@@ -265,7 +265,7 @@ impl Gateway {
 
     /// The way home that suits the aircraft as it is, from where it is known to be.
     fn look_for_way_home(&mut self, now: Time) -> Option<(String, Vec<Waypoint>)> {
-        let glides = self.alarms.engine_has_failed();
+        let glides = self.glides();
         let way = self.way_home();
         self.control.looked_for = Some((now, glides));
         if way.is_some() {
@@ -288,6 +288,11 @@ impl Gateway {
         Some((cause, safe::path(&landing, &self.safe, &situation)))
     }
 
+    /// It is in the air, and its engine has failed, or seems to have.
+    pub(super) fn glides(&self) -> bool {
+        self.telemetry.is_up(self.now) && self.alarms.engine_has_failed()
+    }
+
     /// Where the aircraft is; not where it was.
     pub(super) fn place_now(&self) -> Option<LatLon> {
         self.situation().map(|s| s.position)
@@ -300,7 +305,7 @@ impl Gateway {
             position: fix.position,
             altitude_amsl_m: fix.altitude_amsl_m,
             track_deg: fix.east_mps.atan2(fix.north_mps).to_degrees(),
-            glides: self.alarms.engine_has_failed(),
+            glides: self.glides(),
             air: self.telemetry.air.map(|(_, a)| a),
             battery: self.telemetry.battery(),
             profile: &self.settings.profile,

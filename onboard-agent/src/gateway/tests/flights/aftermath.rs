@@ -7,6 +7,12 @@ use flight_exec::{Command, Event};
 
 const RUNWAY: &str = "R05";
 
+/// An autopilot that does not tell how its engine turns is suspected of its failure.
+fn is_engine_told(whole: &Whole) -> bool {
+    let status = whole.flight.station.gateway().status(whole.flight.now);
+    status.alarms.iter().any(|alarm| alarm.cause == Some(Cause::Engine))
+}
+
 /// Its engine failed, and it has landed without it, on the runway from its other end.
 fn landed_without_its_engine(personality: Personality) -> Whole {
     let mut whole = Whole::new(personality, 63, &[]);
@@ -25,6 +31,27 @@ fn turned(whole: &mut Whole) {
     let at = aircraft.state().position;
     *aircraft = aircraft::Aircraft::on_runway(aircraft.profile().clone(), at, GROUND_M, HEADING_DEG);
     whole.run(2.0);
+}
+
+#[test]
+fn an_engine_that_failed_is_told_on_the_ground_until_it_runs() {
+    for personality in [Personality::ArduPlane, Personality::Px4] {
+        let mut whole = landed_without_its_engine(personality);
+        assert!(is_engine_told(&whole), "{personality}: it is not mended by coming down");
+        turned(&mut whole);
+        assert!(whole.flight.sim.clear_fault("engine-out"));
+        whole.run(5.0);
+        assert!(is_engine_told(&whole), "{personality}: nobody has seen it run");
+        whole.command(Command::Rewind).unwrap();
+        whole.happened.clear();
+        whole.command(Command::Start).unwrap();
+        whole.run_until(200.0, "side1", |w| w.entered("side1"));
+        assert!(!is_engine_told(&whole), "{personality}: it runs");
+        let answered = |event: &Event| {
+            matches!(event, Event::EmergencyUnanswered { .. } | Event::EmergencyStarted { .. })
+        };
+        assert!(!whole.happened.iter().any(answered), "{personality}: {:?}", whole.happened);
+    }
 }
 
 /// It took off again to where it pointed, over the end that it had come from.
