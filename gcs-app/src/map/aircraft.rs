@@ -6,6 +6,7 @@ use super::polyline::{self, Style};
 use super::sheet::Sheet;
 use super::view::Mercator;
 use crate::forecast::Line;
+use crate::panels::emergency;
 use crate::state::VehicleName;
 use crate::theme::Palette;
 use crate::units;
@@ -58,7 +59,7 @@ fn line_of<'a>(known: &'a mut Option<((u64, i32), Line)>, trail: &[LatLon], of: 
 pub fn draw_ahead(sheet: &Sheet<'_>) {
     let Sheet { scene, p, .. } = *sheet;
     let (Some(ahead), Some(position)) = (&scene.vehicle.ahead, &scene.vehicle.position) else { return };
-    if position.value.on_ground {
+    if position.value.on_ground || emergency::led_by_safe_mode(scene).is_some() {
         return;
     }
     let leg = scene.vehicle.current_leg();

@@ -44,6 +44,14 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     });
 }
 
+/// As [`led_otherwise`], where it is the gateway's Safe mode in the air: it flies its own way, which nobody tells.
+pub fn led_by_safe_mode(scene: &Scene<'_>) -> Option<String> {
+    use GatewayState::{SafeApproach, SafeHold, SafeLand, SafeReturn};
+    let state = scene.vehicle.gateway.as_ref()?.value.state;
+    let is_safe = matches!(state, SafeApproach | SafeHold | SafeLand | SafeReturn);
+    led_otherwise(scene).filter(|_| is_safe && scene.vehicle.is_airborne())
+}
+
 /// `not in command: the pilot switched to FBWA`: the plan does not lead the aircraft, though it is in force.
 pub fn led_otherwise(scene: &Scene<'_>) -> Option<String> {
     use GatewayState::{Directed, Hold, Manual, SafeApproach, SafeHold, SafeLand, SafeReturn};
@@ -104,10 +112,11 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     if let Some(height) = answer::until_height(scene) {
         return format!("⛔ EMERGENCY: climbing straight ahead {height}, then flying {name}{cause}");
     }
+    if let Some(why) = scene.vehicle.outlook.ends_early() {
+        return format!("⛔ EMERGENCY: flying {name}, {}{cause}", answer::told(scene, false, why));
+    }
     let runway = plan.map_or_else(String::new, |plan| format!(", to runway {}", plan.runway));
-    // the way ahead is foreseen with an engine
-    let clock_s =
-        scene.vehicle.clock_s(scene.now_s).filter(|_| raised.is_none_or(|r| r.cause != Cause::Engine));
+    let clock_s = scene.vehicle.clock_s(scene.now_s);
     let lands = clock_s.and_then(|aircraft_s| scene.vehicle.outlook.lands_in_s(aircraft_s));
     let lands = lands.map_or_else(String::new, |s| format!(", lands in {}", units::duration(s)));
     format!("⛔ EMERGENCY: flying {name}{lands}{runway}{cause}")

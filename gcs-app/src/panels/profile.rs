@@ -38,7 +38,12 @@ impl Panel for Profile {
         Place::Below
     }
     fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        if flown::on_preview(scene).is_some() || flown::told(scene).is_some() {
+        let is_flown = [
+            flown::on_preview(scene).is_some(),
+            flown::told(scene).is_some(),
+            flown::unknown(scene).is_some(),
+        ];
+        if is_flown.contains(&true) {
             let text = if timeline::is_narrow(ui) { "All" } else { "Whole flight" };
             let whole = ui.checkbox(&mut self.whole, text);
             let on = self.whole;
@@ -58,6 +63,10 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, profile: &mut Profile, queue: &mut Queue
     let whole = *whole;
     let size = ui.available_size().max(vec2(120.0, 80.0));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    if let Some(why) = flown::unknown(scene).filter(|_| !whole) {
+        response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, format!("Vertical profile: {why}")));
+        return nothing(ui, rect, &why);
+    }
     let told = flown::told(scene).filter(|_| !whole);
     let (forecast, from) = match told {
         Some((way, here)) => (way, Some(here)),
@@ -68,9 +77,7 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, profile: &mut Profile, queue: &mut Queue
     let painter = ui.painter_at(rect);
     let p = theme::of(ui);
     if forecast.points.len() < 2 {
-        let text = scene.analysis.why_no_forecast();
-        painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(13.0), p.weak);
-        return;
+        return nothing(ui, rect, &scene.analysis.why_no_forecast());
     }
     let mut axes = Axes::new(rect, forecast, from.map_or(0.0, |point| point.time_s));
     if let Some((low_m, high_m)) = levels.held_m() {
@@ -99,6 +106,12 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, profile: &mut Profile, queue: &mut Queue
             queue.view(ViewCommand::Select(Some(scene.document.part_of(&passage.leg))));
         }
     }
+}
+
+/// There is no path, and why.
+fn nothing(ui: &Ui, rect: Rect, why: &str) {
+    let font = FontId::proportional(13.0);
+    ui.painter_at(rect).text(rect.center(), Align2::CENTER_CENTER, why, font, theme::of(ui).weak);
 }
 
 /// A click means the path so near to it, screen points.

@@ -96,6 +96,11 @@ impl Outlook {
         Some((way.over_ground.as_ref()?, way.told_s))
     }
 
+    /// Why the way that it flies ends too early, as the vehicle says; `None`: it does not, or nothing is known of it.
+    pub fn ends_early(&self) -> Option<&str> {
+        self.way.as_ref()?.foresight.cut_short.as_deref()
+    }
+
     /// Puts what was told over the ground, once.
     pub(super) fn look(&mut self, terrain: &dyn Terrain) {
         if let Some(considered) = self.considered.as_mut().filter(|considered| !considered.is_over_ground)

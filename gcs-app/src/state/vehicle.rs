@@ -278,7 +278,11 @@ impl Vehicle {
             );
             self.log.add(now_s, Level::Info, "gateway", &text);
         }
+        let was_out = self.is_engine_out();
         remember!(self.gateway, status, now_s);
+        if self.is_engine_out() != was_out {
+            self.outlook.way_changed();
+        }
     }
 
     /// That a flight is not recorded any more is reported once.
@@ -436,6 +440,12 @@ impl Vehicle {
     /// What was asked for in the climb waits until the aircraft is so high above home, metres.
     pub fn waits_for_height_m(&self, now_s: f64) -> Option<f64> {
         live(&self.gateway, now_s)?.waits_for_height_m
+    }
+
+    /// An alarm of its gateway says that it has no engine.
+    pub fn is_engine_out(&self) -> bool {
+        let alarms = self.gateway.as_ref().map(|gateway| gateway.value.alarms.as_slice()).unwrap_or_default();
+        alarms.iter().any(|alarm| alarm.cause == Some(usal::contract::Cause::Engine))
     }
 
     /// What the executor is doing; idle when nothing is known.

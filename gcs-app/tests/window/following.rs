@@ -4,12 +4,12 @@ use super::Window;
 use super::considering::foresight;
 use super::emergency::raised;
 use super::flying::{flying, flying_its_plan};
-use super::vehicle::position;
-use flight_exec::Command;
+use super::vehicle::{engine_out, position};
+use flight_exec::{Command, Foresight};
 use gcs_app::link::{Call, Reply, Telemetry};
 use gcs_app::state::Ticket;
 use geometry::LatLon;
-use usal::contract::{Action, Ahead, Stamped, Token, Waypoint};
+use usal::contract::{Action, Ahead, GatewayState, Stamped, Token, Waypoint};
 
 const PREVIEW: &str = "Vertical profile from now: ";
 const TOLD: &str = "Vertical profile from now, as it is flown: ";
@@ -87,6 +87,48 @@ fn after_a_command_the_way_is_asked_for_anew_at_once() {
     assert_eq!(call, Call::Plan(Command::Hold));
     window.answer(ticket, Ok(Reply::Done));
     assert!(window.asked_which_way().is_some() && !window.shows(TOLD), "what was told is of before");
+}
+
+/// It showed a level flight, then a climb, up to a runway that was out of reach.
+#[test]
+fn a_glide_that_ends_before_the_runway_says_so_in_profile_and_banner_and_no_landing() {
+    let (mut window, ticket) = raised();
+    let end = "without its engine it comes down 870 m from runway";
+    let short = Foresight { landed: false, cut_short: Some(format!("{end} `R05`")), ..foresight() };
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(short))));
+    window.steps(30);
+    assert!(window.shows(TOLD) && window.shows(&format!("Emergency: return: {end}")));
+    assert!(window.shows(&format!("EMERGENCY: flying return, {end}")) && !window.shows("to runway R05"));
+}
+
+/// The way that was told with an engine is not flown any more.
+#[test]
+fn when_the_engine_stops_the_way_is_asked_for_anew_at_once() {
+    let (mut window, ticket) = raised();
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    window.steps(30);
+    assert!(window.shows(TOLD) && window.asked_which_way().is_none());
+    window.receive_gateway(vec![engine_out()]);
+    window.steps(30);
+    assert!(window.asked_which_way().is_some() && !window.shows(TOLD));
+}
+
+/// It showed the survey that would be flown after it, for 17 minutes, 18 m above the ground.
+#[test]
+fn in_safe_mode_neither_profile_nor_map_shows_the_plan_as_what_is_flown() {
+    let p = gcs_app::theme::palette(true);
+    let (mut window, _) = flying();
+    window.receive_course("side2", on_side2().destination(90.0, 600.0));
+    let ticket = window.asked_which_way().unwrap();
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    let ahead = window.lines_within("Map", p.active);
+    assert!(window.shows(TOLD) && ahead > 0);
+    window.receive_gateway_state(GatewayState::SafeReturn);
+    window.steps(20);
+    assert!(window.shows("Vertical profile: Safe mode: for the test. Which way it flies is not told"));
+    assert!(!window.shows(TOLD) && window.lines_within("Map", p.active) < ahead);
+    window.click("Whole flight");
+    assert!(window.shows("Vertical profile: ") && !window.shows("is not told"));
 }
 
 #[test]

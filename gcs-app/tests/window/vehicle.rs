@@ -5,7 +5,9 @@ use flight_exec::{BranchOption, DecisionRequest, Phase, PlacePointer, Status};
 use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Reply, Telemetry};
 use gcs_app::state::Ticket;
 use geometry::LatLon;
-use usal::contract::{Attitude, AutopilotKind, GatewayState, GatewayStatus, Position, Stamped};
+use usal::contract::{
+    Alarm, Attitude, AutopilotKind, Cause, GatewayState, GatewayStatus, Position, Severity, Stamped,
+};
 
 pub fn status(phase: Phase) -> Status {
     Status {
@@ -146,6 +148,17 @@ impl Window {
 
     pub fn answer(&mut self, ticket: Ticket, result: Result<Reply, String>) {
         self.send(LinkEvent::Answer { ticket, result });
+    }
+}
+
+/// The gateway's alarm of an engine that has stopped.
+pub fn engine_out() -> Alarm {
+    Alarm {
+        id: "engine-suspected".into(),
+        severity: Severity::Warning,
+        source: "gateway".into(),
+        advice: "Fly the emergency plan".into(),
+        cause: Some(Cause::Engine),
     }
 }
 

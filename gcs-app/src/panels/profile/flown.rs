@@ -2,7 +2,7 @@
 
 use super::{Axes, draw_band, draw_ground, thinned};
 use crate::forecast::{Forecast, Point};
-use crate::panels::Scene;
+use crate::panels::{Scene, answer, emergency};
 use crate::theme::{self, Palette};
 use egui::{Painter, Pos2, Shape, Stroke, Ui, pos2, vec2};
 use flight_exec::Phase;
@@ -48,6 +48,11 @@ pub fn on_preview<'a>(scene: &Scene<'a>) -> Option<&'a Point> {
     nearest(scene).filter(|_| !scene.vehicle.outlook.is_elsewhere())
 }
 
+/// Why nobody knows the way that is flown.
+pub fn unknown(scene: &Scene<'_>) -> Option<String> {
+    emergency::led_by_safe_mode(scene).map(|how| format!("{how}. Which way it flies is not told"))
+}
+
 /// The way that it flies instead, as far as it was told, and the point of it where the aircraft is.
 pub fn told<'a>(scene: &Scene<'a>) -> Option<(&'a Forecast, &'a Point)> {
     let (way, told_s) = scene.vehicle.outlook.way().filter(|_| scene.vehicle.outlook.is_elsewhere())?;
@@ -59,11 +64,14 @@ pub fn told<'a>(scene: &Scene<'a>) -> Option<(&'a Forecast, &'a Point)> {
     (way.points.len() > 1).then_some((way, here))
 }
 
-/// What is said of that way above the plot.
+/// What is said of that way above the plot; also where it ends, if that is too early.
 pub fn name(scene: &Scene<'_>) -> String {
-    match scene.vehicle.emergency() {
-        Some(flown) => format!("Emergency: {}, as it is flown", scene.vehicle.name_of(flown)),
-        None => "As it is flown, from now to the landing".into(),
+    let end = scene.vehicle.outlook.ends_early().map(|why| answer::told(scene, false, why));
+    match (scene.vehicle.emergency(), end) {
+        (Some(flown), None) => format!("Emergency: {}, as it is flown", scene.vehicle.name_of(flown)),
+        (Some(flown), Some(end)) => format!("Emergency: {}: {end}", scene.vehicle.name_of(flown)),
+        (None, None) => "As it is flown, from now to the landing".into(),
+        (None, Some(end)) => format!("As it is flown: {end}"),
     }
 }
 

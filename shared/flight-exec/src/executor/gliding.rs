@@ -62,6 +62,15 @@ impl Executor {
         self.life.aircraft().is_some_and(|state| state.engine_out) && self.flight.emergencies.plan().is_some()
     }
 
+    /// Where an aircraft without an engine lands: on the runway of the emergency plan that is flown, else at home. `None`: it has its engine, or
+    /// stands.
+    pub(crate) fn glides_to(&self) -> Option<&Runway> {
+        self.life.aircraft().filter(|state| state.engine_out && !state.on_ground)?;
+        let program = &self.setup.program;
+        let flown = self.flight.emergencies.plan().and_then(|plan| program.flown().emergency_plan(plan));
+        flown.map_or_else(|| program.plan.home(), |plan| program.plan.runway(&plan.runway))
+    }
+
     /// The way down that is laid out up to its landing ends beyond the runway, whatever is left out of it: told once, until another way is
     /// laid out.
     fn tell_long_landing(&mut self, state: &AircraftState, out: &mut Vec<Output>) {

@@ -16,6 +16,7 @@ mod what_if;
 
 pub use aircraft::glide::GlidePoint;
 pub(crate) use glide::{names_engine, route};
+pub(crate) use rehearsal::end_in_ground;
 pub use rehearsal::{Diversion, Glide, Glided, Kept, Powered, Reach, Rehearsal, glide_instead};
 pub use scenario::{Act, Scenario, Trigger, When};
 pub use start::Start;

@@ -13,6 +13,7 @@
 
 mod diversion;
 
+pub(crate) use diversion::end_in_ground;
 pub use diversion::{Diversion, Glide, Glided, Powered, Reach, glide_instead};
 
 use super::changes::{Changes, reads_flight};

@@ -100,6 +100,7 @@ impl Situation {
         };
         let mut aircraft = place(if known.on_ground { Aircraft::on_runway } else { Aircraft::in_flight });
         aircraft.set_battery_share(known.battery);
+        aircraft.set_engine_healthy(!known.engine_out);
         let mut at = Self::at_first(executor, aircraft, triggers, options);
         at.moment.place = at.executor.place();
         let begun = |place| LegPassage {

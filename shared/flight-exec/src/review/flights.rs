@@ -102,6 +102,8 @@ impl Circumstances<'_> {
             battery: 1.0 - to.used_j / self.profile.energy_j,
             on_ground: to.on_ground,
             heading_deg: None,
+            // the plan is judged, whatever becomes of a glide
+            engine_out: false,
             ..aircraft
         });
         executor.put_aircraft(aircraft);

@@ -4,8 +4,9 @@ use super::Conditions;
 use super::ahead::review_turn;
 use crate::api::{Command, Foresight, PathPoint, Refusal};
 use crate::executor::Executor;
-use crate::rehearse::{Options, Preview, PreviewError, Scenario, TrackPoint, preview_on_as_far_as_possible};
-use flight_plan::{FlightPlan, Id, StageKind};
+use crate::layout::path::distance_m;
+use crate::rehearse::{Options, Preview, Scenario, TrackPoint, end_in_ground, preview_on_as_far_as_possible};
+use flight_plan::{FlightPlan, Id, Runway, StageKind};
 use std::collections::BTreeMap;
 use terrain::Terrain;
 
@@ -30,8 +31,8 @@ pub fn foresee(
     if let Some(command) = command {
         after.command(command.clone(), by, &mut Vec::new())?;
     }
-    let Some((flown, error)) = ahead(&after, conditions) else { return Err(not_flying()) };
-    let mut foresight = told(&after, &flown, error);
+    let Some((flown, cut_short)) = ahead(&after, conditions) else { return Err(not_flying()) };
+    let mut foresight = told(&after, &flown, cut_short);
     if command.is_some() {
         foresight.left_out =
             ahead(flight, conditions).map_or_else(Vec::new, |(as_is, _)| left_out(&as_is, &flown));
@@ -46,16 +47,35 @@ fn not_flying() -> Refusal {
     Refusal { code: "not-flying".into(), reason: reason.into() }
 }
 
-fn ahead(flight: &Executor, conditions: Conditions) -> Option<(Preview, Option<PreviewError>)> {
+/// The flight to its end, and why that is too early, if it is.
+fn ahead(flight: &Executor, conditions: Conditions) -> Option<(Preview, Option<String>)> {
     let options = Options {
         is_indicated: conditions.isa_deviation_c.is_some(),
         isa_deviation_c: conditions.isa_deviation_c.unwrap_or(0.0),
         ..Options::default()
     };
-    preview_on_as_far_as_possible(flight.clone(), conditions.wind, &Scenario::default(), &options)
+    let (mut flown, error) =
+        preview_on_as_far_as_possible(flight.clone(), conditions.wind, &Scenario::default(), &options)?;
+    let cut_short = match flight.glides_to() {
+        Some(runway) => glided(&mut flown, runway, flight.terrain().as_ref()),
+        None => error.map(|why| why.to_string()),
+    };
+    Some((flown, cut_short))
 }
 
-fn told(after: &Executor, flown: &Preview, error: Option<PreviewError>) -> Foresight {
+/// A flight without an engine ends where it comes down; where that is, if it is not on the runway.
+fn glided(flown: &mut Preview, runway: &Runway, terrain: &dyn Terrain) -> Option<String> {
+    let missed_m = end_in_ground(&mut flown.track, runway, terrain)?;
+    let spans = flown.track.iter().zip(flown.track.iter().skip(1));
+    flown.distance_m = spans.map(|(a, b)| distance_m(a.position, b.position)).sum();
+    flown.time_s = flown.track.last()?.time_s;
+    flown.legs.retain(|leg| leg.start_s <= flown.time_s);
+    flown.landed = missed_m <= 0.0;
+    let beside = || format!("without its engine it comes down {missed_m:.0} m from runway `{}`", runway.id);
+    (!flown.landed).then(beside)
+}
+
+fn told(after: &Executor, flown: &Preview, cut_short: Option<String>) -> Foresight {
     let step = flown.track.len().div_ceil(MOST_POINTS).max(1);
     let point = |at: &TrackPoint| PathPoint {
         time_s: at.time_s,
@@ -74,7 +94,7 @@ fn told(after: &Executor, flown: &Preview, error: Option<PreviewError>) -> Fores
         distance_m: flown.distance_m,
         battery_left: flown.battery_left,
         landed: flown.landed,
-        cut_short: error.map(|why| why.to_string()),
+        cut_short,
     }
 }
 

@@ -321,6 +321,25 @@ fn no_waypoint_of_a_glide_is_told_far_above_what_it_has() {
     assert!(ahead.count() > 0);
 }
 
+/// Foreseen with an engine that runs, the way levelled off, climbed, and landed on a runway that was out of reach.
+#[test]
+fn looking_ahead_without_an_engine_glides_and_says_where_it_comes_down() {
+    for (height_m, lands) in [(700.0, true), (60.0, false)] {
+        let rig = emergency_at(height_m, true);
+        let look = flight_exec::foresee(&rig.executor, "operator", None, flight_exec::Conditions::default());
+        let ahead = look.unwrap();
+        let mut heights = ahead.path.iter().map(|at| at.altitude_amsl_m);
+        assert!(heights.clone().zip(heights.clone().skip(1)).all(|(a, b)| b < a + 1.0), "{height_m} m");
+        assert!(heights.all(|m| m > GROUND_M - 10.0) && ahead.time_s < 600.0, "{height_m} m: {ahead:?}");
+        let why = ahead.cut_short.as_deref().unwrap_or_default();
+        assert_eq!(
+            (ahead.landed, why.starts_with("without its engine it comes down ")),
+            (lands, !lands),
+            "{why}"
+        );
+    }
+}
+
 /// Somebody pressed it by habit, circled for 20 s, and came down 0.9 km from the runway.
 #[test]
 fn nobody_holds_who_glides() {

@@ -381,14 +381,23 @@ fn glided(flight: Flight, since_s: f64, runway: &Runway, terrain: &dyn Terrain) 
     let (flown, _) = flight.flown_as_far_as_possible();
     let first = flown.track.partition_point(|point| point.time_s < since_s);
     let mut track = flown.track.get(first..)?.to_vec();
+    let missed_m = end_in_ground(&mut track, runway, terrain)?;
+    Some(Glided { time_s: track.last()?.time_s - since_s, track, missed_m })
+}
+
+/// Cuts a track without an engine where it is in the ground. How far that is from the runway, metres; 0: on it. `None`: there is none.
+pub(crate) fn end_in_ground(
+    track: &mut Vec<TrackPoint>,
+    runway: &Runway,
+    terrain: &dyn Terrain,
+) -> Option<f64> {
     let is_down = |at: &TrackPoint| at.altitude_amsl_m <= ground_m(at.position, runway, terrain);
     if let Some(down) = track.iter().position(is_down) {
         track.truncate(down + 1);
     }
-    let last = *track.last()?;
+    let last = track.last()?;
     let away_m = runway.strip().beside_m(last.position);
-    let missed_m = if is_down(&last) { (away_m - TOLERANCE_M).max(0.0) } else { away_m.max(1.0) };
-    Some(Glided { time_s: last.time_s - since_s, track, missed_m })
+    Some(if is_down(last) { (away_m - TOLERANCE_M).max(0.0) } else { away_m.max(1.0) })
 }
 
 /// So near to a runway's centre line, or to its ends, one is on it, metres.
