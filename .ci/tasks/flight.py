@@ -66,7 +66,7 @@ def take_off(trial: Trial) -> Window:
     window.find("● uav1*")
     window.click("Push")
     window.click("Commit")
-    window.hold("Start and take off*", until="Skip leg")
+    window.hold("Start and take off*", until="Start and take off: accepted")
     window.wait_until_shown("En route ▸ side2")
     return window
 

@@ -6,7 +6,7 @@ use crate::command::{Command, FlyCommand, LinkCommand};
 use crate::connections::{self, Connection};
 use crate::panels::{Scene, decision, emergency as banner, flight as panel, leading, link, push};
 use flight_exec::{Command as PlanCommand, Phase};
-use flight_plan::Cause;
+use flight_plan::{Cause, Id};
 use std::borrow::Cow;
 use usal::contract::{GatewayRequest, GatewayState};
 
@@ -140,16 +140,21 @@ fn consider(command: PlanCommand) -> Command {
 const NOT_FLYING: &str = "No plan is being flown";
 
 fn is_flying(scene: &Scene<'_>) -> bool {
-    matches!(scene.vehicle.phase(), Phase::Flying | Phase::AwaitingDecision)
+    matches!(scene.vehicle.phase(), Phase::Flying | Phase::AwaitingDecision) && !banner::has_come_down(scene)
 }
 
 fn is_in_the_air(scene: &Scene<'_>) -> bool {
-    scene.vehicle.phase() == Phase::Holding || is_flying(scene)
+    let is_holding = scene.vehicle.phase() == Phase::Holding && !banner::has_come_down(scene);
+    is_holding || is_flying(scene)
 }
 
-pub(super) fn flying(scene: &Scene<'_>, command: PlanCommand) -> Asked {
+fn flying(scene: &Scene<'_>, command: PlanCommand) -> Asked {
     linked(scene)?;
     if is_flying(scene) { plan(command) } else { Err(NOT_FLYING) }
+}
+
+pub(super) fn hold(scene: &Scene<'_>) -> Asked {
+    flying(scene, PlanCommand::Hold)
 }
 
 pub(super) fn in_the_air(scene: &Scene<'_>, command: PlanCommand) -> Asked {
@@ -175,9 +180,13 @@ pub(super) fn start(scene: &Scene<'_>) -> Asked {
     if panel::can_launch(scene) { Ok(Command::Fly(FlyCommand::Launch)) } else { Err(why_not) }
 }
 
-pub(super) fn emergency(scene: &Scene<'_>) -> Asked {
-    in_the_air(scene, PlanCommand::Emergency { cause: Cause::Operator, plan: None })
-        .and_then(|command| if panel::is_on_ground(scene) { Err(panel::ON_GROUND) } else { Ok(command) })
+/// The alternate of this name, or else the one in force.
+pub fn emergency(scene: &Scene<'_>, plan: Option<Id>) -> Asked {
+    linked(scene)?;
+    if panel::is_on_ground(scene) {
+        return Err(panel::ON_GROUND);
+    }
+    in_the_air(scene, PlanCommand::Emergency { cause: Cause::Operator, plan })
 }
 
 pub(super) fn leave_safe(scene: &Scene<'_>) -> Asked {

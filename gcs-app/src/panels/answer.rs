@@ -1,7 +1,7 @@
-//! What became of the last command, in the height of a button: none moves for it.
+//! What became of the last command, or else what there is to say, in the height of a button: none moves for it.
 
 use super::bar::PUSH;
-use super::{Scene, field};
+use super::{Scene, field, flight};
 use crate::command::{FlyCommand, Queue, ViewCommand};
 use crate::state::{Outcome, Request};
 use crate::{theme, units};
@@ -16,12 +16,17 @@ const LEAST: f32 = 120.0;
 /// Of two lines in the height of a button, screen points.
 const SMALL: f32 = 11.5;
 
-/// Draws it behind the commands: pending, accepted, or refused and why, until it is put aside.
+/// Draws it behind the commands: pending, accepted, or refused and why, until it is put aside. Without one, the remark on the commands.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let rect = place(ui);
-    let Some(request) = last(scene) else { return };
     let p = theme::of(ui);
     let mut line = ui.new_child(UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
+    let Some(request) = last(scene) else {
+        if let Some((text, is_caution)) = flight::remark(scene) {
+            say(&mut line, &text, if is_caution { p.caution } else { p.weak }, queue);
+        }
+        return;
+    };
     let (text, colour) = match &request.outcome {
         Outcome::Pending => {
             (format!("⏳ {}: pending, {}", request.label, units::age(scene.now_s - request.sent_s)), p.text)

@@ -3,13 +3,15 @@
 use super::{
     Panel, PanelId, Place, Scene, age_as_heard, age_of, alarms, emergency, ended, field, pfd, value_with_age,
 };
-use crate::command::{FlyCommand, Queue};
+use crate::actions::{flight as actions, written};
+use crate::command::{Command, Queue};
 use crate::state::Vehicle;
 use crate::theme;
 use crate::units;
-use egui::{RichText, ScrollArea, Ui};
-use flight_exec::{Command, IterationPlace, Phase};
-use flight_plan::{Cause, Id};
+use egui::{Button, Color32, ScrollArea, Ui};
+use flight_exec::{IterationPlace, Phase};
+use flight_plan::Id;
+use std::borrow::Cow;
 use usal::contract::GatewayState;
 
 /// Below the primary flight display there is room for alarms and the vital values, points.
@@ -225,75 +227,96 @@ const NOT_CONNECTED: &str = "Not connected: no command reaches the aircraft";
 /// Who should obey does not hear.
 const NOT_HEARD: &str = "The autopilot is silent: nobody hears a command now";
 
-/// The strip of commands; each is there when it makes sense. Without a link none of them would arrive.
+/// The strip of commands. Each has its place, whether it can be given now or not, and says why if it can't: nothing moves under the
+/// pointer. What there is to say stands behind them (see [`remark`]).
 pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.spacing_mut().interact_size.y = field::HOLD_HEIGHT;
-    if scene.vehicle.open_link().is_none() {
-        ui.label(RichText::new(NOT_CONNECTED).color(p.caution));
-        ui.disable();
-    } else if scene.vehicle.autopilot_silence_s(scene.now_s).is_some() {
-        // they may be given all the same: agent and gateway do what was asked for as soon as they can
-        ui.label(RichText::new(format!("⚠ {NOT_HEARD}")).color(p.caution));
-    }
-    let phase = scene.vehicle.phase();
-    let is_down = emergency::has_come_down(scene);
-    let flying = matches!(phase, Phase::Flying | Phase::AwaitingDecision) && !is_down;
-    let leads = flying || (phase == Phase::Holding && !is_down);
-    let starts = can_launch(scene) && !is_down;
-    // first: it keeps its place, whatever else there is to command, and takes none that something else was held in
-    if leads || starts {
-        let may_fly = !is_on_ground(scene);
-        let shown = ui.add_enabled_ui(may_fly, |ui| choose_emergency(ui, scene, queue)).response;
-        if !may_fly {
-            shown.on_hover_text(ON_GROUND);
-        }
-    }
-    if starts || (leads && is_taking_off(scene)) {
-        // until it flies: who holds it once more, for nothing moves yet, meets no other command
-        ui.add_enabled_ui(starts && scene.vehicle.unfit().is_none(), |ui| launch(ui, scene, queue));
-    }
-    if let Some(why) = scene.vehicle.unfit().filter(|_| is_on_ground(scene)) {
-        ui.label(RichText::new(format!("⚠ Can't be started. {why}")).color(p.caution));
-    }
+    choose_emergency(ui, scene, queue);
     let circles = "The aircraft circles where it is now, until it resumes";
-    if flying && field::is_pressed(&ui.button("⏸ Hold").on_hover_text(circles)) {
-        queue.plan(Command::Hold);
+    pressed(ui, scene, "hold", (Button::new("⏸ Hold"), circles), queue);
+    let resume = "▶ Resume";
+    let resume = if can_resume(scene) { super::primary_button(resume, p) } else { Button::new(resume) };
+    pressed(ui, scene, "resume", (resume, "The plan leads the aircraft again"), queue);
+    pressed(ui, scene, "skip-leg", (Button::new("⏭ Skip leg"), "Shows what would follow, then asks"), queue);
+    if stands(scene) {
+        let colour = if another_aboard(scene).is_some() { p.caution } else { p.accent };
+        held(ui, scene, "start", (&start(scene), colour), queue);
     }
-    if can_resume(scene) && field::is_pressed(&ui.add(super::primary_button("▶ Resume", p))) {
-        queue.plan(Command::Resume);
+    if can_rewind(scene) {
+        held(ui, scene, "rewind", ("Rewind to the start", p.caution), queue);
     }
-    let ask = "Shows what would follow, then asks";
-    if flying && field::is_pressed(&ui.button("⏭ Skip leg").on_hover_text(ask)) {
-        queue.consider(Command::SkipLeg);
+    let state = scene.vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
+    if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn)) {
+        let leave = (Button::new("Leave Safe mode"), "The plan may lead the aircraft again");
+        pressed(ui, scene, "leave-safe", leave, queue);
     }
-    recover(ui, scene, queue);
-    if can_rewind(scene) && field::hold_button(ui, "Rewind to the start", p.caution, 0.0) {
-        queue.plan(Command::Rewind);
+}
+
+/// One of the actions, by a button; whoever points at it reads this, or why it is not possible.
+fn pressed(ui: &mut Ui, scene: &Scene<'_>, id: &str, (button, tip): (Button<'_>, &str), queue: &mut Queue) {
+    let Some(action) = written(scene, id) else { return };
+    let response = ui.add_enabled(action.command.is_ok(), button);
+    match action.command {
+        Ok(command) => {
+            if field::is_pressed(&response.on_hover_text(tip)) {
+                queue.push(command);
+            }
+        }
+        Err(why_not) => drop(response.on_disabled_hover_text(why_not)),
     }
-    if let Some(how) = ended::otherwise(scene) {
-        ui.label(RichText::new(format!("⚠ {how}")).color(p.caution));
-    } else if let Some(text) = nothing_to_do(scene) {
-        ui.label(RichText::new(text).color(p.weak));
+}
+
+/// The same by a button that is held.
+fn held(ui: &mut Ui, scene: &Scene<'_>, id: &str, (text, colour): (&str, Color32), queue: &mut Queue) {
+    let Some(action) = written(scene, id) else { return };
+    hold_or_why(ui, (text, colour, HELD), action.command, queue);
+}
+
+/// Width of a button to hold, at least, screen points: no other one moves with its words.
+const HELD: f32 = 180.0;
+
+fn hold_or_why(
+    ui: &mut Ui,
+    (text, colour, width): (&str, Color32, f32),
+    command: Result<Command, Cow<'static, str>>,
+    queue: &mut Queue,
+) {
+    let shown = ui.add_enabled_ui(command.is_ok(), |ui| field::hold_button(ui, text, colour, width));
+    match command {
+        Ok(command) if shown.inner => queue.push(command),
+        Ok(_) => {}
+        Err(why_not) => drop(shown.response.on_hover_text(why_not)),
     }
 }
 
 /// Named by what would be flown: that is the plan aboard, whatever is shown.
-fn launch(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let p = theme::of(ui);
-    let another = another_aboard(scene);
+fn start(scene: &Scene<'_>) -> String {
     let start =
         if scene.vehicle.phase() == Phase::Grounded { "Start the next flight" } else { "Start and take off" };
-    let (text, colour) = match another.is_some() {
-        true => (format!("{start} with the plan aboard"), p.caution),
-        false => (start.to_owned(), p.accent),
+    match another_aboard(scene) {
+        Some(_) => format!("{start} with the plan aboard"),
+        None => start.to_owned(),
+    }
+}
+
+/// What whoever commands should know, what matters most first; and whether it is a caution.
+pub fn remark(scene: &Scene<'_>) -> Option<(String, bool)> {
+    let heard = if scene.vehicle.open_link().is_none() {
+        Some(NOT_CONNECTED.to_owned())
+    } else {
+        // they may be given all the same: agent and gateway do what was asked for as soon as they can
+        scene.vehicle.autopilot_silence_s(scene.now_s).map(|_| format!("⚠ {NOT_HEARD}"))
     };
-    if field::hold_button(ui, &text, colour, 150.0) {
-        queue.fly(FlyCommand::Launch);
-    }
-    if let Some(text) = another {
-        ui.label(RichText::new(text).color(p.caution));
-    }
+    let unfit = scene.vehicle.unfit().filter(|_| is_on_ground(scene));
+    let unfit = unfit.map(|why| format!("⚠ Can't be started. {why}"));
+    let another = another_aboard(scene).filter(|_| can_launch(scene)).map(str::to_owned);
+    let ended = ended::otherwise(scene).map(|how| format!("⚠ {how}"));
+    let rest = nothing_to_do(scene).filter(|_| ended.is_none()).map(str::to_owned);
+    let cautions: Vec<String> = [heard, unfit, another, ended].into_iter().flatten().collect();
+    let is_caution = !cautions.is_empty();
+    let all: Vec<String> = cautions.into_iter().chain(rest).collect();
+    (!all.is_empty()).then(|| (all.join(" · "), is_caution))
 }
 
 /// What whoever starts should know first: the plan aboard is another one than what is shown.
@@ -329,7 +352,6 @@ pub fn can_resume(scene: &Scene<'_>) -> bool {
 
 /// The vehicle stands on the ground, with a plan to be flown.
 pub fn can_launch(scene: &Scene<'_>) -> bool {
-    let on_ground = scene.vehicle.position.as_ref().is_some_and(|p| p.value.on_ground);
     let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
     // nothing may have come of an earlier start: the arming was refused, or somebody held it
     let may_start = match scene.vehicle.phase() {
@@ -337,7 +359,12 @@ pub fn can_launch(scene: &Scene<'_>) -> bool {
         Phase::Flying | Phase::AwaitingDecision | Phase::Holding => state == Some(GatewayState::Stop),
         Phase::Finished => false,
     };
-    on_ground && may_start && scene.vehicle.active_hash().is_some()
+    stands(scene) && may_start && scene.vehicle.active_hash().is_some() && !emergency::has_come_down(scene)
+}
+
+/// On the ground, as far as was ever heard.
+fn stands(scene: &Scene<'_>) -> bool {
+    scene.vehicle.position.as_ref().is_some_and(|position| position.value.on_ground)
 }
 
 /// Why no emergency plan can be flown.
@@ -349,18 +376,14 @@ pub fn is_on_ground(scene: &Scene<'_>) -> bool {
     position.is_some_and(|position| position.value.on_ground)
 }
 
-/// It was started, and has not left the ground yet.
-fn is_taking_off(scene: &Scene<'_>) -> bool {
-    let state = scene.vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
-    is_on_ground(scene) && matches!(state, None | Some(GatewayState::Stop | GatewayState::TakeOff))
-}
-
 /// It stands disarmed with a plan that was flown, or was being flown when the vehicle was switched off.
 pub fn can_rewind(scene: &Scene<'_>) -> bool {
-    let on_ground = scene.vehicle.position.as_ref().is_some_and(|p| p.value.on_ground);
     let gateway = scene.vehicle.gateway.as_ref();
-    let stands = gateway.is_some_and(|g| g.value.state == GatewayState::Stop && !g.value.armed);
-    on_ground && stands && scene.vehicle.phase() != Phase::Idle && scene.vehicle.active_hash().is_some()
+    let is_disarmed = gateway.is_some_and(|g| g.value.state == GatewayState::Stop && !g.value.armed);
+    stands(scene)
+        && is_disarmed
+        && scene.vehicle.phase() != Phase::Idle
+        && scene.vehicle.active_hash().is_some()
 }
 
 /// Least width of the emergency's button, screen points: most names fit, and what is beside it stays in its place.
@@ -385,9 +408,8 @@ fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         Some(flown) => format!("Emergency: flying {}", scene.vehicle.name_of(flown)),
         None => format!("Emergency: fly {name}"),
     };
-    if field::hold_button(ui, &text, p.warning, EMERGENCY) {
-        queue.plan(Command::Emergency { cause: Cause::Operator, plan: chosen.clone() });
-    }
+    let command = actions::emergency(scene, chosen.clone()).map_err(Cow::Borrowed);
+    hold_or_why(ui, (&text, p.warning, EMERGENCY), command, queue);
     if plans.len() > 1 {
         let combo = egui::ComboBox::from_id_salt("alternate").width(110.0).selected_text(&name);
         let shown = combo.show_ui(ui, |ui| {
@@ -399,14 +421,5 @@ fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         });
         shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Alternate"));
         ui.data_mut(|d| d.insert_temp(id, chosen));
-    }
-}
-
-fn recover(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
-    if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn))
-        && ui.button("Leave Safe mode").clicked()
-    {
-        queue.fly(FlyCommand::Gateway(usal::contract::GatewayRequest::Recover));
     }
 }

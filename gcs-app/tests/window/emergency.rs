@@ -13,6 +13,8 @@ use geometry::LatLon;
 use std::sync::Arc;
 use usal::contract::{GatewayState, GatewayStatus, Position, Stamped};
 
+const START: &str = "Start and take off with the plan aboard (hold)";
+
 /// Flying the emergency plan of the square; when it lands is not known.
 pub fn in_emergency() -> Window {
     let (mut window, landing) = raised();
@@ -135,9 +137,9 @@ fn no_emergency_comes_where_the_start_was_held_and_none_is_armed_before_it_flies
         let (mut window, hash) = connected();
         window.harness.set_size(size);
         let mut value = status(Phase::Idle);
-        value.plan = Some(hash.into());
+        (value.plan, value.emergency_in_force) = (Some(hash.into()), Some("return".into()));
         window.receive_status(value.clone());
-        let emergency = "Emergency: fly the alternate in force (hold)";
+        let emergency = "Emergency: fly return (hold)";
         let start = window.harness.get_by_label("Start and take off (hold)").rect();
         window.leave_open();
         window.harness.hover_at(window.centre(emergency));
@@ -190,12 +192,11 @@ fn what_came_down_beside_the_runway_is_said_to_be_on_the_ground_and_offers_nothi
     window.stand_at(THRESHOLD.destination(142.0, 2500.0));
     window.receive_gateway_state(GatewayState::Stop);
     assert!(window.shows("ended on the ground, 2.5 km from runway R05"));
-    for gone in
-        ["lands in", "Return to the main plan", "Hold", "Skip leg", "Start and take off", "Emergency: f"]
-    {
-        assert!(!window.shows(gone), "{gone}");
+    assert!(!window.shows("lands in") && !window.shows("Return to the main plan"));
+    for out in ["⏸ Hold", "▶ Resume", "⏭ Skip leg", START, "Emergency: flying return (hold)"] {
+        assert!(!window.is_enabled(out), "{out}");
     }
-    assert!(window.shows("Rewind to the start"));
+    assert!(window.is_enabled("Rewind to the start (hold)"));
 }
 
 /// It stood on the runway, and was said to be 0.4 km from it.
