@@ -180,13 +180,20 @@ pub(super) fn start(scene: &Scene<'_>) -> Asked {
     if panel::can_launch(scene) { Ok(Command::Fly(FlyCommand::Launch)) } else { Err(why_not) }
 }
 
+/// Why there is nothing to fly where no alternate is in force.
+const NO_ALTERNATE: &str =
+    "No emergency plan is in force here. \u{201c}Abort: Safe mode flies home\u{201d} is in the palette";
+
 /// The alternate of this name, or else the one in force.
 pub fn emergency(scene: &Scene<'_>, plan: Option<Id>) -> Asked {
     linked(scene)?;
     if panel::is_on_ground(scene) {
         return Err(panel::ON_GROUND);
     }
-    in_the_air(scene, PlanCommand::Emergency { cause: Cause::Operator, plan })
+    let status = scene.vehicle.status.as_ref().map(|status| &status.value);
+    let has_one = status.is_some_and(|s| s.emergency_in_force.is_some() || s.emergency.is_some());
+    let command = in_the_air(scene, PlanCommand::Emergency { cause: Cause::Operator, plan: plan.clone() })?;
+    if plan.is_some() || has_one { Ok(command) } else { Err(NO_ALTERNATE) }
 }
 
 pub(super) fn leave_safe(scene: &Scene<'_>) -> Asked {

@@ -589,6 +589,22 @@ const COMMANDS: [&str; 7] = [
     "Leave Safe mode",
 ];
 
+/// It was red and could be held for a second, to be refused then.
+#[test]
+fn no_emergency_can_be_flown_where_no_alternate_is_in_force_and_it_says_so() {
+    let (mut window, mut value) = flying();
+    let name = "Emergency: fly the alternate in force (hold)";
+    assert!(!window.is_enabled(name));
+    window.harness.hover_at(window.centre(name));
+    window.steps(60);
+    assert!(window.shows("No emergency plan is in force here"));
+    window.hold(name, 90);
+    assert!(window.asked().is_none());
+    value.emergency_in_force = Some("return".into());
+    window.receive_status(value);
+    assert!(window.is_enabled("Emergency: fly return (hold)"));
+}
+
 /// Whoever took the aircraft: it is said by whom, in words and by an alarm, and there is a way back.
 #[test]
 fn an_aircraft_that_was_taken_over_says_by_whom_and_offers_to_resume() {
