@@ -153,8 +153,13 @@ fn flying(scene: &Scene<'_>, command: PlanCommand) -> Asked {
     if is_flying(scene) { plan(command) } else { Err(NOT_FLYING) }
 }
 
+/// A glide has no height for circles: the executor refuses them.
 pub(super) fn hold(scene: &Scene<'_>) -> Asked {
-    flying(scene, PlanCommand::Hold)
+    let command = flying(scene, PlanCommand::Hold)?;
+    if scene.vehicle.is_engine_out() && banner::is_flown(scene) {
+        return Err("Without an engine it would sink while it holds, and lack that height before the runway");
+    }
+    Ok(command)
 }
 
 pub(super) fn in_the_air(scene: &Scene<'_>, command: PlanCommand) -> Asked {

@@ -1,6 +1,6 @@
 //! In flight, against a vehicle that the test plays.
 
-use super::vehicle::{decision, gateway_status, place, status};
+use super::vehicle::{decision, engine_out, gateway_status, place, status};
 use super::{SQUARE, Window};
 use egui::{Key, Rect};
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -603,6 +603,22 @@ fn no_emergency_can_be_flown_where_no_alternate_is_in_force_and_it_says_so() {
     value.emergency_in_force = Some("return".into());
     window.receive_status(value);
     assert!(window.is_enabled("Emergency: fly return (hold)"));
+}
+
+/// The executor refuses it: whoever presses it in a hurry learns that too late.
+#[test]
+fn hold_says_beforehand_that_a_glide_has_no_height_for_it() {
+    let (mut window, mut value) = flying();
+    window.receive_gateway(vec![engine_out()]);
+    assert!(window.is_enabled("⏸ Hold"), "the main plan is flown: nobody believes the alarm");
+    value.emergency = Some("return".into());
+    window.receive_status(value.clone());
+    assert!(!window.is_enabled("⏸ Hold"));
+    window.harness.hover_at(window.centre("⏸ Hold"));
+    window.steps(60);
+    assert!(window.shows("Without an engine it would sink while it holds"));
+    window.receive_gateway(Vec::new());
+    assert!(window.is_enabled("⏸ Hold"));
 }
 
 /// Whoever took the aircraft: it is said by whom, in words and by an alarm, and there is a way back.
