@@ -1,6 +1,6 @@
 //! An emergency plan that is being flown: what, why, where to, and the way back to the main plan.
 
-use super::{Scene, answer, field, flight};
+use super::{Scene, answer, field, flight, other_end};
 use crate::command::Queue;
 use crate::theme;
 use crate::units;
@@ -115,11 +115,21 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     if let Some(why) = scene.vehicle.outlook.ends_early() {
         return format!("⛔ EMERGENCY: flying {name}, {}{cause}", answer::told(scene, false, why));
     }
-    let runway = plan.map_or_else(String::new, |plan| format!(", to runway {}", plan.runway));
+    let runway = plan
+        .map_or_else(String::new, |plan| format!(", to runway {}{}", plan.runway, from_where(scene, plan)));
     let clock_s = scene.vehicle.clock_s(scene.now_s);
     let lands = clock_s.and_then(|aircraft_s| scene.vehicle.outlook.lands_in_s(aircraft_s));
     let lands = lands.map_or_else(String::new, |s| format!(", lands in {}", units::duration(s)));
     format!("⛔ EMERGENCY: flying {name}{lands}{runway}{cause}")
+}
+
+/// `, from its other end`, where the way that the vehicle told ends so.
+fn from_where(scene: &Scene<'_>, plan: &EmergencyPlan) -> &'static str {
+    let runway = scene.vehicle.aboard.as_ref().and_then(|aboard| aboard.plan.runway(&plan.runway));
+    let ends_so = runway.zip(scene.vehicle.outlook.way()).is_some_and(|(runway, (way, _))| {
+        other_end::is_come_to(way.points.iter().map(|point| point.position), runway)
+    });
+    if ends_so { ", from its other end" } else { "" }
 }
 
 /// `on runway 27`, or `on the ground, 2.5 km from runway 27`: a runway is as long and as wide as it is.

@@ -23,6 +23,7 @@ pub mod leading;
 pub mod link;
 pub mod log;
 pub mod maps;
+mod other_end;
 pub mod palette;
 pub mod pfd;
 pub mod problems;

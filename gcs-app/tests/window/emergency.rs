@@ -5,7 +5,7 @@ use super::flying::{connected, flying, flying_its_plan};
 use super::vehicle::{gateway_status, place, position, status};
 use super::{SQUARE, Window};
 use egui_kittest::kittest::Queryable;
-use flight_exec::{Branching, Command, Event, Foresight, Phase};
+use flight_exec::{Branching, Command, Event, Foresight, PathPoint, Phase};
 use flight_plan::Cause;
 use gcs_app::link::{Call, LinkEvent, Numbered, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Ticket};
@@ -73,6 +73,24 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     let without_landing = Foresight { left_out: vec!["r-land".into()], ..foresight() };
     window.answer(ticket, Ok(Reply::Foresight(Box::new(without_landing))));
     assert!(window.shows("Left out: Landing"), "not by its identifier");
+}
+
+/// Only Safe mode said so.
+#[test]
+fn banner_says_that_a_landing_is_from_the_runways_other_end() {
+    for (course_deg, said) in
+        [(52.0, "to runway R05, because"), (232.0, "to runway R05, from its other end, because")]
+    {
+        let (mut window, ticket) = raised();
+        let out_m = |n: i32| 400.0 - 100.0 * f64::from(n);
+        let at = |n| THRESHOLD.destination(52.0, 200.0).destination(course_deg + 180.0, out_m(n));
+        let path =
+            (0..5).map(|n| PathPoint { time_s: f64::from(n), position: at(n), altitude_amsl_m: 349.0 });
+        let foresight = Foresight { path: path.collect(), ..foresight() };
+        window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight))));
+        window.steps(30);
+        assert!(window.shows(said), "{course_deg}");
+    }
 }
 
 /// It is not that plan that is flown then: a time would be of another flight.

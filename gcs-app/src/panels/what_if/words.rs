@@ -3,6 +3,7 @@
 use super::autopilot;
 use super::here::reach_name;
 use crate::forecast::Alarm;
+use crate::panels::other_end;
 use crate::units::{self, Units};
 use aircraft::Wind;
 use flight_exec::rehearse::{Diversion, Glide, Glided, Powered, Reach, TrackPoint, WhatIf};
@@ -108,7 +109,9 @@ pub fn diversion(diversion: &Diversion, flown: &FlightPlan, units: Units) -> Vec
     let just = (reach == Reach::Tight).then(|| just(diversion.cause, &margins, units));
     let ran = diversion.powered.as_ref().ok().filter(|_| diversion.glided.is_some());
     let ran = ran.map(|powered| format!("With an engine that runs: {plan}{}.", with_engine(powered)));
-    let glide = glide.map(|glide| calculated(glide, margins.glide_m, units));
+    // two ways without the engine: it matters which of them comes true
+    let begin = if diversion.glided.is_some() { "Not flown, for comparison: a" } else { "A" };
+    let glide = glide.map(|glide| format!("{begin} {}", calculated(glide, margins.glide_m, units)));
     [format!("{alarm}: {counts}")].into_iter().chain(just).chain(glide).chain(ran).collect()
 }
 
@@ -153,7 +156,12 @@ fn without_engine(
     };
     let height = runway.and_then(|runway| height_at_threshold_m(flown, runway));
     let height = height.map(|m| format!(", {} above the threshold", units.altitude().show(m)));
-    format!(" {part} {plan}{}, after {time}", height.unwrap_or_default())
+    let track = || flown.track.iter().map(|at| at.position);
+    let from = match runway.filter(|runway| other_end::is_come_to(track(), runway)) {
+        Some(_) => ", landing from its other end",
+        None => "",
+    };
+    format!(" {part} {plan}{}{from}, after {time}", height.unwrap_or_default())
 }
 
 /// So near to the threshold it is passed, metres.
@@ -169,8 +177,7 @@ fn height_at_threshold_m(flown: &Glided, runway: &Runway) -> Option<f64> {
 
 /// What a glide comes to that is worked out beside the flight.
 fn calculated(glide: &Glide, reserve_m: f64, units: Units) -> String {
-    let way =
-        if glide.along_plan { "A glide along all of the plan" } else { "A glide straight to the runway" };
+    let way = if glide.along_plan { "glide along all of the plan" } else { "glide straight to the runway" };
     let height = units.altitude();
     if glide.hill.is_some() {
         return format!("{way}: it runs into a hill.");
@@ -267,7 +274,7 @@ mod tests {
             words(&found),
             [
                 "Engine failure: R05 is reached without the engine along Return home, 12 m above the threshold, after 1:30.",
-                "A glide along all of the plan: there after 1:35, 40 m above the threshold.",
+                "Not flown, for comparison: a glide along all of the plan: there after 1:35, 40 m above the threshold.",
                 "With an engine that runs: Return home, after 3:20, 62 % energy left.",
             ]
         );
@@ -280,8 +287,16 @@ mod tests {
                 "Engine failure: R05 is just reached without the engine on a part of Return home, 12 m above the threshold, \
                  after 1:30.",
                 "Just: less than 15 m of height is to spare.",
-                "A glide along all of the plan: ends before the runway, 480 m too low.",
+                "Not flown, for comparison: a glide along all of the plan: ends before the runway, 480 m too low.",
             ]
+        );
+        if let Some(glided) = &mut found.glided {
+            glided.track.reverse();
+        }
+        assert_eq!(
+            words(&found)[0],
+            "Engine failure: R05 is just reached without the engine on a part of Return home, 12 m above the threshold, \
+             landing from its other end, after 1:30."
         );
         if let Some(glided) = &mut found.glided {
             glided.missed_m = 480.0;
