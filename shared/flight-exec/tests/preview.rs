@@ -172,6 +172,19 @@ fn flights_without_an_end_are_refused_with_the_place() {
     assert!(matches!(fly(asks, &Options::default(), 3e6), Err(PreviewError::Waiting { .. })));
 }
 
+/// It rolled through the hills until its energy was used up, 216 km far.
+#[test]
+fn wind_from_behind_in_which_it_never_lifts_off_is_said_and_ends_the_flight() {
+    let fly = |wind_mps: f64| {
+        let (flat, options): (Arc<dyn Terrain>, _) = (Arc::new(Flat(300.0)), Options::default());
+        let program = program(r#"<TF id="a" fix="A"/><TF id="b" fix="B"/>"#);
+        let behind = Wind::from_direction(program.plan.home().unwrap().heading_deg + 180.0, wind_mps);
+        preview(&program, &Profile::default(), &flat, behind, Start::Runway, &Scenario::default(), &options)
+    };
+    assert!(fly(5.0).is_ok());
+    assert!(matches!(fly(25.0), Err(PreviewError::NoLiftOff { .. })), "{:?}", fly(25.0).err());
+}
+
 /// It holds indicated airspeeds; what is flown without an autopilot's habits, as by reviews, is flown at true ones.
 #[test]
 fn by_arduplane_a_plan_is_flown_as_much_faster_as_the_air_is_thin() {

@@ -214,6 +214,14 @@ pub enum PreviewError {
         /// The leg being flown.
         leg: Id,
     },
+    /// It rolls as fast as it can, and does not lift off.
+    #[error(
+        "the aircraft can't take off with so much wind from behind, at leg `{leg}`: wait for less, or take off the other way"
+    )]
+    NoLiftOff {
+        /// The leg being flown.
+        leg: Id,
+    },
     /// It holds or waits, and nothing in the scenario would make it go on.
     #[error(
         "after {seconds:.0} s the flight waits at leg `{leg}` and nobody goes on: give the intersection a default, or the holding an end"

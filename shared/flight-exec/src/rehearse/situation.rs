@@ -210,6 +210,14 @@ impl Situation {
         self.moment.place.as_ref().map_or_else(|| Id::new("start"), |p| p.leg.clone())
     }
 
+    /// At its greatest speed it is still on the ground: the wind comes from behind.
+    fn never_lifts_off(&self) -> bool {
+        let takes_off = |target: &Target| matches!(target.action, aircraft::Action::TakeOff { .. });
+        let state = self.aircraft.state();
+        let is_fastest = state.ground_speed_mps() > self.aircraft.profile().max_airspeed_mps - 0.1;
+        state.on_ground && is_fastest && self.guidance.target().is_some_and(takes_off)
+    }
+
     /// It has flown longer or farther than it may, or has no energy left.
     pub fn exceeded(&self, options: &Options) -> Option<PreviewError> {
         let (seconds, leg) = (self.time_s(), self.leg());
@@ -218,6 +226,9 @@ impl Situation {
         }
         if self.waypoints > options.most_waypoints {
             return Some(PreviewError::TooManyWaypoints { waypoints: options.most_waypoints, leg });
+        }
+        if self.never_lifts_off() {
+            return Some(PreviewError::NoLiftOff { leg });
         }
         let empty = self.aircraft.battery().energy_left_j <= 0.0;
         empty.then_some(PreviewError::OutOfEnergy { seconds, leg })

@@ -35,6 +35,7 @@ fn without_end(error: &PreviewError) -> Option<Problem> {
         PreviewError::NoStart | PreviewError::Refused(_) => {
             Some(Problem::error("not-startable", error.to_string()))
         }
+        PreviewError::NoLiftOff { leg } => Some(Problem::error("not-startable", error.to_string()).of(leg)),
         PreviewError::TooLong { leg, .. } | PreviewError::TooManyWaypoints { leg, .. } => {
             Some(Problem::warning("endless-flight", error.to_string()).of(leg))
         }

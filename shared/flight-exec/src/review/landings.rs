@@ -31,6 +31,9 @@ fn endless(landing: &Result<Preview, PreviewError>) -> Option<(String, Option<&I
         | PreviewError::OutOfEnergy { leg, .. }
         | PreviewError::Waiting { leg, .. } => Some((error.to_string(), Some(leg))),
         // that it can't be begun is reported of the plan
-        PreviewError::NoStart | PreviewError::Refused(_) | PreviewError::Cancelled => None,
+        PreviewError::NoStart
+        | PreviewError::Refused(_)
+        | PreviewError::NoLiftOff { .. }
+        | PreviewError::Cancelled => None,
     }
 }
