@@ -1,8 +1,8 @@
 //! Processes of the agent that die, stop, or never come back.
 
 use super::{FLIGHT_S, Scenario, expect_whole_mission, in_state, land, of_field, on_leg};
-use crate::rig::Rig;
-use anyhow::ensure;
+use crate::rig::{Rig, Seen};
+use anyhow::{Context, ensure};
 use usal::contract::{GatewayState, PlanEvent};
 
 pub const SCENARIOS: &[Scenario] = &[
@@ -56,18 +56,20 @@ pub const SCENARIOS: &[Scenario] = &[
     },
 ];
 
-/// T1 and 0.2 s, and until that is seen.
-const HELD_WITHIN_S: f64 = 2.5;
+/// T1 and 0.2 s, by the gateway's clock.
+const HELD_WITHIN_S: f64 = 2.2;
 /// That a disk is slow is told within some turns of the FP Manager.
 const TOLD_WITHIN_S: f64 = 0.5;
-/// 2 s, and until that is seen.
-const BACK_WITHIN_S: f64 = 2.5;
+/// The FP Manager has the aircraft again so soon after it or the gateway came back, by the gateway's clock.
+const BACK_WITHIN_S: f64 = 2.0;
+/// What took its time is looked for this long.
+const SEEN_WITHIN_S: f64 = 60.0;
 
 async fn fp_manager_killed(rig: &mut Rig) -> anyhow::Result<()> {
     rig.until("second sweep", FLIGHT_S, |_, seen| seen.passes("sweep") == 2).await?;
     is_recorded(rig).await?;
     rig.fp_manager.kill()?;
-    in_state(rig, GatewayState::SafeHold, HELD_WITHIN_S).await?;
+    is_held(rig).await?;
     rig.fp_manager_is_there(false).await?;
     rig.restart_fp_manager()?;
     rig.fp_manager_is_there(true).await?;
@@ -77,11 +79,26 @@ async fn fp_manager_killed(rig: &mut Rig) -> anyhow::Result<()> {
 async fn fp_manager_frozen(rig: &mut Rig) -> anyhow::Result<()> {
     rig.until("second sweep", FLIGHT_S, |_, seen| seen.passes("sweep") == 2).await?;
     rig.fp_manager.freeze()?;
-    in_state(rig, GatewayState::SafeHold, HELD_WITHIN_S).await?;
+    is_held(rig).await?;
     let from_s = rig.seen.time_s;
     rig.until("ten seconds", 20.0, |_, seen| seen.time_s > from_s + 10.0).await?;
     rig.thaw_fp_manager().await?;
     in_its_place_again(rig).await
+}
+
+/// The FP Manager is gone since now: Safe mode holds within its time.
+async fn is_held(rig: &mut Rig) -> anyhow::Result<()> {
+    goes_to(rig, GatewayState::SafeHold, HELD_WITHIN_S).await
+}
+
+/// From now on the gateway goes to a state within so many seconds, by its own clock.
+async fn goes_to(rig: &mut Rig, state: GatewayState, within_s: f64) -> anyhow::Result<()> {
+    let from_s = rig.gateway_s().context("the gateway says nothing")?;
+    let went_s = |seen: &Seen| seen.went_to_behind(state, from_s);
+    rig.until(&format!("{state:?}"), SEEN_WITHIN_S, |_, seen| went_s(seen).is_some()).await?;
+    let took_s = went_s(&rig.seen).map_or(f64::INFINITY, |at_s| at_s - from_s);
+    ensure!(took_s <= within_s, "{state:?} after {took_s:.2} s");
+    Ok(())
 }
 
 /// What happened so far would survive a kill. On a slow disk it takes effect, and is announced, before it is recorded: what is killed
@@ -94,7 +111,7 @@ async fn is_recorded(rig: &mut Rig) -> anyhow::Result<()> {
 
 /// Nothing of the loop was lost or doubled.
 async fn in_its_place_again(rig: &mut Rig) -> anyhow::Result<()> {
-    in_state(rig, GatewayState::Nav, BACK_WITHIN_S).await?;
+    goes_to(rig, GatewayState::Nav, BACK_WITHIN_S).await?;
     land(rig).await?;
     let finished = rig.seen.plan.iter().filter(|e| matches!(e, PlanEvent::IterationFinished { .. })).count();
     ensure!(finished == 3, "{finished} passes of the loop, three were planned");
@@ -105,7 +122,7 @@ async fn in_its_place_again(rig: &mut Rig) -> anyhow::Result<()> {
 async fn fp_manager_gone_for_good(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "far").await?;
     rig.fp_manager.kill()?;
-    in_state(rig, GatewayState::SafeHold, HELD_WITHIN_S).await?;
+    is_held(rig).await?;
     in_state(rig, GatewayState::SafeReturn, 60.0).await?;
     land(rig).await?;
     ensure!(rig.seen.went_to(GatewayState::SafeLand), "it did not land by Safe mode");
@@ -114,9 +131,19 @@ async fn fp_manager_gone_for_good(rig: &mut Rig) -> anyhow::Result<()> {
 
 async fn gateway_killed(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "sweep").await?;
-    rig.gateway.kill()?;
-    rig.restart_gateway()?;
-    goes_on(rig).await
+    let back_s = rig.kill_and_restart_gateway().await?;
+    let joined_s = |rig: &Rig| {
+        let said = rig.gateway_said()?;
+        let is_joined = said.value.state == GatewayState::Nav && said.value.fp_manager.is_some();
+        is_joined.then_some(said.time_s)
+    };
+    rig.until("the FP Manager joins", SEEN_WITHIN_S, |rig, _| joined_s(rig).is_some()).await?;
+    let took_s = joined_s(rig).map_or(f64::INFINITY, |at_s| at_s - back_s);
+    // in lockstep time goes on as fast as it can while the network tells the FP Manager who is there
+    ensure!(rig.is_in_lockstep() || took_s <= BACK_WITHIN_S, "joined after {took_s:.2} s");
+    goes_on(rig).await?;
+    ensure!(!rig.seen.went_to(GatewayState::SafeHold), "its waypoints ran dry");
+    Ok(())
 }
 
 async fn agent_restarted(rig: &mut Rig) -> anyhow::Result<()> {

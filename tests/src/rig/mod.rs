@@ -23,7 +23,7 @@ use usal::{
     Occurrence,
     contract::{
         Attitude, Command, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Navigation, PlanStatus,
-        Position, ProposalReport, Propose, Recording,
+        Position, ProposalReport, Propose, Recording, Stamped,
     },
     topics::{self, fp_manager, gateway},
 };
@@ -202,7 +202,7 @@ impl Rig {
         }
         while let Some(occurrence) = ground.gateway_events.try_recv() {
             if let Occurrence::Event { event, .. } = occurrence {
-                self.seen.gateway.push(event.value);
+                self.seen.hear(event.time_s, event.value);
             }
         }
         if let Some(ahead) = ground.ahead.latest() {
@@ -289,6 +289,16 @@ impl Rig {
         tokio::time::timeout(PATIENCE, known).await.with_context(|| format!("FP Manager there: {there}"))?
     }
 
+    /// Kills the gateway and starts it anew; comes back with its first status, and the second of that on its own clock.
+    pub async fn kill_and_restart_gateway(&mut self) -> anyhow::Result<f64> {
+        self.gateway.kill()?;
+        let said_s = |rig: &Self| rig.gateway_said().map(|said| said.time_s);
+        let last_s = said_s(self);
+        self.restart_gateway()?;
+        self.until("the gateway is there again", 60.0, |rig, _| said_s(rig) != last_s).await?;
+        said_s(self).context("no status of the gateway")
+    }
+
     /// Lets the frozen FP Manager go on, and waits, without letting time go on, until it says something again: nobody waits
     /// for one who has not answered a tick, and the flight would be far ahead of it.
     pub async fn thaw_fp_manager(&mut self) -> anyhow::Result<()> {
@@ -302,6 +312,11 @@ impl Rig {
         tokio::time::timeout(PATIENCE, speaks).await.context("the FP Manager does not go on")?
     }
 
+    /// Time goes on when the test says so, not by itself.
+    pub fn is_in_lockstep(&self) -> bool {
+        self.places.pace == Pace::Lockstep
+    }
+
     fn ground(&self) -> anyhow::Result<&Ground> {
         self.ground.as_ref().context("no ground station")
     }
@@ -313,7 +328,18 @@ impl Rig {
 
     /// The gateway's latest status.
     pub fn gateway_status(&self) -> Option<GatewayStatus> {
-        Some(self.ground.as_ref()?.state.latest()?.stamped.value.clone())
+        Some(self.gateway_said()?.value)
+    }
+
+    /// The same, with the second on the gateway's own clock.
+    pub fn gateway_said(&self) -> Option<Stamped<GatewayStatus>> {
+        Some(self.ground.as_ref()?.state.latest()?.stamped.clone())
+    }
+
+    /// The latest second on the gateway's own clock that is known.
+    pub fn gateway_s(&self) -> Option<f64> {
+        let ground = self.ground.as_ref()?;
+        Some(ground.state.latest()?.stamped.time_s.max(ground.position.latest()?.stamped.time_s))
     }
 
     /// The aircraft's latest position.

@@ -11,6 +11,8 @@ pub struct Seen {
     pub plan: Vec<PlanEvent>,
     /// The gateway's events.
     pub gateway: Vec<GatewayEvent>,
+    /// The states that the gateway went to, each with the second on its own clock.
+    pub states: Vec<(f64, GatewayState)>,
 }
 
 impl Seen {
@@ -28,6 +30,19 @@ impl Seen {
     /// The aircraft has been on this leg.
     pub fn entered(&self, leg: &str) -> bool {
         self.legs().contains(&leg)
+    }
+
+    /// An event of the gateway, at a second on its own clock.
+    pub fn hear(&mut self, at_s: f64, event: GatewayEvent) {
+        if let GatewayEvent::StateChanged { to, .. } = &event {
+            self.states.push((at_s, *to));
+        }
+        self.gateway.push(event);
+    }
+
+    /// When the gateway went to a state first, behind a second on its own clock.
+    pub fn went_to_behind(&self, state: GatewayState, from_s: f64) -> Option<f64> {
+        self.states.iter().find(|(at_s, to)| *to == state && *at_s >= from_s).map(|(at_s, _)| *at_s)
     }
 
     /// The gateway went through this state.
