@@ -340,6 +340,7 @@ fn texts_places_and_areas_are_tried_without_changing_the_plan() {
         window.fill_in(Role::TextInput, name, typed);
         // what becomes of it moves the fields
         window.until("the other world", is_current);
+        window.steps(10);
     }
     let chosen = &window.app().view().what_if.variables;
     assert_eq!(chosen.len(), 3, "{chosen:?}");
