@@ -129,18 +129,29 @@ impl Loaded {
                     format!("{reason}: correct the plan's `aircraft`, or give the profile itself{meant}");
                 problems.push(Problem::error("unknown-aircraft", message));
             }
-            (None, Ok(_)) => {}
+            (None, Ok(profile)) => problems.extend(self.located(self.found_among_holes(profile))),
             (Some(checked), _) => {
                 let found = checked.as_ref().map_or_else(Vec::as_slice, |program| &program.warnings);
-                let mut found = found.to_vec();
-                self.reading.places.locate(&mut found);
-                problems.extend(found);
+                problems.extend(self.located(found.to_vec()));
             }
         }
         if self.converted {
             problems.iter_mut().for_each(|p| p.location = None);
         }
         problems
+    }
+
+    fn located(&self, mut found: Vec<Problem>) -> Vec<Problem> {
+        self.reading.places.locate(&mut found);
+        found
+    }
+
+    /// Errors in what could be read of a broken document, so that all can be mended at once. A number that could not be read is one of
+    /// those that are told already.
+    fn found_among_holes(&self, profile: &Profile) -> Vec<Problem> {
+        let mut found = flight_plan::check(&self.reading.plan, profile, self.terrain.as_ref());
+        found.retain(|problem| problem.is_error() && problem.code != "bad-value");
+        found
     }
 
     /// The program, or what forbids it. `None`: a broken document gives a plan full of holes, and without an aircraft nothing is
@@ -262,6 +273,18 @@ pub(super) mod tests {
         assert!(bad_tile.load().is_err(), "a plan is no elevation tile");
         let bad_aircraft = Source { aircraft: Some(file.path().to_owned()), ..good };
         assert!(bad_aircraft.load().is_err(), "a plan is no profile");
+    }
+
+    /// One was told, and the others when that was mended.
+    #[test]
+    fn all_that_is_wrong_with_a_broken_document_is_told_at_once() {
+        let square = include_str!("../../../assets/plans/square.xml");
+        let broken = square.replacen(r#"fix="B""#, r#"fix="BB""#, 1).replacen("\"110\"", "\"11O\"", 1);
+        let (_file, source) = source(broken.as_bytes());
+        let problems = source.load().unwrap().problems();
+        let codes: Vec<_> = problems.iter().filter(|p| p.is_error()).map(|p| p.code).collect();
+        assert_eq!(codes, ["bad-value", "unknown-fix"], "{problems:?}");
+        assert!(problems.iter().all(|problem| problem.location.is_some()));
     }
 
     #[test]

@@ -74,6 +74,9 @@ fn focus_asked() -> Id {
 /// More than any number has in its field.
 const MOST_DIGITS: usize = 64;
 
+/// In the place of a number that could not be read.
+const UNREADABLE: &str = "?";
+
 /// The number that is drawn next gets the keyboard.
 pub fn focus_next(ctx: &Context) {
     ctx.data_mut(|d| d.insert_temp(focus_asked(), true));
@@ -121,6 +124,7 @@ fn numbered(
         .clamp_existing_to_range(false)
         .update_while_editing(false)
         .custom_parser(|text| typed.read(unit, text));
+    let drag = if before.is_finite() { drag } else { drag.custom_formatter(|_, _| UNREADABLE.to_owned()) };
     let response = ui.add_sized([78.0, 24.0], drag);
     if ui.data_mut(|d| d.remove_temp::<bool>(focus_asked())).is_some() {
         response.request_focus();

@@ -285,6 +285,17 @@ fn a_number_becomes_a_formula_with_its_result_and_back() {
 }
 
 #[test]
+fn a_number_with_its_unit_is_none_of_the_faults_of_a_formula() {
+    let mut panels = Panels::leg("orbit");
+    panels.click("Radius: number or formula");
+    panels.write(Role::TextInput, "Radius", "0.301 km");
+    assert!(!panels.shows("Column "), "while it is typed");
+    panels.enter();
+    let LegKind::Orbit { radius_m, .. } = panels.leg_of("orbit").kind else { panic!() };
+    assert_eq!(radius_m, Value::Constant(301.0));
+}
+
+#[test]
 fn a_fault_is_said_with_its_column_while_typing() {
     let mut panels = Panels::leg("hm");
     panels.write(Role::TextInput, "Until", "go && side > 3.0");

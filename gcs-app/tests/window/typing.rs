@@ -47,6 +47,19 @@ fn what_is_no_number_changes_nothing_and_is_told_at_the_field() {
     assert!(!window.shows("is no number") && altitude_m(&window, "side4") == 120.0);
 }
 
+/// Its field said NaN.
+#[test]
+fn a_number_that_could_not_be_read_is_typed_anew_with_its_unit() {
+    let mut window = Window::open(&SQUARE.replacen("\"110\"", "\"11O\"", 1));
+    window.until_analysed();
+    window.click("TF side4");
+    window.steps(2);
+    assert!(altitude_m(&window, "side4").is_nan() && !window.paints("NaN"));
+    window.fill_in(Role::SpinButton, "Altitude", "301 m");
+    window.steps(2);
+    assert_eq!(altitude_m(&window, "side4"), 301.0);
+}
+
 #[test]
 fn the_card_for_a_new_mission_and_the_world_of_the_preview_read_units_too() {
     let mut window = Window::open(EMPTY);

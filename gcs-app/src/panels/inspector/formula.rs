@@ -174,7 +174,9 @@ impl Typing {
 
     fn say(&self, ui: &mut Ui, page: &Page<'_, '_>, unit: Option<crate::units::Unit>) {
         let p = theme::of(ui);
-        if self.text.trim().is_empty() {
+        let has_its_unit = unit.is_some_and(|unit| unit.read(&self.text).is_ok())
+            && self.text.trim().parse::<f64>().is_err();
+        if self.text.trim().is_empty() || has_its_unit {
             return;
         }
         let (text, colour) = match look(page.plan(), page.subject(), &self.text, self.used) {

@@ -89,11 +89,18 @@ pub fn finish(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, below: 
     let value = match (property.kind, source.is_empty()) {
         (_, true) if property.without.is_some() => None,
         (Kind::Condition, _) => Some(source),
-        _ => Some(format!("= {source}")),
+        _ => Some(typed_number(unit, &source).unwrap_or_else(|| format!("= {source}"))),
     };
     if value != property.value(page.element()) {
         page.set(property, value);
     }
+}
+
+/// What is typed where a formula may stand, and is a number: alone, as in a formula, in SI, or with its unit.
+fn typed_number(unit: Option<Unit>, source: &str) -> Option<String> {
+    let unit = unit?;
+    let si = source.parse::<f64>().ok().filter(|number| number.is_finite());
+    si.or_else(|| unit.read(source).ok().map(|number| unit.to_si(number))).map(|si| si.to_string())
 }
 
 /// Its field says that nothing is given.

@@ -154,13 +154,11 @@ fn without_engine(
         Some(_) => "along",
         None => "on",
     };
-    let height = runway.and_then(|runway| height_at_threshold_m(flown, runway));
+    let track = flown.track.iter().map(|at| at.position);
+    let other = runway.filter(|runway| other_end::is_come_to(track, runway)).map(Runway::from_other_end);
+    let height = other.as_ref().or(runway).and_then(|runway| height_at_threshold_m(flown, runway));
     let height = height.map(|m| format!(", {} above the threshold", units.altitude().show(m)));
-    let track = || flown.track.iter().map(|at| at.position);
-    let from = match runway.filter(|runway| other_end::is_come_to(track(), runway)) {
-        Some(_) => ", landing from its other end",
-        None => "",
-    };
+    let from = if other.is_some() { ", landing from its other end" } else { "" };
     format!(" {part} {plan}{}{from}, after {time}", height.unwrap_or_default())
 }
 
@@ -291,7 +289,12 @@ mod tests {
             ]
         );
         if let Some(glided) = &mut found.glided {
-            glided.track.reverse();
+            let runway = &plan().runways[0];
+            let along = |along_m: f64, amsl_m| TrackPoint {
+                position: runway.threshold.destination(runway.heading_deg, along_m),
+                ..point(9.0, amsl_m)
+            };
+            glided.track = vec![along(900.0, 380.0), along(410.0, 312.0), along(200.0, 300.0)];
         }
         assert_eq!(
             words(&found)[0],
