@@ -207,7 +207,7 @@ fn flag(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) 
 fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, range: Range, value: &str) {
     let name = page.name(property.label);
     match value.parse::<f64>() {
-        Ok(si) if si.is_finite() => {
+        Ok(si) => {
             let unit = unit(range.quantity, page.scene.units());
             let change = field::number_between(ui, &name, si, unit, range.least..=range.most);
             if let Some(own) = page.element().attribute("unit").filter(|_| range.quantity == Quantity::Plain)
@@ -216,7 +216,7 @@ fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, range: Rang
             }
             page.send(property, change.map(|si| si.to_string()));
         }
-        _ => {
+        Err(_) => {
             if let Some(new) = field::text(ui, &name, value) {
                 page.set(property, Some(new));
             }
