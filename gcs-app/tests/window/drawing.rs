@@ -352,6 +352,8 @@ fn a_new_leg_has_the_altitude_of_its_neighbours() {
         window.press(Key::V);
         assert_eq!(altitude(&window, "leg1"), altitude(&window, "side2"), "drawn");
         assert_eq!(altitude(&window, "leg1").is_some(), own);
+        window.click("TF leg1");
+        assert_eq!(window.shows("from circuit"), !own, "what it inherits it shows as inherited");
         let middle = window.centre("Fix B") + (window.centre("Waypoint leg1") - window.centre("Fix B")) * 0.5;
         window.drag(middle, vec2(10.0, -20.0));
         assert_eq!(
