@@ -19,6 +19,11 @@ fn proposal_shows_old_and_new_path_with_their_names_and_changes_in_words() {
     let (ticket, _) = window.asked().unwrap();
     let aboard = ActivePlan { plan, hash: hash.into() };
     window.answer(ticket, Ok(Reply::Plan(Some(aboard))));
+    let p = gcs_app::theme::palette(true);
+    let drawn = |window: &Window| {
+        (window.lines_within("Map", p.contingency), window.triangles_within("Map", p.accent))
+    };
+    let of_one_plan = drawn(&window);
     window.click("TF side2");
     window.press(egui::Key::Delete);
     window.until_analysed();
@@ -31,6 +36,9 @@ fn proposal_shows_old_and_new_path_with_their_names_and_changes_in_words() {
     window
         .until("path of the plan aboard", |app| app.path_aboard().is_some_and(|path| path.points.len() > 10));
     assert!(shows_paths(&window) && window.shows("leg side2 removed"));
+    let of_both = drawn(&window);
+    assert!(of_both.0 > of_one_plan.0 + 20, "the plan aboard, dash by dash: {of_both:?} {of_one_plan:?}");
+    assert!(of_both.1 > of_one_plan.1 / 2, "and this plan: {of_both:?} {of_one_plan:?}");
     assert_ne!(window.app().path_aboard().unwrap().points, window.app().analysis().forecast.points);
     window.click("Keep as draft");
     assert!(!shows_paths(&window));

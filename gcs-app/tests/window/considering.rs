@@ -82,7 +82,11 @@ fn the_landing_is_gone_to_by_its_row_and_by_the_palette_as_a_leg_is() {
 fn skip_shows_what_follows_and_is_given_by_a_button_named_by_its_effect() {
     let (mut window, ticket) = considered();
     assert!(window.shows("Looking ahead"));
+    let text = gcs_app::theme::palette(true).text;
+    let drawn = |window: &Window| window.lines_within("Map", text);
+    let before = drawn(&window);
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    assert!(drawn(&window) > before + 5, "its path, dash by dash");
     for text in [
         "Left out: side2",
         "until the approach: 85 m",
@@ -94,6 +98,7 @@ fn skip_shows_what_follows_and_is_given_by_a_button_named_by_its_effect() {
     window.hold("Skip side2, fly side3 next (hold)", 90);
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::SkipLeg)));
     assert!(!window.shows("Left out"), "it was given");
+    assert_eq!(drawn(&window), before);
 }
 
 /// The aircraft has flown on since.
