@@ -3,6 +3,8 @@
 use super::interchange::drop_file;
 use super::{SQUARE, Window};
 use egui::Key;
+use gcs_app::layers::State;
+use std::path::Path;
 
 fn window() -> Window {
     let mut window = Window::open(SQUARE);
@@ -16,9 +18,14 @@ fn pmtiles() -> Vec<u8> {
     let picture = image::RgbaImage::from_pixel(64, 64, image::Rgba([90, 0, 200, 255]));
     picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
     let tile = png.into_inner();
+    [pmtiles_for(tile.len()), tile].concat()
+}
+
+/// All of such a file but the tile, which is so long.
+fn pmtiles_for(tile: usize) -> Vec<u8> {
     // one entry: tile 0, once, so long, at the beginning
     let mut root = vec![1, 0, 1];
-    let mut length = tile.len();
+    let mut length = tile;
     while length > 127 {
         root.push((length & 127) as u8 | 128);
         length >>= 7;
@@ -27,10 +34,10 @@ fn pmtiles() -> Vec<u8> {
     let metadata = br#"{"attribution":"Somebody"}"#;
     let mut bytes = b"PMTiles\x03".to_vec();
     let mut offset = 127u64;
-    for section in [root.as_slice(), metadata, &[], &tile] {
+    for length in [root.len(), metadata.len(), 0, tile] {
         bytes.extend(offset.to_le_bytes());
-        bytes.extend((section.len() as u64).to_le_bytes());
-        offset += section.len() as u64;
+        bytes.extend((length as u64).to_le_bytes());
+        offset += length as u64;
     }
     bytes.extend([0; 24]);
     // clustered, nothing packed, PNG, level 0
@@ -39,7 +46,7 @@ fn pmtiles() -> Vec<u8> {
         bytes.extend(((corner * 1e7) as i32).to_le_bytes());
     }
     bytes.extend([0; 9]);
-    [bytes, root, metadata.to_vec(), tile].concat()
+    [bytes, root, metadata.to_vec()].concat()
 }
 
 /// A GeoTIFF of 2° by 2° around the square, where all ground is as high as this.
@@ -156,4 +163,57 @@ fn coordinates_that_are_nowhere_are_told_and_the_window_goes_on() {
     assert!(notice.is_some() && window.plan().all_legs().len() == legs, "{notice:?}");
     window.click("TF side2");
     assert_eq!(window.selected(), "side2");
+}
+
+/// Writes a file that goes on for a gigabyte: a hole on the disk.
+fn gigabyte(path: &Path, begins: &[u8]) {
+    std::fs::write(path, begins).unwrap();
+    std::fs::File::options().write(true).open(path).unwrap().set_len(1 << 30).unwrap();
+}
+
+#[test]
+fn a_geotiff_bomb_and_a_gigabyte_of_directory_give_one_clear_message_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let [picture, tiles] = ["bomb.tif", "bomb.pmtiles"].map(|name| folder.path().join(name));
+    let mut bomb = geotiff(300);
+    // columns, rows, and rows of its one strip: each of 32 bits now
+    for field in [0, 1, 7] {
+        let at = 10 + 12 * field;
+        bomb[at + 2] = 4;
+        bomb[at + 8..at + 12].copy_from_slice(&4_000_000_000_u32.to_le_bytes());
+    }
+    std::fs::write(&picture, bomb).unwrap();
+    let mut directory = pmtiles();
+    directory[16..24].copy_from_slice(&(1_u64 << 29).to_le_bytes());
+    gigabyte(&tiles, &directory);
+    for (path, why) in [(&picture, "4000000000 × 4000000000 samples"), (&tiles, "it is damaged")] {
+        let mut window = window();
+        drop_file(&mut window, path);
+        window.until("a message", |app| app.view().notice.is_some());
+        let text = window.app().view().notice.clone().unwrap();
+        assert!(text.contains(" is not used: ") && text.contains(why), "{text}");
+        assert!(window.app().toasts().iter().all(|toast| !toast.text.contains("bomb")), "said once");
+        assert_eq!(window.errors(), Vec::<String>::new());
+    }
+}
+
+/// What can be read of the file is shown, and the map goes on.
+#[test]
+fn a_tile_of_almost_a_gigabyte_is_left_out_and_said_where_the_maps_are_listed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("world.pmtiles");
+    gigabyte(&path, &pmtiles_for(900 << 20));
+    let mut window = window();
+    drop_file(&mut window, &path);
+    window.until("its name on the map", |app| app.layers().attributions().any(|whom| whom == "Somebody"));
+    window.click("Legwork");
+    window.click("Maps");
+    window.click("Maps and elevations…");
+    window.until("the tile", |app| {
+        app.layers()
+            .iter()
+            .any(|layer| matches!(&layer.state, State::Map(_, health) if health.unreadable() == 1))
+    });
+    assert!(window.shows("1 tile is unreadable and left out"));
+    assert_eq!(window.app().view().notice, None);
 }
