@@ -670,6 +670,10 @@ fn the_fire_on_the_map_grows_as_its_radius_does_aboard() {
     window.receive(Telemetry::Variables(Stamped { time_s: 2.0, validity_s: 60.0, value }));
     let times = radius(&window) / before;
     assert!((times - 1.5).abs() < 0.02, "from 350 m to 525 m: {times}");
+    let mut value = window.app().vehicle().status.as_ref().unwrap().value.clone();
+    value.plan = Some("another plan".into());
+    window.receive_status(value);
+    assert_eq!(radius(&window), before, "the fire of another plan is none of this one");
 }
 
 /// What is drawn in flight is what the legend has: the plan that is edited, and the one that is flown.
