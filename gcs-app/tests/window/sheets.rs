@@ -1,6 +1,6 @@
 //! The pictures of every state, at every size in both themes: a sheet each, kept in `tests/pictures/states`.
 
-use super::states::{SIZES, THEMES, Widget, examine, opened, placed, widgets};
+use super::states::{MORE, SIZES, THEMES, Widget, examine, opened, placed, widgets};
 use super::{SQUARE, Window, states};
 use egui::{Rect, vec2};
 use image::RgbaImage;
@@ -27,7 +27,7 @@ fn erase(picture: &mut RgbaImage, rect: Rect) {
     }
 }
 
-/// A row for each size, the dark one before the light one.
+/// A row for each size, the dark one before the light one; of more sizes no picture is kept.
 fn in_all(state: &str, window: &mut Window, found: &mut Vec<String>) {
     let mut sheet = Sheet::default();
     // nothing grows older from picture to picture
@@ -41,6 +41,10 @@ fn in_all(state: &str, window: &mut Window, found: &mut Vec<String>) {
         }
     }
     window.start_clock();
+    for (size, theme) in MORE.into_iter().zip(THEMES.into_iter().cycle()) {
+        window.harness.set_size(size);
+        examine(state, size, theme, window, found);
+    }
     found.extend(check(&sheet, state).err());
     window.harness.set_size(vec2(1280.0, 800.0));
     window.steps(2);

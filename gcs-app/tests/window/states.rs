@@ -20,9 +20,9 @@ use usal::contract::{Alarm, Severity};
 
 /// In points: the smallest window (at any scale: a window of 960 by 600 is not scaled up), 3840 by 2160 at scale 3, and a large one.
 pub const SIZES: [Vec2; 3] = [vec2(960.0, 600.0), vec2(1280.0, 720.0), vec2(1920.0, 1080.0)];
-/// Of these each state is looked at in one, too, and some in all: 1280 by 800, 3840 by 2160 at the scales 1 and 0.8, and 960 by 600,
+/// Each state is looked at in these, too, without a picture: 1280 by 800, 3840 by 2160 at the scales 1 and 0.8, and 960 by 600,
 /// 1280 by 800 and 1920 by 1080 at scale 0.8.
-const MORE: [Vec2; 6] = [
+pub const MORE: [Vec2; 6] = [
     vec2(1280.0, 800.0),
     vec2(3840.0, 2160.0),
     vec2(4800.0, 2700.0),
@@ -30,8 +30,6 @@ const MORE: [Vec2; 6] = [
     vec2(1600.0, 1000.0),
     vec2(2400.0, 1350.0),
 ];
-/// Those that are looked at in all of them.
-const AT_ALL_SIZES: [&str; 5] = ["plan", "created", "plan with everything", "flying", "emergency"];
 pub const THEMES: [egui::Theme; 2] = [egui::Theme::Dark, egui::Theme::Light];
 
 /// A widget as it was drawn.
@@ -222,22 +220,6 @@ fn off_the_screen(window: &Window) -> Vec<String> {
 /// A way to look at a state; what is wrong with it is added to what was found before.
 pub type Look = fn(&str, &mut Window, &mut Vec<String>);
 
-/// At every size, in the dark or in the light, and at the smallest in both: each look takes its time. `sheets` looks at all.
-fn in_turn(state: &str, window: &mut Window, found: &mut Vec<String>) {
-    let own = state.bytes().map(usize::from).sum::<usize>() % MORE.len();
-    let more = MORE.into_iter().enumerate().filter(|(n, _)| *n == own || AT_ALL_SIZES.contains(&state));
-    let sizes = SIZES.into_iter().chain(more.map(|(_, size)| size));
-    for (number, size) in sizes.enumerate() {
-        window.harness.set_size(size);
-        let themes = THEMES.into_iter().skip(number % 2);
-        for theme in themes.take(if number == 0 { 2 } else { 1 }) {
-            examine(state, size, theme, window, found);
-        }
-    }
-    window.harness.set_size(vec2(1280.0, 800.0));
-    window.steps(2);
-}
-
 /// What is wrong with the window in this theme.
 pub fn examine(state: &str, size: Vec2, theme: egui::Theme, window: &mut Window, found: &mut Vec<String>) {
     window.harness.input_mut().system_theme = Some(theme);
@@ -410,33 +392,4 @@ pub fn questions_and_emergencies(look: Look) {
     look("emergency", &mut in_emergency(), &mut found);
     look("two vehicles", &mut two(), &mut found);
     assert!(found.is_empty(), "{} faults:\n{}", found.len(), found.join("\n"));
-}
-
-mod rectangles {
-    use super::in_turn;
-
-    #[test]
-    fn of_a_new_plan() {
-        super::new_plan(in_turn);
-    }
-
-    #[test]
-    fn of_selections_and_tools() {
-        super::selections_and_tools(in_turn);
-    }
-
-    #[test]
-    fn of_panels_and_dialogs() {
-        super::panels_and_dialogs(in_turn);
-    }
-
-    #[test]
-    fn of_a_flight() {
-        super::flight(in_turn);
-    }
-
-    #[test]
-    fn of_questions_and_emergencies() {
-        super::questions_and_emergencies(in_turn);
-    }
 }
