@@ -181,9 +181,6 @@ fn number(range: Range, now: Option<&str>) -> String {
     candidates.into_iter().find(fits).unwrap_or(range.least).to_string()
 }
 
-/// The specimen has one procedure and one runway: there is no other to choose.
-const OF_ONE: [[&str; 2]; 2] = [["call", "Procedure"], ["emergencyPlan", "Lands on"]];
-
 /// A part that is always there, and of one kind: only what it holds is written.
 fn is_fixed(row: &Row) -> bool {
     matches!(row, Row::Children(children) if children.of.len() == 1 && (children.least, children.most) == (1, 1))
@@ -203,7 +200,6 @@ fn described() -> BTreeSet<[String; 2]> {
             };
             [of.element.to_owned(), label.to_owned()]
         })
-        .filter(|[element, label]: &[String; 2]| !OF_ONE.contains(&[element.as_str(), label.as_str()]))
         .collect()
 }
 
