@@ -241,11 +241,6 @@ impl Autopilot {
 
     /// Changes the mode; false if it can't be entered now.
     pub fn set_mode(&mut self, mode: Mode) -> bool {
-        let no_mission = self.mission.items().len() <= self.rules.first_item.into();
-        if mode == Mode::Auto && self.rules.needs_mission_for_mode && no_mission {
-            self.say(Severity::Warning, "Mode change to AUTO failed: no mission");
-            return false;
-        }
         if mode != self.mode {
             if self.run.phase == Phase::Running {
                 self.run.phase = Phase::Stopped;

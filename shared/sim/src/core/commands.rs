@@ -85,7 +85,7 @@ impl Simulator {
         let interval_us = f64::from(c.params[1]);
         let known =
             self.streams_of(peer).is_some_and(|s| s.set_interval_us(c.params[0] as u32, interval_us, now_ns));
-        if known { MavResult::MAV_RESULT_ACCEPTED } else { MavResult::MAV_RESULT_FAILED }
+        if known { MavResult::MAV_RESULT_ACCEPTED } else { self.rules.no_such_interval }
     }
 
     fn send_interval(&mut self, peer: Peer, id: f32) -> MavResult {

@@ -236,6 +236,16 @@ pub fn kind_of(wire: &MISSION_ITEM_INT_DATA) -> Result<Kind, MavMissionResult> {
     })
 }
 
+/// The frame of the same datum that is not for whole numbers.
+pub fn without_integers(frame: MavFrame) -> MavFrame {
+    match frame {
+        MavFrame::MAV_FRAME_GLOBAL_INT => MavFrame::MAV_FRAME_GLOBAL,
+        MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT,
+        MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT_INT => MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT,
+        frame => frame,
+    }
+}
+
 /// What an altitude in that frame is measured from.
 ///
 /// # Errors

@@ -42,7 +42,7 @@ pub struct Param {
     pub value: f32,
     /// Least and greatest settable value; `None`: read-only.
     pub range: Option<(f32, f32)>,
-    /// A whole number or any.
+    /// Its type.
     pub kind: MavParamType,
     /// What it means for the flight, and how many of the setting's units are one of its own.
     setting: Option<(Setting, f32)>,
@@ -59,9 +59,14 @@ impl Param {
         Self { range: Some(range), ..self }
     }
 
+    /// It is of another type.
+    pub fn of(self, kind: MavParamType) -> Self {
+        Self { kind, ..self }
+    }
+
     /// It is a whole number.
     pub fn whole(self) -> Self {
-        Self { kind: MavParamType::MAV_PARAM_TYPE_INT32, ..self }
+        self.of(MavParamType::MAV_PARAM_TYPE_INT32)
     }
 
     /// The flight depends on it.

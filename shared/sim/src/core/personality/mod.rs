@@ -86,8 +86,6 @@ pub struct Rules {
     pub first_item: u16,
     /// The mode that it is switched on in.
     pub first_mode: Mode,
-    /// Its mission mode is not entered without a mission; else it is found out when it is armed.
-    pub needs_mission_for_mode: bool,
     /// When the list has run out.
     pub list_end: ListEnd,
     /// After a landing it takes off again for what is behind it on the list.
@@ -128,6 +126,8 @@ pub struct Rules {
     pub home_moves: bool,
     /// How a request for a message that it doesn't have is answered.
     pub no_such_message: MavResult,
+    /// How another interval of a message that it doesn't have is answered.
+    pub no_such_interval: MavResult,
 }
 
 /// Who is at the other end of a transfer.

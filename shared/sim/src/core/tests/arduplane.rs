@@ -91,7 +91,7 @@ fn overwriting_the_active_item_does_nothing_until_it_is_set_current() {
     assert!(
         ground.fly_until(400.0, |sim| { sim.autopilot.aircraft.state().position.distance_m(new) < 450.0 })
     );
-    assert_eq!(ground.command(set, [9., 0., 0., 0., 0., 0., 0.]), MavResult::MAV_RESULT_FAILED);
+    assert_eq!(ground.command(set, [9., 0., 0., 0., 0., 0., 0.]), MavResult::MAV_RESULT_DENIED);
 }
 
 #[test]
@@ -190,8 +190,9 @@ fn clear_all_is_refused_while_armed_in_auto() {
     ground.mode(Mode::Loiter);
     let accepted = Some(MavMissionResult::MAV_MISSION_ACCEPTED);
     assert_eq!(Ground::ack(&ground.say(clear())), accepted);
-    assert_eq!(ground.sim.autopilot.mission.items().len(), 1);
-    assert_eq!(ground.mode(Mode::Auto), MavResult::MAV_RESULT_FAILED);
+    assert_eq!(ground.sim.autopilot.mission.items().len(), 0);
+    assert_eq!(ground.mode(Mode::Auto), MavResult::MAV_RESULT_ACCEPTED);
+    assert_eq!(ground.sim.autopilot.mode(), Mode::ReturnToLaunch, "it is at its end at once");
 }
 
 #[test]
@@ -343,7 +344,7 @@ fn reposition_circles_the_point_the_way_it_was_asked() {
         [MavMessage::COMMAND_ACK(ack)] => ack.result,
         other => panic!("{other:?}"),
     };
-    assert_eq!(result(ground.say(MavMessage::COMMAND_INT(go.clone()))), MavResult::MAV_RESULT_DENIED);
+    assert_eq!(result(ground.say(MavMessage::COMMAND_INT(go.clone()))), MavResult::MAV_RESULT_FAILED);
     go.param2 = 1.0;
     assert_eq!(result(ground.say(MavMessage::COMMAND_INT(go))), MavResult::MAV_RESULT_ACCEPTED);
     ground.fly_until(200.0, |_| false);
@@ -388,7 +389,7 @@ fn commands_are_answered_whatever_they_are() {
         ),
         (MavCmd::MAV_CMD_DO_SET_MODE, [1., 77., 0., 0., 0., 0., 0.], MavResult::MAV_RESULT_FAILED),
         (MavCmd::MAV_CMD_DO_SET_MODE, [1., f32::NAN, 0., 0., 0., 0., 0.], MavResult::MAV_RESULT_FAILED),
-        (MavCmd::MAV_CMD_DO_REPOSITION, [0.; 7], MavResult::MAV_RESULT_COMMAND_INT_ONLY),
+        (MavCmd::MAV_CMD_DO_REPOSITION, [0.; 7], MavResult::MAV_RESULT_UNSUPPORTED),
         (MavCmd::MAV_CMD_NAV_TAKEOFF, [0.; 7], MavResult::MAV_RESULT_FAILED),
     ];
     for (command, params, result) in cases {

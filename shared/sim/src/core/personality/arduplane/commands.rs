@@ -1,7 +1,7 @@
 //! ArduPlane's answers to commands.
 
 use super::{mission_current, mode_of};
-use crate::core::autopilot::Autopilot;
+use crate::core::autopilot::{Autopilot, Severity};
 use crate::core::commands::Command;
 use crate::core::item::datum_of;
 use crate::core::mode::Mode;
@@ -26,7 +26,7 @@ pub fn command(a: &mut Autopilot, c: &Command, out: &mut Vec<Post>) -> MavResult
         MavCmd::MAV_CMD_NAV_LOITER_UNLIM => done(set_mode(a, Some(Mode::Loiter))),
         MavCmd::MAV_CMD_NAV_TAKEOFF => take_off(a, c),
         MavCmd::MAV_CMD_DO_REPOSITION => reposition(a, c),
-        MavCmd::MAV_CMD_DO_CHANGE_SPEED => done(a.change_speed(c.params[1].into())),
+        MavCmd::MAV_CMD_DO_CHANGE_SPEED => done(change_speed(a, c)),
         MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT => set_current_command(a, c, out),
         _ => MavResult::MAV_RESULT_UNSUPPORTED,
     }
@@ -53,10 +53,24 @@ pub fn set_current(a: &mut Autopilot, seq: u16, out: &mut Vec<Post>) -> bool {
 
 fn arm_or_disarm(a: &mut Autopilot, c: &Command) -> MavResult {
     match c.params[0] {
-        1.0 => done(a.arm(c.is_forced())),
+        1.0 => done(arm(a, c.is_forced())),
         0.0 => done(a.disarm(c.is_forced())),
         _ => MavResult::MAV_RESULT_UNSUPPORTED,
     }
+}
+
+/// In other modes no speed is taken.
+fn change_speed(a: &mut Autopilot, c: &Command) -> bool {
+    matches!(a.mode(), Mode::Auto | Mode::Guided) && a.change_speed(c.params[1].into())
+}
+
+/// Returning it is not armed.
+fn arm(a: &mut Autopilot, force: bool) -> bool {
+    let is_armable = force || a.mode() != Mode::ReturnToLaunch;
+    if !is_armable {
+        a.say(Severity::Critical, "Arm: RTL mode not armable");
+    }
+    is_armable && a.arm(force)
 }
 
 fn take_off(a: &mut Autopilot, c: &Command) -> MavResult {
@@ -72,14 +86,16 @@ fn take_off(a: &mut Autopilot, c: &Command) -> MavResult {
 /// param2 bit 0: change to GUIDED; param3: radius; param4: any number but 0: counter-clockwise.
 fn reposition(a: &mut Autopilot, c: &Command) -> MavResult {
     let Some(frame) = c.frame else {
-        return MavResult::MAV_RESULT_COMMAND_INT_ONLY;
+        return MavResult::MAV_RESULT_UNSUPPORTED;
     };
     let Ok(datum) = datum_of(frame) else {
-        return MavResult::MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME;
-    };
-    let guided = a.mode() == Mode::Guided;
-    if !c.position.is_valid() || !c.z.is_finite() || !(guided || c.may_change_mode()) {
         return MavResult::MAV_RESULT_DENIED;
+    };
+    if !c.position.is_valid() || !c.z.is_finite() {
+        return MavResult::MAV_RESULT_DENIED;
+    }
+    if a.mode() != Mode::Guided && !c.may_change_mode() {
+        return MavResult::MAV_RESULT_FAILED;
     }
     let asked = f64::from(c.params[2]);
     let radius_m =
@@ -95,7 +111,7 @@ fn reposition(a: &mut Autopilot, c: &Command) -> MavResult {
 
 fn set_current_command(a: &mut Autopilot, c: &Command, out: &mut Vec<Post>) -> MavResult {
     let seq = c.params[0];
-    if !(0.0..=65535.0).contains(&seq) {
+    if !(0.0..a.mission.items().len() as f32).contains(&seq) {
         return MavResult::MAV_RESULT_DENIED;
     }
     if c.params[1] == 1.0 {

@@ -3,7 +3,7 @@
 use super::transfer::Reply;
 use super::{ArduPlane, commands};
 use crate::core::autopilot::{Autopilot, Severity};
-use crate::core::item;
+use crate::core::item::{self, Item};
 use crate::core::mode::Mode;
 use crate::core::personality::{Party, Post};
 use crate::core::replies::{is_mission, mission_ack, mission_count, mission_item};
@@ -33,6 +33,7 @@ impl ArduPlane {
             MavMessage::MISSION_ITEM_INT(wire) => self.transfer.item(items, party, wire, now_ns),
             MavMessage::MISSION_ITEM(c) => self.transfer.item(items, party, &item::from_float(c), now_ns),
             MavMessage::MISSION_CLEAR_ALL(_) => {
+                self.transfer.cancel(party);
                 let result = if self.clear(a) {
                     MavMissionResult::MAV_MISSION_ACCEPTED
                 } else {
@@ -54,7 +55,8 @@ impl ArduPlane {
         out: &mut Vec<Post>,
     ) -> bool {
         match message {
-            MavMessage::MISSION_ACK(_) => self.transfer.cancel(party),
+            // nobody gives up an upload by that
+            MavMessage::MISSION_ACK(_) => {}
             MavMessage::MISSION_REQUEST_LIST(c) => self.send_count(a, party, c.mission_type, out),
             MavMessage::MISSION_REQUEST_INT(c) => send_item(a, party, c.seq, c.mission_type, true, out),
             MavMessage::MISSION_REQUEST(c) => send_item(a, party, c.seq, c.mission_type, false, out),
@@ -76,12 +78,12 @@ impl ArduPlane {
         true
     }
 
-    /// Everything but home goes; refused while the mission is being flown or received.
+    /// All of it goes; refused while the mission is being flown, or received from somebody else.
     fn clear(&mut self, a: &mut Autopilot) -> bool {
         if (a.is_armed() && a.mode() == Mode::Auto) || self.transfer.is_receiving() {
             return false;
         }
-        a.mission.0.truncate(1);
+        a.mission.0.clear();
         a.run.reset();
         true
     }
@@ -121,11 +123,12 @@ pub(super) fn send(a: &mut Autopilot, party: Party, reply: Reply, out: &mut Vec<
     out.push((Some(party.peer), message));
 }
 
-/// What the list keeps of an item: altitudes to the centimetre, a waypoint's distances in a byte each, and of a waypoint neither how long
+/// What the list keeps of an item: of frames only the datum, altitudes to the centimetre, a waypoint's distances in a byte each, and of a waypoint neither how long
 /// to stay nor where to point; a landing says that it may be broken off.
 fn kept(wire: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_INT_DATA {
     let byte = |metres: f32| f32::from(metres as u8);
-    let wire = MISSION_ITEM_INT_DATA { z: (wire.z * 100.0).round() / 100.0, ..wire.clone() };
+    let frame = item::without_integers(wire.frame);
+    let wire = MISSION_ITEM_INT_DATA { z: (wire.z * 100.0).round() / 100.0, frame, ..wire.clone() };
     match wire.command {
         MavCmd::MAV_CMD_NAV_WAYPOINT => MISSION_ITEM_INT_DATA {
             param1: 0.0,
@@ -139,7 +142,7 @@ fn kept(wire: &MISSION_ITEM_INT_DATA) -> MISSION_ITEM_INT_DATA {
     }
 }
 
-/// Read-back: what is kept of what was taken.
+/// Read-back: what is kept of what was taken. The first is home, wherever that is by now.
 fn send_item(
     a: &Autopilot,
     party: Party,
@@ -151,6 +154,8 @@ fn send_item(
     let item = a.mission.items().get(usize::from(seq)).filter(|_| is_mission(mission_type));
     let message = match item {
         Some(item) => {
+            let home = (seq == 0).then(|| Item::home(a.home.position, a.home.altitude_amsl_m));
+            let item = home.as_ref().unwrap_or(item);
             let current = u8::from(seq == a.run.current);
             let wire = MISSION_ITEM_INT_DATA { current, ..kept(&item.wire) };
             mission_item(party.sender, wire, seq, as_int)

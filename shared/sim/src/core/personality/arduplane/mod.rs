@@ -23,7 +23,6 @@ const SET_MODE_ID: u16 = 11;
 pub(super) static RULES: Rules = Rules {
     first_item: 1,
     first_mode: Mode::Manual,
-    needs_mission_for_mode: true,
     list_end: ListEnd::Return,
     flies_on_after_landing: false,
     skips_take_off_in_air: false,
@@ -46,6 +45,7 @@ pub(super) static RULES: Rules = Rules {
     tells_unknown_params: false,
     home_moves: false,
     no_such_message: MavResult::MAV_RESULT_FAILED,
+    no_such_interval: MavResult::MAV_RESULT_DENIED,
 };
 
 const STREAMS: [Streamed; 20] = [
@@ -133,9 +133,9 @@ impl Behaviour for ArduPlane {
         mission::send(a, party, refused, out);
     }
 
-    /// All are sent as floats.
-    fn encode_param(&self, value: f32, _kind: MavParamType) -> (f32, MavParamType) {
-        (value, MavParamType::MAV_PARAM_TYPE_REAL32)
+    /// All are sent as floats, and it is said what they are.
+    fn encode_param(&self, value: f32, kind: MavParamType) -> (f32, MavParamType) {
+        (value, kind)
     }
 
     fn decode_param(&self, value: f32, _sent_as: MavParamType, _kind: MavParamType) -> Option<f32> {
@@ -167,11 +167,11 @@ impl Behaviour for ArduPlane {
 }
 
 fn heartbeat(a: &Autopilot) -> MavMessage {
-    let base_mode = match a.mode() {
-        Mode::Manual => MavModeFlag::MAV_MODE_FLAG_MANUAL_INPUT_ENABLED,
-        Mode::Circle | Mode::FlyByWireA => MavModeFlag::MAV_MODE_FLAG_STABILIZE_ENABLED,
-        _ => MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED | MavModeFlag::MAV_MODE_FLAG_STABILIZE_ENABLED,
-    };
+    let flies_itself = !matches!(a.mode(), Mode::Manual | Mode::FlyByWireA);
+    // the sticks always have a say, and it always calls itself stabilised
+    let mut base_mode =
+        MavModeFlag::MAV_MODE_FLAG_MANUAL_INPUT_ENABLED | MavModeFlag::MAV_MODE_FLAG_STABILIZE_ENABLED;
+    base_mode.set(MavModeFlag::MAV_MODE_FLAG_GUIDED_ENABLED, flies_itself);
     let failing = !a.gps_ok || !a.aircraft.engine().healthy;
     let system_status = match (failing, a.aircraft.state().on_ground) {
         (true, _) => MavState::MAV_STATE_CRITICAL,

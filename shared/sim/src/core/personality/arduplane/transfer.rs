@@ -48,7 +48,7 @@ impl Transfer {
         if usize::from(count) > MAX_ITEMS {
             return Reply::Ack(MavMissionResult::MAV_MISSION_NO_SPACE);
         }
-        items.truncate(usize::from(count).max(1));
+        items.truncate(count.into());
         if count == 0 {
             self.0 = None;
             return Reply::Received;

@@ -90,7 +90,7 @@ impl Px4 {
     fn arm(&self, a: &mut Autopilot, now_ns: u64) -> bool {
         if self.arming_problem(a, now_ns).is_some() && !a.is_armed() {
             // which check it was, the real one tells by its own events only
-            a.say(Severity::Critical, "Arming refused: a check has failed");
+            a.say(Severity::Critical, "Arming denied: Resolve system health failures first");
             return false;
         }
         a.arm(false)

@@ -34,7 +34,7 @@ impl Px4 {
             MavMessage::MISSION_REQUEST_INT(c) => self.transfer.give_item(party, c.seq, count, now_ns),
             MavMessage::MISSION_REQUEST(c) => self.transfer.give_item(party, c.seq, count, now_ns),
             MavMessage::MISSION_CLEAR_ALL(_) if self.transfer.is_idle() => Reply::Complete(Vec::new(), None),
-            MavMessage::MISSION_CLEAR_ALL(_) => Reply::Say("Mission transfer is busy"),
+            MavMessage::MISSION_CLEAR_ALL(_) => Reply::Say("WPM: IGN CLEAR CMD: Busy"),
             MavMessage::MISSION_SET_CURRENT(c) => self.set_current(a, c.seq),
             // fences and rally points are not simulated
             MavMessage::MISSION_COUNT(c) => {
@@ -55,10 +55,10 @@ impl Px4 {
 
     fn set_current(&mut self, a: &mut Autopilot, seq: u16) -> Reply {
         if !self.transfer.is_idle() {
-            return Reply::Say("Mission transfer is busy");
+            return Reply::Say("WPM: IGN WP CURR CMD: Busy");
         }
         if !commands::jump(a, seq) {
-            return Reply::Say("The mission has no such item");
+            return Reply::Say("WPM: WP CURR CMD: Not in list");
         }
         Reply::Nothing
     }

@@ -40,7 +40,6 @@ pub(super) static RULES: Rules = FIXED_WING;
 const FIXED_WING: Rules = Rules {
     first_item: 0,
     first_mode: Mode::Loiter,
-    needs_mission_for_mode: false,
     list_end: ListEnd::Hold,
     flies_on_after_landing: true,
     skips_take_off_in_air: true,
@@ -62,6 +61,7 @@ const FIXED_WING: Rules = Rules {
     tells_unknown_params: true,
     home_moves: true,
     no_such_message: MavResult::MAV_RESULT_DENIED,
+    no_such_interval: MavResult::MAV_RESULT_FAILED,
 };
 
 const STREAMS: [Streamed; 19] = [

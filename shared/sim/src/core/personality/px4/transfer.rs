@@ -73,7 +73,7 @@ impl Transfer {
 
     /// `MISSION_COUNT`.
     pub fn begin(&mut self, party: Party, count: u16, now_ns: u64) -> Reply {
-        const BUSY: Reply = Reply::Refuse("Mission transfer is busy", MavMissionResult::MAV_MISSION_ERROR);
+        const BUSY: Reply = Reply::Refuse("WPM: REJ. CMD: Busy", MavMissionResult::MAV_MISSION_ERROR);
         match &mut self.state {
             State::Idle if usize::from(count) > MAX_ITEMS => {
                 Reply::Ack(MavMissionResult::MAV_MISSION_NO_SPACE)
@@ -99,7 +99,7 @@ impl Transfer {
     /// An item, asked for or not.
     pub fn item(&mut self, party: Party, wire: &MISSION_ITEM_INT_DATA, now_ns: u64) -> Reply {
         if !self.is_with(party.sender) {
-            return Reply::Say("Mission item from a stranger");
+            return Reply::Say("REJ. MIS ITEM: partner id mismatch");
         }
         let upload = match &mut self.state {
             State::Taking(upload) => upload,
@@ -108,7 +108,7 @@ impl Transfer {
             }
             _ => {
                 let error = MavMissionResult::MAV_MISSION_ERROR;
-                return Reply::Refuse("Mission item without an upload", error);
+                return Reply::Refuse("IGN MISSION_ITEM: No transfer", error);
             }
         };
         self.heard_ns = now_ns;
@@ -119,7 +119,7 @@ impl Transfer {
             Ok(item) => upload.items.push(item),
             Err(refusal) => {
                 self.state = State::Idle;
-                return Reply::Refuse("Mission item is not understood", refusal);
+                return Reply::Refuse("IGN MISSION_ITEM: Invalid item", refusal);
             }
         }
         if wire.current != 0 {
@@ -143,16 +143,16 @@ impl Transfer {
             return Reply::Nothing;
         }
         self.state = State::Idle;
-        Reply::Refuse("Mission item is not understood", MavMissionResult::MAV_MISSION_UNSUPPORTED)
+        Reply::Refuse("IGN MISSION_ITEM: Invalid item", MavMissionResult::MAV_MISSION_UNSUPPORTED)
     }
 
     /// `MISSION_REQUEST_LIST`.
     pub fn give(&mut self, party: Party, count: u16, now_ns: u64) -> Reply {
         match self.state {
             State::Giving(next) if !self.is_with(party.sender) && next < count => {
-                Reply::Say("Mission transfer is busy")
+                Reply::Say("Mission download request ignored, already active")
             }
-            State::Taking(_) => Reply::Say("Mission transfer is busy"),
+            State::Taking(_) => Reply::Say("WPM: REJ. CMD: Busy"),
             State::Idle | State::Giving(_) => {
                 self.state = State::Giving(0);
                 (self.partner, self.heard_ns) = (Some(party), now_ns);
@@ -164,7 +164,7 @@ impl Transfer {
     /// `MISSION_REQUEST`: the next item or the last once more; without a list asked for, nothing.
     pub fn give_item(&mut self, party: Party, seq: u16, count: u16, now_ns: u64) -> Reply {
         if !self.is_with(party.sender) {
-            return Reply::Say("Mission request from a stranger");
+            return Reply::Say("WPM: REJ. CMD: partner id mismatch");
         }
         let State::Giving(next) = &mut self.state else {
             return Reply::Nothing;
@@ -173,7 +173,10 @@ impl Transfer {
         let is_known = seq < count && (seq == *next || seq.checked_add(1) == Some(*next));
         if !is_known {
             self.state = State::Idle;
-            return Reply::Refuse("Mission request out of turn", MavMissionResult::MAV_MISSION_ERROR);
+            return Reply::Refuse(
+                "WPM: REJ. CMD: Req. WP was unexpected",
+                MavMissionResult::MAV_MISSION_ERROR,
+            );
         }
         *next = seq + 1;
         Reply::Give(seq)
@@ -182,7 +185,7 @@ impl Transfer {
     /// `MISSION_ACK`: the partner has all, or gives up.
     pub fn acknowledged(&mut self, party: Party, result: MavMissionResult) -> Reply {
         if !self.is_with(party.sender) {
-            return Reply::Say("Mission answer from a stranger");
+            return Reply::Say("REJ. WP CMD: partner id mismatch");
         }
         let gives_up = result == MavMissionResult::MAV_MISSION_OPERATION_CANCELLED;
         if matches!(self.state, State::Giving(_)) || gives_up {
@@ -199,7 +202,7 @@ impl Transfer {
             State::Idle => None,
             _ if silent_ns > TIMEOUT_NS => {
                 self.state = State::Idle;
-                Some((party, Reply::Say("Mission transfer timed out")))
+                Some((party, Reply::Say("Mission sync timeout")))
             }
             State::Taking(upload) if now_ns.saturating_sub(upload.asked_ns) > ASK_AGAIN_NS => {
                 upload.asked_ns = now_ns;

@@ -95,7 +95,7 @@ fn a_mission_without_the_landing_that_is_required_is_taken_and_not_armed_for() {
     ground.enter(MISSION);
     assert_eq!(ground.arm(), MavResult::MAV_RESULT_TEMPORARILY_REJECTED);
     let texts = ground.all_texts();
-    assert!(texts.iter().any(|t| t.starts_with("Arming refused")), "{texts:?}");
+    assert!(texts.iter().any(|t| t.starts_with("Arming denied")), "{texts:?}");
     assert_eq!(ground.mission_state(), MissionState::MISSION_STATE_NO_MISSION);
     ground.sim.autopilot.params.set("MIS_TKO_LAND_REQ", 0.0);
     ground.px4_upload(&items[..1]);

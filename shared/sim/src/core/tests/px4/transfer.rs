@@ -31,7 +31,7 @@ fn an_aborted_upload_ends_in_words_without_an_answer_and_the_old_list_stays() {
     ground.item(&MISSION_ITEM_INT_DATA { seq: 0, ..waypoint(ground.home()) });
     ground.fly_until(6.0, |_| false);
     assert_eq!(Ground::ack(&ground.received), None);
-    assert!(ground.texts().iter().any(|t| t.contains("timed out")), "{:?}", ground.texts());
+    assert!(ground.texts().iter().any(|t| t.contains("timeout")), "{:?}", ground.texts());
     let list: Vec<_> = ground.sim.autopilot.mission.items().iter().map(|i| i.wire.x).collect();
     assert_eq!(list, items.iter().map(|i| i.x).collect::<Vec<_>>());
 }
