@@ -5,4 +5,6 @@ pub mod laid;
 pub mod logs;
 pub mod plans;
 pub mod programme;
+pub mod quirks;
 pub mod rig;
+pub mod table;

@@ -269,6 +269,7 @@ const SPEAK_MAVLINK: &[&str] = &[
     "onboard-agent/benches/",
     "shared/autopilot-link/",
     "shared/sim/",
+    "tests/src/quirks/",
     "tests/src/rig/world/",
     "tests/tests/architecture.rs",
 ];

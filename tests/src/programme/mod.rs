@@ -11,10 +11,10 @@ mod links;
 mod missions;
 mod pilots;
 mod processes;
-pub mod table;
 
 use crate::plans::Field;
 use crate::rig::Rig;
+use crate::table::Table;
 use anyhow::{Context, ensure};
 pub use examples::EXAMPLES;
 use std::pin::Pin;
@@ -140,4 +140,17 @@ fn expect_whole_mission(rig: &Rig) -> anyhow::Result<()> {
     }
     ensure!(rig.seen.passes("sweep") == 3, "three sweeps: {legs:?}");
     Ok(())
+}
+
+/// The programme's table in the documents.
+pub fn table() -> Table {
+    Table {
+        begin: "<!-- the table: made by the programme -->",
+        end: "<!-- end of the table -->",
+        own: &["Scenario", "What happens", "What must come of it"],
+        untried: "not flown",
+        rows: scenarios()
+            .map(|scenario| (scenario.name, vec![scenario.happens, scenario.expected]))
+            .collect(),
+    }
 }
