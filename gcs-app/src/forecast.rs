@@ -13,6 +13,7 @@ mod outline;
 mod preview;
 mod reviewer;
 mod told;
+mod underway;
 mod worker;
 
 pub use aboard::Aboard;
@@ -21,6 +22,7 @@ pub use left_out::LeftOut;
 pub use line::Line;
 pub use outline::{Heights, Outline, Places};
 pub use told::{Clearance, clearance, told};
+pub use underway::Underway;
 pub use worker::{Analysis, Question, Worker};
 
 use flight_exec::rehearse::WhatIf;
@@ -171,6 +173,11 @@ impl Forecast {
         let after = self.points.partition_point(|p| p.time_s < time_s);
         self.points.get(after).or(self.points.last())
     }
+    /// The points from a time to another.
+    pub fn between(&self, from_s: f64, to_s: f64) -> &[Point] {
+        let before = |time_s: f64| self.points.partition_point(|point| point.time_s < time_s);
+        self.points.get(before(from_s)..before(to_s)).unwrap_or_default()
+    }
     /// Where the path is before the first passage of a leg, and which way it goes there.
     pub fn start_of(&self, leg: &Id) -> Option<Approach> {
         let passage = self.passages.iter().find(|passage| passage.leg == *leg)?;
@@ -212,14 +219,11 @@ impl Forecast {
     pub fn part(&self, passage: &Passage) -> Option<&[Point]> {
         self.points.get(passage.first..(passage.end + 1).min(self.points.len()))
     }
-    /// The point that is nearest to `position` on the leg that is being flown, in the same pass of the loops around it; if there is no
+    /// The point that an aircraft has come to on the leg that is being flown, in the same pass of the loops around it; if there is no
     /// such pass, in any.
-    pub fn nearest(&self, position: LatLon, place: &PlacePointer) -> Option<&Point> {
-        let frame = geometry::LocalFrame::new(position);
-        let far = |p: &Point| frame.to_local(p.position).length();
+    pub fn nearest(&self, aircraft: Underway, place: &PlacePointer) -> Option<&Point> {
         let nearest = |passages: &mut dyn Iterator<Item = &Passage>| {
-            let points = passages.filter_map(|passage| self.part(passage)).flatten();
-            points.min_by(|a, b| far(a).total_cmp(&far(b)))
+            aircraft.nearest(passages.filter_map(|passage| self.part(passage)))
         };
         let passes = place.iterations.iter().map(|pass| pass.iteration);
         let of_leg = || self.passages.iter().filter(|passage| passage.leg == place.leg);
@@ -269,17 +273,21 @@ mod tests {
         for (time, expected) in [(-1.0, 0.0), (3.0, 4.0), (4.0, 4.0), (99.0, 8.0)] {
             assert_eq!(f.at(time).map(|p| p.time_s), Some(expected), "{time}");
         }
-        let at = |leg: &str, pass| {
+        let at = |leg: &str, pass, track_deg| {
             let iterations =
                 vec![IterationPlace { leg: "l".into(), iteration: pass, of: None, reverse: false }];
             let (plan, stage, leg) = (Branching::Main, "s".into(), leg.into());
             let place = PlacePointer { plan, stage, leg, iterations, reverse: false, distance_m: 0.0 };
-            f.nearest(LatLon::new(0.0, 2.6e-3), &place).map(|p| p.time_s)
+            let aircraft = Underway { at: LatLon::new(0.0, 2.6e-3), track_deg };
+            f.nearest(aircraft, &place).map(|p| p.time_s)
         };
-        assert_eq!(at("a", 1), Some(4.0), "the second pass is nearer");
-        assert_eq!(at("a", 2), Some(6.0));
-        assert_eq!(at("a", 9), Some(6.0), "a pass that was not foreseen");
-        assert_eq!(at("c", 1), None);
+        for track_deg in [None, Some(90.0)] {
+            assert_eq!(at("a", 1, track_deg), Some(2.0), "the second pass is nearer");
+            assert_eq!(at("a", 2, track_deg), Some(6.0));
+            assert_eq!(at("a", 9, track_deg), Some(6.0), "a pass that was not foreseen");
+            assert_eq!(at("c", 1, track_deg), None);
+        }
+        assert_eq!(at("a", 2, Some(270.0)), None, "the path goes nowhere that way");
         assert_eq!(f.passages_of(&"a".into()).map(<[Point]>::len).collect::<Vec<_>>(), [3, 2]);
         assert_eq!(Forecast::default().at(1.0), None);
     }

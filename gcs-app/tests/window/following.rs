@@ -4,8 +4,9 @@ use super::Window;
 use super::considering::foresight;
 use super::emergency::raised;
 use super::flying::{flying, flying_its_plan};
-use super::vehicle::{engine_out, position};
-use flight_exec::{Command, Foresight};
+use super::vehicle::{engine_out, place, position};
+use egui_kittest::kittest::{NodeT, Queryable};
+use flight_exec::{Command, Foresight, PathPoint};
 use gcs_app::link::{Call, Reply, Telemetry};
 use gcs_app::state::Ticket;
 use geometry::LatLon;
@@ -29,11 +30,19 @@ fn waypoint(leg: &str, position: LatLon) -> Waypoint {
 }
 
 impl Window {
-    /// What it has next, on this leg; and it is at this place.
+    /// What it has next, on this leg; and it is at this place, going along side2.
     fn receive_course(&mut self, leg: &str, at: LatLon) {
-        let Telemetry::Position(mut here) = position(2.0, 500.0, false) else { unreachable!() };
-        here.value.position = at;
+        self.receive_at(2.0, at, 142.0);
+        self.receive_next(leg, at);
+    }
+
+    fn receive_at(&mut self, time_s: f64, at: LatLon, track_deg: f64) {
+        let Telemetry::Position(mut here) = position(time_s, 500.0, false) else { unreachable!() };
+        (here.value.position, here.value.track_deg) = (at, track_deg);
         self.receive(Telemetry::Position(here));
+    }
+
+    fn receive_next(&mut self, leg: &str, at: LatLon) {
         let value = Ahead { waypoints: vec![waypoint(leg, at.destination(0.0, 300.0))] };
         self.receive(Telemetry::Ahead(Stamped { time_s: 2.0, validity_s: 5.0, value }));
         // it is looked at a few times a second
@@ -74,6 +83,41 @@ fn on_the_way_to_a_leg_or_on_another_branch_the_profile_shows_the_way_that_the_v
         window.receive_course("side3", on_side2());
         assert!(window.shows(PREVIEW), "it is back on the preview");
     }
+}
+
+/// While it flew out along the final, the profile was that of the way in: 101 m above the runway it stood on the ground, 0 s before the
+/// end.
+#[test]
+fn on_the_way_out_to_the_final_the_profile_is_that_of_the_way_out() {
+    let threshold = LatLon::new(36.3190, -84.1730);
+    let out = |out_m: f64| threshold.destination(232.0, out_m);
+    let (mut window, mut value) = flying();
+    value.place = Some(place("land", "land"));
+    window.receive_status(value);
+    window.receive_at(2.0, out(700.0), 232.0);
+    window.receive_next("land", out(1400.0));
+    let ticket = window.asked_which_way().unwrap();
+    assert!(!window.shows(PREVIEW), "the preview lands from there");
+    let point = |time_s, position| PathPoint { time_s, position, altitude_amsl_m: 450.0 };
+    // beside the way in
+    let outbound = [out(700.0), out(1700.0)].map(|at| at.destination(142.0, 30.0));
+    let path = vec![
+        point(0.0, outbound[0]),
+        point(40.0, outbound[1]),
+        point(50.0, out(1700.0)),
+        point(118.0, threshold),
+    ];
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(Foresight { path, ..foresight() }))));
+    window.receive_at(32.0, out(1400.0), 232.0);
+    window.steps(20);
+    let left = |window: &Window| {
+        let shown = window.harness.get_by_label_contains(TOLD).accesskit_node().label().unwrap();
+        shown.rsplit(' ').next().unwrap().to_owned()
+    };
+    assert!(["1:29", "1:30"].contains(&left(&window).as_str()), "{}: it flies out still", left(&window));
+    window.receive_at(62.0, out(1400.0), 52.0);
+    window.steps(20);
+    assert!(window.shows(PREVIEW), "now it is on the final");
 }
 
 #[test]

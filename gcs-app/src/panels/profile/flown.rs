@@ -1,12 +1,13 @@
 //! Whether the aircraft flies along the preview, and the way that it flies if it does not: from now to the landing, as it was told.
 
 use super::{Axes, draw_band, draw_ground, thinned};
-use crate::forecast::{Forecast, Point};
+use crate::forecast::{Forecast, Point, Underway};
 use crate::panels::{Scene, answer, emergency};
 use crate::theme::{self, Palette};
 use egui::{Painter, Pos2, Shape, Stroke, Ui, pos2, vec2};
 use flight_exec::Phase;
 use geometry::LatLon;
+use usal::contract::GatewayState;
 
 /// Farther from the preview it flies another way; nearer it is on it again, metres: on its way to a leg, or where a scan was moved to.
 const FAR_M: (f64, f64) = (400.0, 250.0);
@@ -19,8 +20,8 @@ pub fn is_elsewhere(scene: &Scene<'_>) -> bool {
     flies && scene.vehicle.is_airborne() && scene.vehicle.current_leg().is_some() && !is_along(scene)
 }
 
-/// It is near where the preview has it, and what it has next is in the preview. Where nothing is known of what it has next, the leg
-/// decides.
+/// It is near where the preview has it and goes the same way, and what it has next is in the preview. Where nothing is known of what it
+/// has next, the leg decides.
 fn is_along(scene: &Scene<'_>) -> bool {
     if scene.vehicle.emergency().is_some() {
         return false;
@@ -40,7 +41,15 @@ fn place(scene: &Scene<'_>) -> Option<LatLon> {
 
 fn nearest<'a>(scene: &Scene<'a>) -> Option<&'a Point> {
     let status = scene.vehicle.status.as_ref()?;
-    scene.forecast().nearest(place(scene)?, status.value.place.as_ref()?)
+    scene.forecast().nearest(underway(scene)?, status.value.place.as_ref()?)
+}
+
+/// Where it is, and which way it goes while a plan leads it.
+fn underway(scene: &Scene<'_>) -> Option<Underway> {
+    let state = scene.vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
+    let is_led = scene.vehicle.phase() == Phase::Flying && !matches!(state, Some(GatewayState::Hold));
+    let track_deg = scene.vehicle.position.as_ref().filter(|_| is_led).map(|v| v.value.track_deg);
+    Some(Underway { at: place(scene)?, track_deg })
 }
 
 /// The point of the preview where the aircraft is, while it flies along it.
@@ -56,11 +65,10 @@ pub fn unknown(scene: &Scene<'_>) -> Option<String> {
 /// The way that it flies instead, as far as it was told, and the point of it where the aircraft is.
 pub fn told<'a>(scene: &Scene<'a>) -> Option<(&'a Forecast, &'a Point)> {
     let (way, told_s) = scene.vehicle.outlook.way().filter(|_| scene.vehicle.outlook.is_elsewhere())?;
-    let (at, position) = (place(scene)?, scene.vehicle.position.as_ref()?);
+    let (aircraft, position) = (underway(scene)?, scene.vehicle.position.as_ref()?);
     let elapsed_s = position.time_s - told_s;
-    let about = way.points.iter().filter(|point| (point.time_s - elapsed_s).abs() < ABOUT_S);
-    let far_m = |point: &&Point| point.position.distance_m(at);
-    let here = about.min_by(|a, b| far_m(a).total_cmp(&far_m(b))).or_else(|| way.at(elapsed_s))?;
+    let about = way.between(elapsed_s - ABOUT_S, elapsed_s + ABOUT_S);
+    let here = aircraft.nearest(std::iter::once(about)).or_else(|| way.at(elapsed_s))?;
     (way.points.len() > 1).then_some((way, here))
 }
 
