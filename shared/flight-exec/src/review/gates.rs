@@ -5,7 +5,7 @@ use super::flown::Flown;
 use crate::api::Action;
 use crate::layout::homeward::ALIGNED_DEG;
 use crate::layout::path::{distance_and_course, distance_m};
-use flight_plan::{Id, Problem};
+use flight_plan::{Edit, Id, Problem};
 use geometry::geodesy::normalise_180;
 use std::collections::HashSet;
 
@@ -42,5 +42,8 @@ fn problem<'a>(view: &View, flown: &'a Flown, told: &mut HashSet<&'a Id>) -> Opt
         flown_m / 1e3,
         direct_m / 1e3
     );
-    Some(Problem::warning("gate-too-near", message).of(leg))
+    // where its final begins, on the runway's line
+    let to = threshold.destination(heading_deg + 180.0, final_m.ceil());
+    let fix = view.program.written(leg).map(|_| Edit::MoveWaypoint { leg: leg.clone(), to });
+    Some(Problem::warning("gate-too-near", message).of(leg).perhaps_fixed_by(fix))
 }

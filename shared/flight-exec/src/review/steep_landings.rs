@@ -88,7 +88,8 @@ impl<'a> Final<'a> {
             degrees(self.height_m),
             degrees(self.descent_m),
         );
-        let cannot = self.height_m > self.descent_m + TOLERANCE_M;
+        // its own numbers are told beside it: what is steeper than the aircraft's most is no mere warning
+        let cannot = self.height_m > self.descent_m;
         let say = match cannot && flown.emergency.is_none() && !view.flights.under_way {
             true => Problem::error,
             false => Problem::warning,
