@@ -303,7 +303,7 @@ fn elevations_that_are_missing_are_named_by_their_files() {
     assert!(message.starts_with("load the elevations N36W084.hgt, N36W085.hgt, or look at "), "{message}");
     let above = document("", r#"<TF id="c" fix="C" altitude="200" altitudeReference="agl"/>"#);
     let problems = found_over(&above, Arc::new(Tiles::new()), Conditions::default());
-    let said = "load the elevation tile N36W085.hgt (`--terrain N36W085.hgt`, `terrain` in agent.toml, or drop it onto the window): ";
+    let said = "load the elevation tile N36W085.hgt (`--terrain N36W085.hgt`, aboard also `terrain` in agent.toml; onto a window it is dropped): ";
     assert!(with_code(&problems, "unknown-terrain").message.contains(said), "{problems:?}");
 }
 

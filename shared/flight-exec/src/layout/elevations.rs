@@ -4,7 +4,7 @@ use geometry::LatLon;
 
 /// How elevations get to the programs.
 pub fn how_to_load(file: &str) -> String {
-    format!("`--terrain {file}`, `terrain` in agent.toml, or drop it onto the window")
+    format!("`--terrain {file}`, aboard also `terrain` in agent.toml; onto a window it is dropped")
 }
 
 /// The tile that has the ground of a position, and how to load it. The same for all positions of a tile.
