@@ -52,12 +52,18 @@ pub fn note_losses(export: &Export<'_>, kept: Kept, whole: &dyn Fn(&Leg) -> bool
     for emergency in &plan.emergency_plans {
         let is_flown = emergency.stages.iter().flat_map(|s| &s.legs).any(|l| flown.contains(l.id.as_str()));
         if !is_flown && !kept.rally {
-            let message = "this emergency plan is left out: write its waypoints to another file";
-            notes.push("emergency-not-carried", emergency.id.as_str(), message);
+            notes.push("emergency-not-carried", emergency.id.as_str(), left_out(emergency.id.as_str()));
         }
     }
     turnarounds(export, &flown, notes);
     places(export, kept, notes);
+}
+
+/// What becomes of an emergency plan for which a file has no room, and what writes it.
+pub fn left_out(emergency: &str) -> String {
+    format!(
+        "this emergency plan is left out: `legwork convert --emergency {emergency}` writes it to another file"
+    )
 }
 
 /// What the author states of the ground between two flights: no format has it, and energy is what a flight ends for.
