@@ -80,6 +80,11 @@ fn world(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         return;
     }
     let words = words.join(" · ");
+    let behind = what_if::from_behind(&scene.view.what_if, scene.document.plan(), scene.units());
+    if let Some(behind) = behind {
+        let text = RichText::new(behind).color(theme::of(ui).caution).size(12.0);
+        chip(ui, |ui| drop(ui.add(egui::Label::new(text).wrap())));
+    }
     row(ui, |ui| {
         let button = ui.small_button("✖");
         button.widget_info(|| {

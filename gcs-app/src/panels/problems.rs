@@ -181,7 +181,9 @@ fn verdict(ui: &mut Ui, scene: &Scene<'_>, found: Verdict) {
         Verdict { errors: 0, .. } => (format!("⚠ This plan {found}"), p.caution),
         _ => (format!("✖ This plan {found}"), p.warning),
     };
-    ui.label(RichText::new(text).color(colour));
+    // they are of the plan's own world, whatever the preview flies in
+    let apart = if scene.view.what_if.is_nothing() { "" } else { ", What if not counted" };
+    ui.label(RichText::new(format!("{text}{apart}")).color(colour));
 }
 
 fn being_checked(warnings: usize) -> String {

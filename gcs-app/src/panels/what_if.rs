@@ -10,7 +10,7 @@ mod world;
 
 pub use here::{CAUSES, reach_name};
 pub use variables::set as set_variable;
-pub use words::{alarm as alarm_in_words, diversion, winds, world as in_words};
+pub use words::{alarm as alarm_in_words, diversion, from_behind, winds, world as in_words};
 
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{PreviewCommand, Queue};

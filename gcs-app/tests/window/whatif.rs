@@ -64,6 +64,23 @@ fn wind_changes_the_preview_and_not_the_document() {
     assert!(!window.shows("What if: wind"));
 }
 
+/// 10 m/s from behind changed the times, and nothing was said; Problems spoke of calm air as if it were this world's.
+#[test]
+fn much_wind_from_behind_is_said_and_that_problems_do_not_count_it() {
+    let mut window = opened(SQUARE);
+    assert!(window.shows("This plan can be flown") && !window.shows("What if not counted"));
+    slide(&mut window, "Wind from", 232.0);
+    slide(&mut window, "Wind speed", 10.0);
+    let both =
+        "⚠ 10.0 m/s from behind for the take-off from R05, 10.0 m/s from behind for the landing on R05";
+    assert!(window.shows(both) && window.shows(", What if not counted"));
+    slide(&mut window, "Wind from", 52.0);
+    assert!(!window.shows("from behind") && window.shows("What if not counted"));
+    slide(&mut window, "Wind from", 232.0);
+    slide(&mut window, "Wind speed", 20.0);
+    assert!(window.shows("the aircraft can't take off with so much wind from behind"));
+}
+
 #[test]
 fn in_warm_air_an_autopilot_is_faster() {
     let mut window = opened(SQUARE);

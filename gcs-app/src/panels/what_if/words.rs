@@ -3,13 +3,14 @@
 use super::autopilot;
 use super::here::reach_name;
 use crate::forecast::Alarm;
-use crate::panels::other_end;
+use crate::panels::{ended, other_end};
 use crate::units::{self, Units};
 use aircraft::Wind;
 use flight_exec::rehearse::{Diversion, Glide, Glided, Powered, Reach, TrackPoint, WhatIf};
 use flight_exec::review::Margins;
 use flight_plan::words::yes_or_no;
 use flight_plan::{Cause, FlightPlan, Runway, VariableValue};
+use geometry::Vec2;
 
 /// A wind: `8.0 m/s from 240°`, or `calm`.
 fn wind(wind: Wind, units: Units) -> String {
@@ -17,6 +18,24 @@ fn wind(wind: Wind, units: Units) -> String {
         return "calm".into();
     }
     format!("{} from {}", units.speed().show(wind.speed_mps()), units::bearing(wind.direction_from_deg()))
+}
+
+/// Wind from behind that is worth a word before a take-off or landing, m/s: ten knots, the most that many aircraft may have.
+const MUCH_FROM_BEHIND_MPS: f64 = 5.0;
+
+/// `10.0 m/s from behind for take-off and landing on R05`; `None`: there is not much.
+pub fn from_behind(what_if: &WhatIf, plan: &FlightPlan, units: Units) -> Option<String> {
+    let behind_mps = |runway: &Runway| {
+        let way = Vec2::from_bearing_rad(runway.heading_deg.to_radians());
+        what_if.wind.vector().dot(way)
+    };
+    let of = |what: &str, runway: Option<&Runway>| {
+        let runway = runway.filter(|runway| behind_mps(runway) >= MUCH_FROM_BEHIND_MPS)?;
+        Some(format!("{} from behind for the {what} {}", units.speed().show(behind_mps(runway)), runway.id))
+    };
+    let both = [of("take-off from", plan.home()), of("landing on", ended::destination(plan))];
+    let said: Vec<String> = both.into_iter().flatten().collect();
+    (!said.is_empty()).then(|| format!("⚠ {}", said.join(", ")))
 }
 
 /// The winds by height.
