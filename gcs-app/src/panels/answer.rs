@@ -11,8 +11,8 @@ use egui::{
 };
 use flight_plan::in_words;
 
-/// Least width of the line, screen points: where the buttons leave less, it has a row of its own.
-const LEAST: f32 = 120.0;
+/// Least width of the line, screen points: where the buttons leave less, it has a row of its own. What is cut there is read by a button.
+const LEAST: f32 = 50.0;
 /// Of two lines in the height of a button, screen points.
 const SMALL: f32 = 11.5;
 

@@ -228,11 +228,17 @@ const NOT_CONNECTED: &str = "Not connected: no command reaches the aircraft";
 const NOT_HEARD: &str = "The autopilot is silent: nobody hears a command now";
 
 /// The strip of commands. Each has its place, whether it can be given now or not, and says why if it can't: nothing moves under the
+/// In a narrower bar the commands stand closer: all of them in one row, screen points.
+const NARROW: f32 = 1000.0;
+
 /// pointer. What there is to say stands behind them (see [`remark`]).
 pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.spacing_mut().interact_size.y = field::HOLD_HEIGHT;
     choose_emergency(ui, scene, queue);
+    if ui.available_width() < NARROW {
+        ui.spacing_mut().item_spacing.x = 4.0;
+    }
     let circles = "The aircraft circles where it is now, until it resumes";
     pressed(ui, scene, "hold", (Button::new("⏸ Hold"), circles), queue);
     let resume = "▶ Resume";
@@ -241,10 +247,10 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     pressed(ui, scene, "skip-leg", (Button::new("⏭ Skip leg"), "Shows what would follow, then asks"), queue);
     if stands(scene) {
         let colour = if another_aboard(scene).is_some() { p.caution } else { p.accent };
-        held(ui, scene, "start", (&start(scene), colour), queue);
+        held(ui, scene, "start", (&start(scene), colour, HELD), queue);
     }
     if can_rewind(scene) {
-        held(ui, scene, "rewind", ("Rewind to the start", p.caution), queue);
+        held(ui, scene, "rewind", ("Rewind", p.caution, 0.0), queue);
     }
     let state = scene.vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
     if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn)) {
@@ -268,9 +274,9 @@ fn pressed(ui: &mut Ui, scene: &Scene<'_>, id: &str, (button, tip): (Button<'_>,
 }
 
 /// The same by a button that is held.
-fn held(ui: &mut Ui, scene: &Scene<'_>, id: &str, (text, colour): (&str, Color32), queue: &mut Queue) {
+fn held(ui: &mut Ui, scene: &Scene<'_>, id: &str, look: (&str, Color32, f32), queue: &mut Queue) {
     let Some(action) = written(scene, id) else { return };
-    hold_or_why(ui, (text, colour, HELD), action.command, queue);
+    hold_or_why(ui, look, action.command, queue);
 }
 
 /// Width of a button to hold, at least, screen points: no other one moves with its words.
@@ -411,7 +417,8 @@ fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let command = actions::emergency(scene, chosen.clone()).map_err(Cow::Borrowed);
     hold_or_why(ui, (&text, p.warning, EMERGENCY), command, queue);
     if plans.len() > 1 {
-        let combo = egui::ComboBox::from_id_salt("alternate").width(110.0).selected_text(&name);
+        let combo = egui::ComboBox::from_id_salt("alternate").width(0.0).selected_text("");
+        // which one is chosen stands in the button before it
         let shown = combo.show_ui(ui, |ui| {
             ui.selectable_value(&mut chosen, None, "In force here");
             for plan in plans {

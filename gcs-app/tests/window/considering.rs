@@ -322,9 +322,9 @@ fn a_plan_that_was_under_way_is_rewound_on_the_ground_only() {
     window.receive_position(true);
     window.receive_gateway_state(GatewayState::Stop);
     window.receive_status(value);
-    window.hold("Rewind to the start (hold)", 20);
+    window.hold("Rewind (hold)", 20);
     assert!(window.asked().is_none());
-    window.hold("Rewind to the start (hold)", 90);
+    window.hold("Rewind (hold)", 90);
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::Rewind)));
 }
 

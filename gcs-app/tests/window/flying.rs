@@ -7,7 +7,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::{Command, IterationPlace, Phase, ProposalReport};
 use gcs_app::link::{Call, LinkEvent, LinkId, LinkMessage, LinkState, Order, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Outcome};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use usal::contract::{
     Alarm, GatewayState, GatewayStatus, Navigation, PlanVariable, PlanVariables, Severity, Stamped,
@@ -547,13 +547,12 @@ fn every_command_keeps_its_place_in_every_state_and_none_comes_where_another_was
             (Phase::Flying, GatewayState::Manual, 0.1),
             (Phase::AwaitingDecision, GatewayState::Nav, 0.1),
         ];
-        let mut ground =
-            vec![(Phase::Idle, GatewayState::Stop, 0.1), (Phase::Flying, GatewayState::TakeOff, 0.1)];
-        // what is rewound has a second row in a narrow window
-        if size.x > 1000.0 {
-            let rewound = [Phase::Flying, Phase::Finished].map(|phase| (phase, GatewayState::Stop, 0.1));
-            ground.extend(rewound);
-        }
+        let ground = [
+            (Phase::Idle, GatewayState::Stop, 0.1),
+            (Phase::Flying, GatewayState::TakeOff, 0.1),
+            (Phase::Flying, GatewayState::Stop, 0.1),
+            (Phase::Finished, GatewayState::Stop, 0.1),
+        ];
         let states = ground.into_iter().map(|state| (state, true)).chain(air.map(|state| (state, false)));
         for ((phase, state, autopilot_age_s), on_ground) in states {
             value.phase = phase;
@@ -571,6 +570,8 @@ fn every_command_keeps_its_place_in_every_state_and_none_comes_where_another_was
         }
         assert!(places.len() >= COMMANDS.len() - 1, "{places:?}");
         let in_flight = &COMMANDS[..4];
+        let rows: BTreeSet<i32> = places.values().map(|place| place.top() as i32).collect();
+        assert_eq!(rows.len(), 1, "one row at {size}: {places:?}");
         for (one, other) in places.iter().zip(places.iter().skip(1)) {
             let both_in_flight = in_flight.contains(&one.0.as_str()) || in_flight.contains(&other.0.as_str());
             assert!(!both_in_flight || !one.1.intersects(*other.1), "{one:?} {other:?}");
@@ -585,7 +586,7 @@ const COMMANDS: [&str; 7] = [
     "▶ Resume",
     "⏭ Skip leg",
     "Start and take off (hold)",
-    "Rewind to the start (hold)",
+    "Rewind (hold)",
     "Leave Safe mode",
 ];
 
