@@ -118,6 +118,9 @@ pub(super) fn rewind(scene: &Scene<'_>) -> Asked {
 
 pub(super) fn skip(scene: &Scene<'_>) -> Asked {
     flying(scene, PlanCommand::SkipLeg)?;
+    if leading::is_last_landing(scene) {
+        return Err("The landing is the last leg of the flight: there is nothing to skip to");
+    }
     Ok(consider(PlanCommand::SkipLeg))
 }
 

@@ -307,6 +307,9 @@ fn start(scene: &Scene<'_>) -> String {
 }
 
 /// What whoever commands should know, what matters most first; and whether it is a caution.
+/// It is said on the ground, too: a start would end beside the runway.
+const NO_ENGINE: &str = "⚠ Its engine has failed: look at it before a start";
+
 pub fn remark(scene: &Scene<'_>) -> Option<(String, bool)> {
     let heard = if scene.vehicle.open_link().is_none() {
         Some(NOT_CONNECTED.to_owned())
@@ -315,11 +318,12 @@ pub fn remark(scene: &Scene<'_>) -> Option<(String, bool)> {
         scene.vehicle.autopilot_silence_s(scene.now_s).map(|_| format!("⚠ {NOT_HEARD}"))
     };
     let unfit = scene.vehicle.unfit().filter(|_| is_on_ground(scene));
+    let dead = (is_on_ground(scene) && scene.vehicle.is_engine_out()).then(|| NO_ENGINE.to_owned());
     let unfit = unfit.map(|why| format!("⚠ Can't be started. {why}"));
     let another = another_aboard(scene).filter(|_| can_launch(scene)).map(str::to_owned);
     let ended = ended::otherwise(scene).map(|how| format!("⚠ {how}"));
     let rest = nothing_to_do(scene).filter(|_| ended.is_none()).map(str::to_owned);
-    let cautions: Vec<String> = [heard, unfit, another, ended].into_iter().flatten().collect();
+    let cautions: Vec<String> = [heard, dead, unfit, another, ended].into_iter().flatten().collect();
     let is_caution = !cautions.is_empty();
     let all: Vec<String> = cautions.into_iter().chain(rest).collect();
     (!all.is_empty()).then(|| (all.join(" · "), is_caution))

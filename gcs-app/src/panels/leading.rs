@@ -26,6 +26,17 @@ fn landings(plan: &FlightPlan) -> impl Iterator<Item = (Section<'_>, &Stage)> {
     plan.all_stages().filter(|(_, stage)| stage.kind == StageKind::Land)
 }
 
+/// Nothing follows what is being flown: it lands, and its plan has no other flight.
+pub fn is_last_landing(scene: &Scene<'_>) -> bool {
+    let Some(plan) = scene.vehicle.aboard.as_ref().map(|aboard| &aboard.plan) else { return false };
+    let last = match scene.vehicle.emergency() {
+        Some(flown) => plan.emergency_plan(flown).and_then(|plan| plan.stages.last()),
+        None => plan.stages.last(),
+    };
+    let last = last.filter(|stage| stage.kind == StageKind::Land);
+    last.is_some_and(|stage| scene.vehicle.current_leg() == Some(&stage.id))
+}
+
 fn to_one_of(scene: &Scene<'_>, section: Section<'_>, id: &Id) -> Option<Command> {
     let leg = id.clone();
     match (section, scene.vehicle.emergency()) {

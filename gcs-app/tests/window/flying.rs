@@ -591,6 +591,33 @@ const COMMANDS: [&str; 7] = [
 ];
 
 /// It was red and could be held for a second, to be refused then.
+/// The alarm went at touch-down, and the start was offered without a word.
+#[test]
+fn who_may_start_is_told_that_the_engine_has_failed() {
+    let (mut window, _) = connected();
+    let said = "⚠ Its engine has failed: look at it before a start";
+    assert!(!window.shows(said));
+    window.receive_gateway(vec![engine_out()]);
+    assert!(window.shows(said));
+    window.receive_position(false);
+    assert!(!window.shows(said), "in the air its alarm says what to do");
+}
+
+/// It could be pressed, looked at and held, to be refused then.
+#[test]
+fn a_landing_that_nothing_follows_is_not_skipped() {
+    let mut window = flying_its_plan();
+    assert!(window.is_enabled("⏭ Skip leg"));
+    let mut value = status(Phase::Flying);
+    value.plan = Some(window.app().analysis().hash.clone().into());
+    value.place = Some(place("land", "land"));
+    window.receive_status(value);
+    assert!(!window.is_enabled("⏭ Skip leg"));
+    window.harness.hover_at(window.centre("⏭ Skip leg"));
+    window.steps(60);
+    assert!(window.shows("The landing is the last leg of the flight: there is nothing to skip to"));
+}
+
 #[test]
 fn no_emergency_can_be_flown_where_no_alternate_is_in_force_and_it_says_so() {
     let (mut window, mut value) = flying();
