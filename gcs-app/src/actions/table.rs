@@ -221,6 +221,10 @@ fn preview(command: PreviewCommand) -> Asked {
 
 /// The help lies over everything: it goes first, then the tour, then the card for a new mission.
 fn escape(scene: &Scene<'_>) -> Asked {
+    if scene.view.help.is_none() && scene.view.tour.is_none() && scene.vehicle.outlook.considered().is_some()
+    {
+        return Ok(Command::Fly(FlyCommand::PutAside));
+    }
     view(match (&scene.view.help, scene.view.tour) {
         (Some(_), _) => ViewCommand::Help(None),
         (None, Some(_)) => ViewCommand::Tour(None),

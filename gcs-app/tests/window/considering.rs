@@ -45,6 +45,14 @@ pub fn considered() -> (Window, Ticket) {
     (window, ticket)
 }
 
+#[test]
+fn escape_puts_a_command_aside_that_is_considered() {
+    let (mut window, _) = considered();
+    assert!(window.shows("Skip leg?"));
+    window.press(egui::Key::Escape);
+    assert!(!window.shows("Skip leg?") && window.asked().is_none());
+}
+
 /// What the window asks for itself filled the list.
 #[test]
 fn the_log_lists_the_commands_that_were_given() {
