@@ -46,13 +46,15 @@ impl Panel for Flight {
             pfd::show(ui, scene, pfd::HEIGHT);
             ui.add_space(4.0);
         }
-        raised(ui, scene);
+        // a display that is cut says less than its numbers
+        let vital = if is_low { &[&[pfd::numbers as Row], &VITAL[..]].concat() } else { &VITAL[..] };
+        raised(ui, scene, vital.len());
         dense(ui);
-        VITAL.iter().for_each(|row| row(ui, scene));
+        vital.iter().for_each(|row| row(ui, scene));
         ui.add_space(4.0);
         let room = ui.available_height();
         ScrollArea::vertical().id_salt("flight values").auto_shrink(false).show(ui, |ui| {
-            if is_low {
+            if is_low && room >= pfd::LEAST_HEIGHT {
                 pfd::show(ui, scene, room);
                 ui.add_space(4.0);
             }
@@ -66,12 +68,11 @@ type Row = fn(&mut Ui, &Scene<'_>);
 /// What nobody flies without: in sight at every size. That of the link is in the bar.
 const VITAL: [Row; 4] = [leg, next, above_ground, battery];
 
-/// Height of what is vital, with the gaps around it, points.
-const VITAL_HEIGHT: f32 = VITAL.len() as f32 * 18.0 + 8.0;
-
 /// The alarms, in all that is left of the panel above what is vital: they say what to do.
-fn raised(ui: &mut Ui, scene: &Scene<'_>) {
-    let most = (ui.available_height() - VITAL_HEIGHT).max(0.0);
+fn raised(ui: &mut Ui, scene: &Scene<'_>, vital: usize) {
+    // with the gaps around them
+    let vital_height = vital as f32 * 18.0 + 8.0;
+    let most = (ui.available_height() - vital_height).max(0.0);
     ScrollArea::vertical().id_salt("raised alarms").max_height(most).show(ui, |ui| alarms::show(ui, scene));
     ui.add_space(4.0);
 }
@@ -227,18 +228,18 @@ const NOT_CONNECTED: &str = "Not connected: no command reaches the aircraft";
 /// Who should obey does not hear.
 const NOT_HEARD: &str = "The autopilot is silent: nobody hears a command now";
 
-/// The strip of commands. Each has its place, whether it can be given now or not, and says why if it can't: nothing moves under the
 /// In a narrower bar the commands stand closer: all of them in one row, screen points.
 const NARROW: f32 = 1000.0;
 
+/// The strip of commands. Each has its place, whether it can be given now or not, and says why if it can't: nothing moves under the
 /// pointer. What there is to say stands behind them (see [`remark`]).
 pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     ui.spacing_mut().interact_size.y = field::HOLD_HEIGHT;
-    choose_emergency(ui, scene, queue);
     if ui.available_width() < NARROW {
         ui.spacing_mut().item_spacing.x = 4.0;
     }
+    choose_emergency(ui, scene, queue);
     let circles = "The aircraft circles where it is now, until it resumes";
     pressed(ui, scene, "hold", (Button::new("⏸ Hold"), circles), queue);
     let resume = "▶ Resume";
@@ -279,7 +280,7 @@ fn held(ui: &mut Ui, scene: &Scene<'_>, id: &str, look: (&str, Color32, f32), qu
     hold_or_why(ui, look, action.command, queue);
 }
 
-/// Width of a button to hold, at least, screen points: no other one moves with its words.
+/// Width of the start's button, at least, screen points: no other one moves with its words.
 const HELD: f32 = 180.0;
 
 fn hold_or_why(
@@ -306,10 +307,10 @@ fn start(scene: &Scene<'_>) -> String {
     }
 }
 
-/// What whoever commands should know, what matters most first; and whether it is a caution.
 /// It is said on the ground, too: a start would end beside the runway.
 const NO_ENGINE: &str = "⚠ Its engine has failed: look at it before a start";
 
+/// What whoever commands should know, what matters most first; and whether it is a caution.
 pub fn remark(scene: &Scene<'_>) -> Option<(String, bool)> {
     let heard = if scene.vehicle.open_link().is_none() {
         Some(NOT_CONNECTED.to_owned())
@@ -317,8 +318,8 @@ pub fn remark(scene: &Scene<'_>) -> Option<(String, bool)> {
         // they may be given all the same: agent and gateway do what was asked for as soon as they can
         scene.vehicle.autopilot_silence_s(scene.now_s).map(|_| format!("⚠ {NOT_HEARD}"))
     };
-    let unfit = scene.vehicle.unfit().filter(|_| is_on_ground(scene));
     let dead = (is_on_ground(scene) && scene.vehicle.is_engine_out()).then(|| NO_ENGINE.to_owned());
+    let unfit = scene.vehicle.unfit().filter(|_| is_on_ground(scene));
     let unfit = unfit.map(|why| format!("⚠ Can't be started. {why}"));
     let another = another_aboard(scene).filter(|_| can_launch(scene)).map(str::to_owned);
     let ended = ended::otherwise(scene).map(|how| format!("⚠ {how}"));

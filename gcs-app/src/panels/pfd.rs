@@ -3,7 +3,7 @@
 mod attitude;
 mod tape;
 
-use super::Scene;
+use super::{Scene, age_as_heard, value_with_age};
 use crate::state::Aged;
 use crate::theme::{self, Palette};
 use crate::units::{self, Unit};
@@ -13,7 +13,7 @@ use tape::Side;
 /// Of the display, points.
 pub const HEIGHT: f32 = 204.0;
 /// Of a lower one nothing is read.
-const LEAST_HEIGHT: f32 = 130.0;
+pub const LEAST_HEIGHT: f32 = 130.0;
 
 /// Of the height above the ground at the foot of the altitude's tape, points.
 const AGL: f32 = 20.0;
@@ -54,6 +54,18 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, room: f32) {
     }
     let told = heading(&painter, middle, level.map(|a| a.heading_deg));
     wind(&painter, middle, told, scene, level.map(|a| a.heading_deg));
+}
+
+/// What it shows, in a row.
+pub fn numbers(ui: &mut Ui, scene: &Scene<'_>) {
+    let (u, vehicle) = (scene.units(), scene.vehicle);
+    let speed = vehicle.air.as_ref().map(|air| format!("TAS {}", u.speed().show(air.value.airspeed_mps)));
+    let altitude = vehicle.position.as_ref();
+    let altitude = altitude.map(|at| format!("{} AMSL", u.altitude().show(at.value.altitude_amsl_m)));
+    let heading = vehicle.attitude.as_ref();
+    let heading = heading.map(|attitude| format!("HDG {}", units::bearing(attitude.value.heading_deg)));
+    let text = [speed, altitude, heading].into_iter().flatten().collect::<Vec<_>>().join(" · ");
+    value_with_age(ui, "Flies", &text, age_as_heard(&vehicle.position, scene));
 }
 
 /// The value, if it is still to be believed.

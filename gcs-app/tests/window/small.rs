@@ -37,6 +37,8 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
             assert!(rect.bottom() < bottom, "{size}: {text} is at {rect}, the panel ends at {bottom}");
         }
         assert!(!window.shows("Coverage of the whole path"), "{size}");
+        let numbers = rect(&window, "500 m AMSL");
+        assert!(numbers.bottom() < bottom, "{size}: what the display has no room for is at {numbers}");
         window.click("What if");
         assert!(window.shows("Coverage of the whole path"), "{size}: it was asked for");
     }
