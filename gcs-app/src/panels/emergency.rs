@@ -29,7 +29,11 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             Some(flown) => (RichText::new(sentence(scene, flown)).strong(), on(fill)),
             None => match led_otherwise(scene) {
                 Some(how) => (RichText::new(format!("⚠ {how}")), p.caution),
-                None => (RichText::new(as_planned(scene)), p.weak),
+                None => {
+                    let silence_s = scene.vehicle.autopilot_silence_s(scene.now_s);
+                    let old = silence_s.map(|s| format!(" · last heard {} ago", units::age(s)));
+                    (RichText::new(format!("{}{}", as_planned(scene), old.unwrap_or_default())), p.weak)
+                }
             },
         };
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -42,7 +42,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, room: f32) {
     );
     let altitude = live(&scene.vehicle.position, scene.now_s).map(|v| v.altitude_amsl_m);
     let unit = scene.units().altitude();
-    let agl_m = scene.vehicle.watch.agl_m;
+    let agl_m = scene.vehicle.watch.agl_m.filter(|_| altitude.is_some());
     // the tape ends above what stands at its foot
     let foot = if agl_m.is_some() { AGL } else { 0.0 };
     let above = painter.with_clip_rect(rect.with_max_y(right.bottom() - foot));

@@ -83,7 +83,10 @@ impl Watch {
     pub fn look(&mut self, sight: Sight<'_>, terrain: &dyn Terrain, now_s: f64) {
         let position = sight.position.filter(|p| p.position.is_valid() && p.altitude_amsl_m.is_finite());
         let above = |p: &Position| Some(p.altitude_amsl_m - terrain.elevation_m(p.position)?);
-        self.agl_m = position.as_ref().and_then(above);
+        // the last one is shown as old, as all that was heard
+        if let Some(position) = &position {
+            self.agl_m = above(position);
+        }
         if position.is_none() || sight.state.is_none() {
             self.altitude.unknown(now_s);
             self.ground.unknown(now_s);
@@ -336,6 +339,10 @@ mod tests {
             }
         }
         let mut watch = Watch::default();
+        look(&mut watch, 500.0, &ahead(1, 500.0), &Hill, 0.0);
+        let known = watch.agl_m;
+        watch.look(Sight { position: None, ahead: None, state: None }, &Hill, 1.0);
+        assert!(known.is_some() && watch.agl_m == known, "the last one, as old as it is");
         for now_s in [0.0, 100.0] {
             assert!(look(&mut watch, 500.0, &ahead(1, 500.0), &Unknown, now_s).is_empty());
         }

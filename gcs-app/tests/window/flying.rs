@@ -372,6 +372,7 @@ fn what_a_silent_autopilot_said_looks_as_old_as_it_is_and_its_commands_say_that_
     silent(&mut window, 12.0);
     let rows = window.harness.query_all_by_label_contains("12 s old").count();
     assert!(rows >= 3, "leg, next and off track, and {rows} of all rows");
+    assert!(window.shows("Flying circuit ▸ side2 · last heard 12 s ago"));
     for text in ["circuit ▸ side2", "0.8 km", state] {
         assert_eq!(window.colour_of(text), Some(p.weak), "{text}");
     }
@@ -569,9 +570,9 @@ fn every_command_keeps_its_place_in_every_state_and_none_comes_where_another_was
             }
         }
         assert!(places.len() >= COMMANDS.len() - 1, "{places:?}");
-        let in_flight = &COMMANDS[..4];
         let rows: BTreeSet<i32> = places.values().map(|place| place.top() as i32).collect();
         assert_eq!(rows.len(), 1, "one row at {size}: {places:?}");
+        let in_flight = &COMMANDS[..4];
         for (one, other) in places.iter().zip(places.iter().skip(1)) {
             let both_in_flight = in_flight.contains(&one.0.as_str()) || in_flight.contains(&other.0.as_str());
             assert!(!both_in_flight || !one.1.intersects(*other.1), "{one:?} {other:?}");
@@ -590,7 +591,6 @@ const COMMANDS: [&str; 7] = [
     "Leave Safe mode",
 ];
 
-/// It was red and could be held for a second, to be refused then.
 /// The alarm went at touch-down, and the start was offered without a word.
 #[test]
 fn who_may_start_is_told_that_the_engine_has_failed() {
@@ -618,6 +618,7 @@ fn a_landing_that_nothing_follows_is_not_skipped() {
     assert!(window.shows("The landing is the last leg of the flight: there is nothing to skip to"));
 }
 
+/// It was red and could be held for a second, to be refused then.
 #[test]
 fn no_emergency_can_be_flown_where_no_alternate_is_in_force_and_it_says_so() {
     let (mut window, mut value) = flying();

@@ -4,7 +4,7 @@ use super::{Axes, draw_band, draw_ground, thinned};
 use crate::forecast::{Forecast, Point, Underway};
 use crate::panels::{Scene, answer, emergency};
 use crate::theme::{self, Palette};
-use egui::{Painter, Pos2, Shape, Stroke, Ui, pos2, vec2};
+use egui::{Color32, Painter, Pos2, Shape, Stroke, Ui, pos2, vec2};
 use flight_exec::Phase;
 use geometry::LatLon;
 use usal::contract::GatewayState;
@@ -99,7 +99,10 @@ pub fn aircraft(painter: &Painter, axes: &Axes, time_s: f64, scene: &Scene<'_>, 
     let Some(position) = &scene.vehicle.position else { return };
     let at = pos2(axes.x(time_s), axes.y(position.value.altitude_amsl_m));
     let shape = [vec2(7.0, 0.0), vec2(-5.0, -5.0), vec2(-5.0, 5.0)].map(|d| at + d);
-    painter.add(Shape::convex_polygon(shape.to_vec(), p.active, Stroke::new(1.5, p.halo)));
+    // as on the map: it is not known to be there now
+    let is_old = position.is_expired(scene.now_s) || scene.vehicle.autopilot_silence_s(scene.now_s).is_some();
+    let (fill, edge) = if is_old { (Color32::TRANSPARENT, p.text) } else { (p.active, p.halo) };
+    painter.add(Shape::convex_polygon(shape.to_vec(), fill, Stroke::new(1.5, edge)));
 }
 
 /// That the preview is not what is flown, until the way that is was told.
