@@ -347,7 +347,9 @@ impl<'a> Scene<'a> {
     /// The path of the plan aboard, where it is flown while another plan is shown, or one is proposed.
     pub fn path_aboard(&self) -> Option<&'a Forecast> {
         let shown = self.analysis.hash_of(self.document.version());
-        let is_another = self.vehicle.is_airborne() && self.vehicle.active_hash().as_deref() != shown;
+        // what an agent before this one had aboard is compared with nothing
+        let active = self.vehicle.active_hash()?;
+        let is_another = self.vehicle.is_airborne() && Some(&*active) != shown;
         self.aboard.filter(|_| is_another || self.vehicle.proposal.is_some())
     }
     /// The way out after the alarm that is raised, as soon as one is known.

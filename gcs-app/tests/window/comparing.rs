@@ -40,6 +40,8 @@ fn proposal_shows_old_and_new_path_with_their_names_and_changes_in_words() {
     assert!(of_both.0 > of_one_plan.0 + 20, "the plan aboard, dash by dash: {of_both:?} {of_one_plan:?}");
     assert!(of_both.1 > of_one_plan.1 / 2, "and this plan: {of_both:?} {of_one_plan:?}");
     assert_ne!(window.app().path_aboard().unwrap().points, window.app().analysis().forecast.points);
+    window.receive_status(status(Phase::Idle));
+    assert!(!window.shows("on the map: the plan aboard"), "another agent, with nothing aboard");
     window.click("Keep as draft");
     assert!(!shows_paths(&window));
 }
