@@ -62,7 +62,9 @@ impl App {
             }
             DocumentCommand::BringHome { runway, outwards, from } => {
                 match self.bring_home(&runway, &outwards, from) {
-                    Ok(texts) => texts.into_iter().for_each(|text| self.toasts.add(now_s, Level::Info, text)),
+                    Ok(texts) => {
+                        texts.into_iter().for_each(|text| self.toasts.add(now_s, Level::Caution, text));
+                    }
                     refused => self.tell(refused.map(drop)),
                 }
             }

@@ -83,6 +83,7 @@ fn an_emergency_plan_shows_the_way_into_it_from_the_selected_leg_while_it_is_dra
         let (now, other) = (ends(&window), 1 - number);
         assert!(now[number] > before[number] && now[other] == before[other], "{leg}: {before:?} {now:?}");
     }
+    assert!(window.shows("Escape gives it up"), "no undo brings the places back");
     window.press(Key::Escape);
     window.press(Key::Escape);
     assert_eq!(ends(&window), before);

@@ -120,7 +120,7 @@ impl Tool for DrawEmergency {
             }
             None => "Emergency plan: click the runway it leads to. Esc ends it.".into(),
             Some(runway) => format!(
-                "Emergency plan to {runway}: click its places from there outwards, it is flown inwards. Enter or a double click ends it; without places it comes straight home.{}",
+                "Emergency plan to {runway}: click its places from there outwards, it is flown inwards. Enter or a double click ends it, Escape gives it up; without places it comes straight home.{}",
                 self.way_in(scene)
             ),
         })
