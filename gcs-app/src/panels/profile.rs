@@ -95,6 +95,7 @@ fn plot(ui: &mut Ui, scene: &Scene<'_>, profile: &mut Profile, queue: &mut Queue
     }
     draw_preview(ui, &painter, &axes, columns.refresh(&axes, scene), scene, p);
     levels.run(ui, &painter, &axes, scene, queue);
+    draw_cursor(&painter, &axes, scene, p);
     if let Some(pointer) =
         response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())
     {
@@ -145,7 +146,6 @@ fn draw_preview(ui: &Ui, painter: &Painter, axes: &Axes, seen: &[Point], scene: 
     draw_stages(ui, painter, axes, scene, p);
     draw_ground(painter, axes, seen, p);
     draw_path(painter, axes, seen, scene, p);
-    draw_cursor(painter, axes, scene, p);
     if scene.vehicle.outlook.is_elsewhere() && flown::told(scene).is_none() {
         flown::warn(ui, painter, axes);
     }

@@ -4,7 +4,7 @@
 use super::super::Scene;
 use crate::command::Queue;
 use crate::theme;
-use egui::{Button, Pos2, Response, RichText, Ui};
+use egui::{Button, Pos2, RectAlign, Response, RichText, Tooltip, Ui};
 use flight_plan::{Edit, FlightPlan, Problem, diff};
 
 /// So many changes of a remedy are told before it is made.
@@ -71,7 +71,11 @@ impl Remedies {
         let colour = if is_read { ui.visuals().text_color() } else { theme::of(ui).weak };
         let button = ui.add(Button::new(RichText::new(text).color(colour)).small().truncate());
         self.rest_on(ui, &button, what);
-        let button = button.on_hover_ui(|ui| {
+        // beside the list: whoever decides reads the problem, too
+        let row = button.rect.with_max_x(ui.max_rect().right());
+        let mut tip = Tooltip::for_enabled(&button);
+        tip.popup = tip.popup.anchor(row).align(RectAlign::RIGHT_END);
+        tip.show(|ui| {
             about.lines().for_each(|about| drop(ui.label(about)));
             told(ui, scene.document.plan(), fix);
         });
