@@ -97,7 +97,7 @@ pub fn draw(sheet: &Sheet<'_>) {
     let text = if expired {
         format!("last seen {} ago", units::age(position.age_s(scene.now_s)))
     } else {
-        format!("{} AMSL · {}", u.altitude().show(v.altitude_amsl_m), u.speed().show(v.ground_speed_mps))
+        format!("{} AMSL · GS {}", u.altitude().show(v.altitude_amsl_m), u.speed().show(v.ground_speed_mps))
     };
     sheet.names.borrow_mut().keep_clear(Rect::from_center_size(at, Vec2::splat(COVERED)));
     let (rank, spots) = (Rank::Aircraft, names::corners(at, vec2(12.0, 9.0)));
