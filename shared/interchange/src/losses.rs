@@ -86,7 +86,7 @@ fn places(export: &Export<'_>, kept: Kept, notes: &mut Notes) {
     }
     if !kept.runways {
         for runway in &plan.runways {
-            notes.push("runway-not-carried", runway.id.as_str(), left_out(runway));
+            notes.push("runway-not-carried", runway.id.as_str(), lost_of(runway));
         }
     }
     if !kept.speeds && !export.steps.is_empty() {
@@ -103,7 +103,7 @@ fn places(export: &Export<'_>, kept: Kept, notes: &mut Notes) {
     }
 }
 
-fn left_out(runway: &Runway) -> &'static str {
+fn lost_of(runway: &Runway) -> &'static str {
     match runway.approach_entry {
         Some(_) => "heading, length, priority and approach entry of this runway are left out",
         None => "heading, length and priority of this runway are left out",
