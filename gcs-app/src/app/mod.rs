@@ -26,7 +26,7 @@ pub(crate) use orders::plan_label;
 pub use screenshot::Screenshot;
 pub use window::{Options, WindowError, has_display, run};
 
-use crate::actions::{Fittings, PanelEntry};
+use crate::actions::{Action, Fittings, PanelEntry};
 use crate::command::{Queue, Replacement};
 use crate::connections::Connections;
 use crate::dock::Dock;
@@ -37,7 +37,7 @@ use crate::layers::Layers;
 use crate::link::Links;
 use crate::map::MapState;
 use crate::panels::help::Help;
-use crate::panels::palette::CommandPalette;
+use crate::panels::palette::{self, CommandPalette};
 use crate::panels::{self, Elevations, Panel, Scene, ViewState, field, inspector, tree};
 use crate::recent::Recent;
 use crate::recovery::Keeper;
@@ -260,6 +260,11 @@ impl App {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.view.unsaved = Some(Replacement::Quit);
         }
+    }
+
+    /// All that the palette can offer, at this time of the window, seconds, and of the day.
+    pub fn offered(&self, window_s: f64, utc: jiff::Timestamp) -> Vec<Action> {
+        palette::everything(&self.scene(Now { window_s, utc }), &self.fittings())
     }
 
     /// Something would be lost with the window: changes, or the sight of a flight.

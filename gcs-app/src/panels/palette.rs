@@ -178,18 +178,25 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     if query.trim_end() == bindings::QUERY.trim_end() && !bindings.is_empty() {
         return bindings;
     }
-    actions.extend(alternates::of(scene));
-    actions.extend(bindings);
-    actions.extend(offers::of(scene));
-    actions.extend(flight::of(scene));
-    actions.extend(flight::connect_to(query, scene));
-    actions.extend(answers::of(scene));
-    actions.extend(places::of(scene.document));
+    actions.extend(of_the_moment(query, scene));
     let mut scored: Vec<(Score, Action)> =
         actions.into_iter().filter_map(|action| Some((score(query, &action)?, action))).collect();
     // what was meant before what happens to have the letters; then what is possible before what is not
     scored.sort_by_key(|(score, action)| (!score.is_whole, action.command.is_err(), Reverse(*score)));
     scored.into_iter().take(MOST).map(|(_, action)| action).collect()
+}
+
+/// What there is to be done with what is selected, flown and asked now, and the places of the plan.
+fn of_the_moment(query: &str, scene: &Scene<'_>) -> Vec<Action> {
+    let connect = flight::connect_to(query, scene).into_iter().collect();
+    let plan = [alternates::of(scene), bindings::of(scene), offers::of(scene)].concat();
+    [plan, flight::of(scene), connect, answers::of(scene), places::of(scene.document)].concat()
+}
+
+/// All that one query or another finds.
+pub fn everything(scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
+    let with_address = format!("{}10.0.0.2:7447", flight::QUERY);
+    [all(scene, fittings), of_the_moment(&with_address, scene)].concat()
 }
 
 /// By its name here, or another word for it.

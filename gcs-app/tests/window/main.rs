@@ -35,6 +35,7 @@ mod lines;
 mod looks;
 mod maps;
 mod naming;
+mod offered;
 mod offering;
 mod painted;
 mod palette;
