@@ -51,12 +51,13 @@ fn main() {
     let heads = ["mean", "longest", "promised", "in all"];
     let [mean, longest, promised, in_all] = heads.map(|head| format!("{head:>9}"));
     println!("{:<40} {mean} {longest} {promised} {:>12} {in_all}", "processor time of a frame", "naive/ours");
-    let parts: [(&str, Part); 6] = [
+    let parts: [(&str, Part); 7] = [
         ("legs", |verdicts| plan_of(500, 500, 100_000, [8.0, 4.0, 4.0], verdicts)),
         ("many", |verdicts| plan_of(LEGS, 0, LEGS, [16.0; 3], verdicts)),
         ("million", million_points),
         ("rows", rows),
         ("work", at_work),
+        ("replace", replaced),
         ("idle", idle),
     ];
     let mut verdicts = Verdicts::default();
@@ -333,10 +334,7 @@ fn at_work(verdicts: &mut Verdicts) {
     let times: Vec<Duration> = (0..4 * FRAMES)
         .map(|i| {
             window.hover_at(from + 20.0 * Vec2::angled(i as f32 * 0.2));
-            let begun = Instant::now();
-            window.step();
-            tessellated(&window);
-            begun.elapsed()
+            on_the_wall(&mut window)
         })
         .collect();
     assert!(!window.state().analysis().reviewed, "it is still being looked at");
@@ -347,6 +345,45 @@ fn at_work(verdicts: &mut Verdicts) {
     let longest_ms = ms(times.iter().copied().max().unwrap_or_default());
     let verdict = verdicts.of("the longest frame at work, ms", longest_ms, LONGEST_MS);
     println!("  {:<38} {} {LONGEST_MS:>6.0} ms {verdict}", "pan", told(&times));
+}
+
+/// A plan of tens of megabytes takes the place of the one that is shown, and that its place again: on the wall, too.
+fn replaced(verdicts: &mut Verdicts) {
+    const MANY: usize = 100_000;
+    const SAID: &str = r#"<TF altitude="320" altitudeReference="agl" speed="21.5" name="As it was agreed upon with the owners of the
+        fields below, who want to be told a day before, and with those of the wood behind" "#;
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("room on the disk");
+        path
+    };
+    let large = plan(MANY, 0).replace("<TF ", SAID);
+    println!("a plan of {MANY} legs and {} MB takes the place of another, on the wall", large.len() >> 20);
+    let (large, small) = (file("large.xml", &large), file("small.xml", &plan(TRACKS, 0)));
+    let mut window = open(&plan(1_000, 0));
+    for (what, path) in [("until it is there, and on", large), ("and a small one its", small)] {
+        let before = window.state().document().version();
+        window.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+        let mut times = Vec::new();
+        let deadline = Instant::now() + Duration::from_secs(300);
+        let mut after = 0;
+        while after < 2 * FRAMES {
+            assert!(Instant::now() < deadline, "it was not opened");
+            times.push(on_the_wall(&mut window));
+            after += usize::from(window.state().document().version() != before);
+        }
+        let longest_ms = ms(times.iter().copied().max().unwrap_or_default());
+        let verdict = verdicts.of(&format!("the longest frame {what}, ms"), longest_ms, LONGEST_MS);
+        println!("  {what:<38} {} {LONGEST_MS:>6.0} ms {verdict}", told(&times));
+    }
+}
+
+fn on_the_wall(window: &mut Harness<'_, App>) -> Duration {
+    let begun = Instant::now();
+    window.step();
+    tessellated(window);
+    begun.elapsed()
 }
 
 /// An idle window draws nothing: nobody asks for another frame, but the clock for one at each full minute.
