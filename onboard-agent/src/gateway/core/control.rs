@@ -273,10 +273,16 @@ impl Gateway {
         })
     }
 
+    /// It is ours on its way along the waypoints. In a pilot's hands it may fly its list, too: until it is seen that this one is ours, nothing
+    /// on the way is ordered.
+    fn flies_ours(&self) -> bool {
+        self.state != GatewayState::Manual && self.flies_waypoints()
+    }
+
     fn steer_speed(&mut self, out: &mut Vec<Output>) {
         let wanted = match self.buffer.current() {
             Some(w)
-                if self.flies_waypoints()
+                if self.flies_ours()
                     && !matches!(w.action, Action::TakeOff { .. } | Action::Land { .. }) =>
             {
                 w.airspeed_mps
@@ -303,7 +309,7 @@ impl Gateway {
         let Some(place) = self.place_now() else { return };
         let reached = place.distance_m(waypoint.position) < LOITER_REACHED * radius_m.abs();
         if reached
-            && self.flies_waypoints()
+            && self.flies_ours()
             && let Some(order) = self.buffer.leave()
         {
             self.order(order, out);

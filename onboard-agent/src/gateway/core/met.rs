@@ -117,7 +117,9 @@ impl Gateway {
         }
         let mut waypoints = std::mem::take(&mut self.control.adopting);
         let known = self.adopting.take();
-        let given_back = |intent: &Intent| *intent == Intent::Nothing && self.flies_waypoints();
+        let was_theirs = self.state == GatewayState::Manual;
+        let given_back =
+            |intent: &Intent| self.flies_waypoints() && (was_theirs || *intent == Intent::Nothing);
         let intent = known.as_ref().map(|k| k.intent).filter(|i| !given_back(i)).unwrap_or(Intent::Fly);
         self.knows_plan(known.as_ref());
         if let Some(count) = aboard {

@@ -95,6 +95,27 @@ fn one_that_does_not_do_what_is_wanted_is_in_the_state_of_what_it_does() {
     }
 }
 
+/// It took so long to read that it counts as a pilot's. Whatever was wanted of it before: he flies its list, and gives it back with that.
+#[test]
+fn one_whose_list_is_read_late_is_ordered_nothing_before_it_is_seen_to_fly_what_is_ours() {
+    for intent in [Intent::Fly, Intent::Hold] {
+        let mut known = Core::in_nav().gateway.snapshot();
+        (known.intent, known.mode) = (intent, Some("Waypoints".into()));
+        let count = known.waypoints.len();
+        let mut core = Core::started_anew(Some(known));
+        core.run(62, &flying(25.0, 25.0));
+        assert_eq!(core.gateway.state(), GatewayState::Manual);
+        let adopt = adoption(&core);
+        core.out.clear();
+        core.step(Input::Report(Report::Adopted(adopt, Some(count))));
+        let orders: Vec<Order> = core.orders().into_iter().map(|(_, order)| order).collect();
+        assert!(orders.iter().all(|order| matches!(order, Order::HandsOff(_))), "{intent:?}: {orders:?}");
+        core.step(Input::Report(Report::Course(course(true))));
+        assert_eq!(core.gateway.state(), GatewayState::Nav, "{intent:?}");
+        assert!(core.was_ordered(&Order::Speed(25.0)) && !was_steered(&core), "{intent:?}");
+    }
+}
+
 /// A second restart, while the list was not read yet or the pilot flew, knew nothing.
 #[test]
 fn what_is_remembered_of_a_flight_is_kept_until_it_is_known_what_became_of_it() {
