@@ -79,6 +79,9 @@ impl Manager {
     /// The gateway's state, as it publishes it.
     pub fn gateway_status(&mut self, now: Time, status: &GatewayStatus, out: &mut Vec<Effect>) {
         let controlled = self.gateway_session.is_controlled();
+        if let Some(autopilot) = &status.autopilot {
+            self.landing_deg = autopilot.landing_deg.filter(|degrees| degrees.is_finite());
+        }
         self.gateway_session.armed(status.armed);
         self.gateway_session.state(now, status.state);
         if !controlled && self.gateway_session.is_controlled() {

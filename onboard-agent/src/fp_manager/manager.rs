@@ -71,6 +71,8 @@ pub struct Manager {
     pub(super) turns: u64,
     /// The time of day when it was received last, seconds since 1970.
     day: Option<(Time, i64)>,
+    /// The steepest landing that the autopilot takes, degrees, as the gateway said last.
+    pub(super) landing_deg: Option<f64>,
     /// As recorded last.
     pub(super) noted: ManagerState,
     pub(super) replies: VecDeque<Reply>,
@@ -96,6 +98,7 @@ impl Manager {
             last_request: 0,
             turns: 0,
             day: None,
+            landing_deg: None,
             noted: ManagerState::default(),
             replies: VecDeque::new(),
             returning: false,
@@ -123,7 +126,7 @@ impl Manager {
         self.gateway_session.gateway()
     }
 
-    /// The wind as it is measured (calm, as long as nothing is known), the air, and the time of day.
+    /// The wind as it is measured (calm, as long as nothing is known), the air, the time of day, and what the autopilot takes.
     pub fn conditions(&self, now: Time) -> Conditions {
         let state = self.aircraft.state(self.alarms.engine_is_out());
         let wind =
@@ -131,7 +134,8 @@ impl Manager {
         let since_s = |then| now.saturating_sub(then).as_secs();
         let start_unix_s = self.day.map(|(then, unix_s)| unix_s.saturating_add_unsigned(since_s(then)));
         let isa_deviation_c = self.aircraft.isa_deviation_c();
-        Conditions { wind, start_unix_s, isa_deviation_c, ..Conditions::default() }
+        let landing_deg = self.landing_deg;
+        Conditions { wind, start_unix_s, isa_deviation_c, landing_deg, ..Conditions::default() }
     }
 
     /// The time of day, seconds since 1970-01-01T00:00:00Z, as the satellites give it.

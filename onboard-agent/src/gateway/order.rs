@@ -186,12 +186,14 @@ pub enum Report {
 }
 
 /// A kind of autopilot that can be flown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kind {
     /// What people call it.
     pub name: &'static str,
     /// Under which name its habits in flight are known ([`aircraft::Autopilot`]); `None`: they are not.
     pub habits: Option<&'static str>,
+    /// The steepest landing that it takes in its list, degrees; `None`: it has no such limit, or does not tell it.
+    pub landing_deg: Option<f64>,
 }
 
 /// How far the autopilot is with the waypoints that were fed.

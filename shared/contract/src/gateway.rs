@@ -73,13 +73,16 @@ pub struct GatewayStatus {
 }
 
 /// A kind of autopilot.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AutopilotKind {
     /// What people call it.
     pub name: String,
     /// Under which name a preview knows its habits in flight, as `legwork preview --autopilot` takes it; `None`: they are not known.
     #[serde(default)]
     pub habits: Option<String>,
+    /// The steepest landing that it takes in its list, degrees; `None`: it has no such limit, or has not told it.
+    #[serde(default)]
+    pub landing_deg: Option<f64>,
 }
 
 /// Gateway variable `navigation`.

@@ -190,6 +190,30 @@ fn a_landing_that_is_too_steep_is_told_with_how_high_the_leg_before_may_end() {
     }
 }
 
+/// The final begins 55 m above the threshold and is 4.5° steep, or from 75 m 6.1°; the check grants 10 m.
+#[test]
+fn how_steep_a_landing_may_be_is_what_the_autopilot_takes_as_soon_as_it_has_told_that() {
+    let at = LatLon::new(36.31, -84.19).destination(270.0, 1200.0);
+    let told = |gate_m: f64, landing_deg: Option<f64>| {
+        let legs = format!(
+            r#"<TF id="c" fix="C"/><DF id="far" lat="36.31" lon="-84.25"/><TF id="gate" lat="{}" lon="{}" altitude="{gate_m}" altitudeReference="amsl"/>"#,
+            at.lat_deg, at.lon_deg
+        );
+        let conditions = Conditions { landing_deg, ..Conditions::default() };
+        let problems = found_over(&document("", &legs), Arc::new(Flat(300.0)), conditions);
+        problems.into_iter().find(|p| p.code == "landing-too-steep").map(|p| p.message)
+    };
+    let flatter = told(435.0, Some(3.0)).unwrap();
+    assert!(
+        flatter.starts_with("set the autopilot to take a steeper landing (PX4's `FW_LND_ANG`): "),
+        "{flatter}"
+    );
+    assert!(flatter.contains("this autopilot flies at most 3.0°"), "{flatter}");
+    let steeper = told(460.0, Some(5.0)).unwrap();
+    assert!(steeper.starts_with("end `gate` at ") && steeper.contains("at most 5.0°"), "{steeper}");
+    assert_eq!([told(460.0, Some(8.0)), told(435.0, Some(5.0))], [None, None]);
+}
+
 /// A pass takes some 25 minutes.
 #[test]
 fn a_loop_that_ends_at_a_time_says_how_late_that_may_be() {

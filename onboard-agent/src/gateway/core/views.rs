@@ -4,7 +4,7 @@ use super::buffer::CAPACITY;
 use super::off_path::right_of_way_m;
 use super::telemetry::Telemetry;
 use super::{Gateway, seconds};
-use crate::gateway::order::Time;
+use crate::gateway::order::{Kind, Time};
 use geometry::{LatLon, LocalFrame};
 use usal::Instance;
 use usal::contract::{AutopilotKind, GatewayState, GatewayStatus, Navigation, Token};
@@ -60,7 +60,8 @@ impl Gateway {
 
     fn kind(&self) -> Option<AutopilotKind> {
         let kind = self.control.capability.as_ref()?.as_ref().ok()?;
-        Some(AutopilotKind { name: kind.name.to_owned(), habits: kind.habits.map(str::to_owned) })
+        let Kind { name, habits, landing_deg } = *kind;
+        Some(AutopilotKind { name: name.to_owned(), habits: habits.map(str::to_owned), landing_deg })
     }
 
     /// The variable `navigation`.

@@ -89,6 +89,8 @@ pub struct Conditions {
     /// The autopilot of a flight that is foreseen holds indicated airspeeds, in air that is so much warmer than the standard's, °C;
     /// `None`: true ones, as in reviews.
     pub isa_deviation_c: Option<f64>,
+    /// The steepest landing that the autopilot takes, degrees; `None`: it has not told that.
+    pub landing_deg: Option<f64>,
 }
 
 /// What is kept in reserve.

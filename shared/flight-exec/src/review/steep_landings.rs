@@ -10,7 +10,8 @@ use super::layout::LaidOut;
 use crate::api::Action;
 use flight_plan::{Edit, Problem};
 
-/// Steepest final approach, degrees: PX4, as it is delivered (`FW_LND_ANG`), flies no mission with a steeper one.
+/// Steepest final approach where the autopilot has not told it, degrees: PX4, as it is delivered (`FW_LND_ANG`), flies no mission with a
+/// steeper one.
 const STEEPEST_DEG: f64 = 5.0;
 /// So much higher it may begin, metres: the aircraft turns before it reaches a waypoint.
 const TOLERANCE_M: f64 = 10.0;
@@ -18,8 +19,12 @@ const TOLERANCE_M: f64 = 10.0;
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let finals = view.flights.all().filter_map(|flown| Some((flown, Final::of(view, flown)?)));
     problems.extend(
-        finals.filter(|(_, last)| last.is_too_steep()).map(|(flown, last)| last.problem(view, flown)),
+        finals.filter(|(_, last)| last.is_too_steep(view)).map(|(flown, last)| last.problem(view, flown)),
     );
+}
+
+fn steepest_deg(view: &View) -> f64 {
+    view.conditions.landing_deg.unwrap_or(STEEPEST_DEG)
 }
 
 /// The last part of a landing, as it is flown.
@@ -57,9 +62,19 @@ impl<'a> Final<'a> {
         })
     }
 
-    fn is_too_steep(&self) -> bool {
-        let granted_m = self.length_m * STEEPEST_DEG.to_radians().tan();
-        self.height_m > granted_m.min(self.descent_m) + TOLERANCE_M
+    fn is_too_steep(&self, view: &View) -> bool {
+        self.height_m > self.granted_m(view).min(self.descent_m) + TOLERANCE_M
+    }
+
+    /// So high it may begin for the autopilot.
+    fn granted_m(&self, view: &View) -> f64 {
+        self.length_m * steepest_deg(view).to_radians().tan()
+    }
+
+    /// It is laid out more steeply than the autopilot is set to take: no leg before it changes that.
+    fn is_beyond_autopilot(&self, view: &View) -> bool {
+        let laid_out_m = self.begins.wanted_amsl_m - self.touch_down.waypoint.altitude_amsl_m;
+        laid_out_m > self.granted_m(view)
     }
 
     /// The highest that the leg before it may end, whole metres AMSL: from there the final begins on its slope.
@@ -76,16 +91,23 @@ impl<'a> Final<'a> {
     }
 
     fn problem(&self, view: &View, flown: &Flown) -> Problem {
-        let highest_m = self.highest_amsl_m(view);
+        let highest_m = self.highest_amsl_m(view).filter(|_| !self.is_beyond_autopilot(view));
         let lower = highest_m.zip(self.before).map_or_else(String::new, |(highest_m, (before, _))| {
             format!("end `{}` at {highest_m:.0} m AMSL at most, or ", before.waypoint.leg)
         });
+        let remedy = match self.is_beyond_autopilot(view) {
+            true => "set the autopilot to take a steeper landing (PX4's `FW_LND_ANG`)".to_owned(),
+            false => format!("{lower}put an `HA` before this landing"),
+        };
         let degrees = |height_m: f64| (height_m / self.length_m.max(1.0)).atan().to_degrees();
+        let who =
+            if view.conditions.landing_deg.is_some() { "this autopilot flies" } else { "autopilots fly" };
         let message = format!(
-            "{lower}put an `HA` before this landing: its final approach begins {:.0} m above the threshold, {:.0} m before it, and is {:.1}° steep; autopilots fly at most {STEEPEST_DEG:.1}°, the aircraft {:.1}°",
+            "{remedy}: its final approach begins {:.0} m above the threshold, {:.0} m before it, and is {:.1}° steep; {who} at most {:.1}°, the aircraft {:.1}°",
             self.height_m,
             self.length_m,
             degrees(self.height_m),
+            steepest_deg(view),
             degrees(self.descent_m),
         );
         // its own numbers are told beside it: what is steeper than the aircraft's most is no mere warning

@@ -19,12 +19,12 @@ use mavlink::dialects::ardupilotmega::{MavAutopilot, MavType, WIND_DATA};
 
 /// ArduPlane, a fixed wing.
 pub const DIALECT: Dialect = Dialect {
-    kind: Kind { name: "ArduPlane", habits: Some("arduplane") },
+    kind: Kind { name: "ArduPlane", habits: Some("arduplane"), landing_deg: None },
     is: |beat| {
         beat.autopilot == MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA
             && beat.mavtype == MavType::MAV_TYPE_FIXED_WING
     },
-    feeding: |chain| Box::new(window::Window::new(chain)),
+    feeding: |chain, _| Box::new(window::Window::new(chain)),
     rules: &RULES,
     entries: items::entries,
     decode: items::decode,
@@ -39,6 +39,7 @@ pub const DIALECT: Dialect = Dialect {
     speed_repeats: 0,
     flown: [4, 7],
     need: None,
+    landing_limit: None,
     advice: &ADVICE,
     manner: Manner {
         we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER,

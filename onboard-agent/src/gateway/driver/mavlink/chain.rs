@@ -24,6 +24,11 @@ impl Chain {
         Self { entries: waypoints.into(), first, left_behind: false, passed: None }
     }
 
+    /// All of it that is left to fly.
+    pub fn into_waypoints(self) -> Vec<Fed> {
+        self.entries.into()
+    }
+
     /// Position being steered to.
     pub fn first(&self) -> u64 {
         self.first

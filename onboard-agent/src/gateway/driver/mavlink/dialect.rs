@@ -20,8 +20,8 @@ pub struct Dialect {
     pub kind: Kind,
     /// This is one.
     pub is: fn(&HEARTBEAT_DATA) -> bool,
-    /// How its list is kept.
-    pub feeding: fn(Chain) -> Box<dyn Feeding>,
+    /// How its list is kept; and the steepest landing that it takes, degrees, if it says that.
+    pub feeding: fn(Chain, Option<f64>) -> Box<dyn Feeding>,
     /// How it deals with its list.
     pub rules: &'static Rules,
     /// The messages for entries from a number on.
@@ -50,6 +50,8 @@ pub struct Dialect {
     pub flown: [u8; 2],
     /// The parameter that decides whether it can be flown.
     pub need: Option<&'static Need>,
+    /// The parameter that says how steep a landing may be in its list, degrees; `None`: it takes any.
+    pub landing_limit: Option<&'static str>,
     /// Parameters that should be so before it is flown.
     pub advice: &'static [Advice],
     /// How it is spoken to.

@@ -17,7 +17,7 @@ use super::dialect::Dialect;
 use super::examine::Looked;
 use super::list::{Change, List, Step};
 use super::mission::Outcome;
-use super::parameters::Needed;
+use super::parameters::Asked;
 use super::session::{self, Session, SessionEvent};
 use crate::gateway::order::{Aim, Kind, Mode, Order, OrderId, Report, Time};
 use autopilot_link::Outbox;
@@ -61,7 +61,9 @@ pub struct MavlinkDriver {
     session: Session,
     list: List,
     known: Option<Known>,
-    needed: Needed,
+    needed: Asked,
+    /// How steep a landing it takes.
+    landing_limit: Asked,
     /// What was last said of whether it can be flown.
     told: Option<Result<Kind, String>>,
     seen: Option<Seen>,
@@ -161,14 +163,11 @@ impl MavlinkDriver {
         match event {
             SessionEvent::Heartbeat(beat) => {
                 self.on_heartbeat(now, &beat, more);
-                self.check_parameter(now);
+                self.ask_parameters(now);
             }
             SessionEvent::Mode(mode) => self.on_summary(now, mode, more),
             SessionEvent::Parameter(value) => {
-                if let Some(need) = self.dialect().and_then(|dialect| dialect.need) {
-                    self.needed.said(need, &value);
-                }
-                self.judge();
+                self.hear_parameter(&value);
             }
             SessionEvent::Current(seq) => {
                 self.reports.push_back(Report::Alive);

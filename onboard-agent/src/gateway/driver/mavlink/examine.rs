@@ -9,7 +9,7 @@ use super::super::{DIALECTS, FromLink, Setup};
 use super::Peer;
 use super::dialect::Dialect;
 use super::links::Received;
-use super::parameters::Needed;
+use super::parameters::Asked;
 use super::session::Session;
 use crate::gateway::order::Time;
 use autopilot_link::Outbox;
@@ -56,7 +56,7 @@ pub struct Looked {
     session: Session,
     heard: Option<(Time, HEARTBEAT_DATA)>,
     dialect: Option<&'static Dialect>,
-    needed: Needed,
+    needed: Asked,
     advised: BTreeMap<&'static str, f64>,
     version: Option<u32>,
     gps: Option<(GpsFixType, u8)>,
@@ -100,7 +100,7 @@ impl Looked {
     fn on_parameter(&mut self, message: &PARAM_VALUE_DATA) {
         let Some(dialect) = self.dialect else { return };
         if let Some(need) = dialect.need {
-            self.needed.said(need, message);
+            self.needed.said(need.name, message);
         }
         let advice = dialect.advice.iter().find(|advice| message.param_id.to_str() == Ok(advice.name));
         if let Some(advice) = advice {
@@ -133,7 +133,7 @@ impl Looked {
         }
         let Some(dialect) = self.dialect else { return };
         if let Some(need) = dialect.need {
-            self.needed.tick(now, need, peer, out);
+            self.needed.tick(now, need.name, |value| need.is_met(value), peer, out);
         }
         let missing = dialect.advice.iter().filter(|advice| !self.advised.contains_key(advice.name));
         out.extend(missing.map(|advice| {
@@ -182,7 +182,7 @@ impl Examination for Looked {
     fn is_complete(&self, now: Time) -> bool {
         let Some((since, _)) = &self.heard else { return false };
         let undecided =
-            |dialect: &Dialect| dialect.need.is_some_and(|need| self.needed.verdict(need).is_none());
+            |dialect: &Dialect| dialect.need.is_some_and(|need| need.verdict(&self.needed).is_none());
         match self.dialect {
             None => true,
             Some(dialect) => now >= *since + LOOK && (!undecided(dialect) || now >= *since + 3 * LOOK),

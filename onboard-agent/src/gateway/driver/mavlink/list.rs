@@ -99,7 +99,7 @@ pub enum Step {
 /// The list. See the module's text.
 #[derive(Debug, Default)]
 pub struct List {
-    /// Once it is known which kind of autopilot it is.
+    /// Once it is known which kind of autopilot it is, and what it takes.
     window: Option<Box<dyn Feeding>>,
     /// What was fed before.
     early: Chain,
@@ -130,9 +130,10 @@ impl List {
         }
     }
 
-    /// It is known how this autopilot's list is kept.
-    pub fn keep(&mut self, window: fn(Chain) -> Box<dyn Feeding>) {
-        self.window = Some(window(std::mem::take(&mut self.early)));
+    /// It is known how this autopilot's list is kept, and how steep a landing it takes, degrees: from then on it is, by what was told first.
+    pub fn keep(&mut self, window: fn(Chain, Option<f64>) -> Box<dyn Feeding>, landing_deg: Option<f64>) {
+        let early = &mut self.early;
+        self.window.get_or_insert_with(|| window(std::mem::take(early), landing_deg));
     }
 
     /// Leave a loiter for the waypoint after it.
@@ -195,7 +196,7 @@ impl List {
 
     /// What is to be done next, if anything, and nothing is being done.
     pub fn next(&mut self, now: Time) -> Option<Step> {
-        if self.task.is_some() || self.retry_at.is_some_and(|at| now < at) {
+        if self.task.is_some() || self.window.is_none() || self.retry_at.is_some_and(|at| now < at) {
             return None;
         }
         self.retry_at = None;

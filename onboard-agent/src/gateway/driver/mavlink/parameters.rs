@@ -1,4 +1,4 @@
-//! Parameters of an autopilot without which our flying is not possible: asked for, never changed.
+//! Parameters of an autopilot that our flying depends on: asked for, never changed.
 
 use super::Peer;
 use crate::gateway::order::Time;
@@ -10,7 +10,7 @@ const ASK_AGAIN: Duration = Duration::from_secs(1);
 /// Firmware that has not answered so often has no such parameter.
 const MOST_ASKED: u32 = 15;
 
-/// What a parameter has to be.
+/// What a parameter has to be for our flying to be possible.
 #[derive(Debug)]
 pub struct Need {
     /// Its name.
@@ -21,55 +21,79 @@ pub struct Need {
     pub otherwise: &'static str,
 }
 
-/// What is known of one that is needed.
+impl Need {
+    /// It is as it has to be.
+    pub fn is_met(&self, value: f64) -> bool {
+        value == f64::from(self.wanted)
+    }
+
+    /// Whether it can be flown; `None`: not known yet.
+    pub fn verdict(&self, asked: &Asked) -> Option<Result<(), String>> {
+        match asked.value {
+            Some(value) if self.is_met(value) => Some(Ok(())),
+            Some(value) => Some(Err(format!(
+                "The autopilot's parameter {} is {value}: {}. Set it to {}.",
+                self.name, self.otherwise, self.wanted
+            ))),
+            None => asked.is_settled().then_some(Ok(())),
+        }
+    }
+}
+
+/// A parameter that is asked for, and what was told of it.
 #[derive(Debug, Clone, Default)]
-pub struct Needed {
-    value: Option<i32>,
-    asked: u32,
+pub struct Asked {
+    value: Option<f64>,
+    count: u32,
     ask_at: Time,
 }
 
-impl Needed {
-    /// Asks for it, as long as that helps.
-    pub fn tick(&mut self, now: Time, need: &Need, peer: Peer, out: &mut Vec<MavMessage>) {
-        let settled = self.value == Some(need.wanted) || (self.value.is_none() && self.asked >= MOST_ASKED);
-        if settled || now < self.ask_at {
+impl Asked {
+    /// Asks for it, until it is as it has to be, or there is none.
+    pub fn tick(
+        &mut self,
+        now: Time,
+        name: &str,
+        is_good: impl Fn(f64) -> bool,
+        peer: Peer,
+        out: &mut Vec<MavMessage>,
+    ) {
+        let is_over = self.value.map_or(self.is_settled(), is_good);
+        if is_over || now < self.ask_at {
             return;
         }
-        self.asked += 1;
+        self.count += 1;
         self.ask_at = now + ASK_AGAIN;
         out.push(MavMessage::PARAM_REQUEST_READ(PARAM_REQUEST_READ_DATA {
             param_index: -1,
             target_system: peer.system,
             target_component: peer.component,
-            param_id: need.name.into(),
+            param_id: name.into(),
         }));
     }
 
     /// The autopilot says a parameter.
-    pub fn said(&mut self, need: &Need, message: &PARAM_VALUE_DATA) {
-        if message.param_id.to_str() == Ok(need.name) {
-            self.value = Some(whole(message));
+    pub fn said(&mut self, name: &str, message: &PARAM_VALUE_DATA) {
+        if message.param_id.to_str() == Ok(name) {
+            self.value = Some(number(message));
         }
     }
 
-    /// Whether it can be flown; `None`: not known yet.
-    pub fn verdict(&self, need: &Need) -> Option<Result<(), String>> {
-        match self.value {
-            Some(value) if value == need.wanted => Some(Ok(())),
-            Some(value) => Some(Err(format!(
-                "The autopilot's parameter {} is {value}: {}. Set it to {}.",
-                need.name, need.otherwise, need.wanted
-            ))),
-            None => (self.asked >= MOST_ASKED).then_some(Ok(())),
-        }
+    /// Its value, if it was told.
+    pub fn value(&self) -> Option<f64> {
+        self.value
+    }
+
+    /// It was told, or this firmware has none.
+    pub fn is_settled(&self) -> bool {
+        self.value.is_some() || self.count >= MOST_ASKED
     }
 }
 
 /// Whole numbers come as their bits, or as a number.
-fn whole(message: &PARAM_VALUE_DATA) -> i32 {
+fn number(message: &PARAM_VALUE_DATA) -> f64 {
     match message.param_type {
-        MavParamType::MAV_PARAM_TYPE_REAL32 => message.param_value.round() as i32,
-        _ => message.param_value.to_bits() as i32,
+        MavParamType::MAV_PARAM_TYPE_REAL32 => message.param_value.into(),
+        _ => (message.param_value.to_bits() as i32).into(),
     }
 }

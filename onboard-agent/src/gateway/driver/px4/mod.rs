@@ -23,9 +23,9 @@ use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType, WI
 
 /// PX4 on a fixed wing.
 pub const FIXED_WING: Dialect = Dialect {
-    kind: Kind { name: "PX4 fixed wing", habits: Some("px4") },
+    kind: Kind { name: "PX4 fixed wing", habits: Some("px4"), landing_deg: None },
     is: |beat| is_px4(beat) && beat.mavtype == MavType::MAV_TYPE_FIXED_WING,
-    feeding: |chain| Box::new(window::Window::new(chain)),
+    feeding: |chain, landing_deg| Box::new(window::Window::new(chain, landing_deg)),
     rules: &RULES,
     entries: |start, list, peer| entries(start, list, peer, TakeOff::Rolling),
     decode: item::decode,
@@ -42,6 +42,7 @@ pub const FIXED_WING: Dialect = Dialect {
     speed_repeats: 2,
     flown: [1, 18],
     need: Some(&NO_LANDING_NEEDED),
+    landing_limit: Some(LANDING_LIMIT),
     advice: &ADVICE,
     // it tells its reasons only where it hears a ground station
     manner: Manner {
@@ -53,7 +54,7 @@ pub const FIXED_WING: Dialect = Dialect {
 
 /// PX4 on a VTOL: it rises, and then flies as a wing.
 pub const VTOL: Dialect = Dialect {
-    kind: Kind { name: "PX4 VTOL, flown as a wing", habits: Some("px4") },
+    kind: Kind { name: "PX4 VTOL, flown as a wing", habits: Some("px4"), landing_deg: None },
     is: |beat| is_px4(beat) && VTOLS.contains(&beat.mavtype),
     entries: |start, list, peer| entries(start, list, peer, TakeOff::Vertical),
     ..FIXED_WING
@@ -77,7 +78,10 @@ const NO_LANDING_NEEDED: Need = Need {
     otherwise: "PX4 then refuses a list without a landing, and so every list of a longer flight",
 };
 
-const ADVICE: [Advice; 6] = [
+/// Steepest landing of a list, degrees above the place of the touch-down.
+const LANDING_LIMIT: &str = "FW_LND_ANG";
+
+const ADVICE: [Advice; 7] = [
     Advice::needed(
         "COM_DISARM_LAND",
         |seconds| seconds > 0.0,
@@ -108,6 +112,12 @@ const ADVICE: [Advice; 6] = [
         "NAV_FW_ALT_RAD",
         |metres| metres >= 10.0,
         "it circles at each waypoint until its altitude is as near as that: set it to 10",
+    ),
+    Advice::better(
+        LANDING_LIMIT,
+        |degrees| degrees >= 5.0,
+        "plans are laid out for landings of up to 5°, and a steeper one than it is set to gets a waypoint close in from which it comes down \
+         flatly: set it to 5",
     ),
 ];
 

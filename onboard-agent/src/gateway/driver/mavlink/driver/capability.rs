@@ -3,16 +3,32 @@
 use super::super::super::DIALECTS;
 use super::{Known, MavlinkDriver};
 use crate::gateway::order::{Kind, Report, Time};
-use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType};
+use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType, PARAM_VALUE_DATA};
 
 impl MavlinkDriver {
-    /// At each heartbeat, as long as it is not as it has to be.
-    pub(super) fn check_parameter(&mut self, now: Time) {
-        let need = self.dialect().and_then(|dialect| dialect.need);
-        if let (Some(need), Some(peer)) = (need, self.session.peer()) {
-            self.needed.tick(now, need, peer, &mut self.session.out);
-            self.judge();
+    /// At each heartbeat, as long as one is not known, or not as it has to be.
+    pub(super) fn ask_parameters(&mut self, now: Time) {
+        let (Some(dialect), Some(peer)) = (self.dialect(), self.session.peer()) else { return };
+        let out = &mut self.session.out;
+        if let Some(need) = dialect.need {
+            self.needed.tick(now, need.name, |value| need.is_met(value), peer, out);
         }
+        if let Some(name) = dialect.landing_limit {
+            self.landing_limit.tick(now, name, |_| true, peer, out);
+        }
+        self.judge();
+    }
+
+    /// It says a parameter.
+    pub(super) fn hear_parameter(&mut self, value: &PARAM_VALUE_DATA) {
+        let Some(dialect) = self.dialect() else { return };
+        if let Some(need) = dialect.need {
+            self.needed.said(need.name, value);
+        }
+        if let Some(name) = dialect.landing_limit {
+            self.landing_limit.said(name, value);
+        }
+        self.judge();
     }
 
     /// The first heartbeat says what it is; it stays that.
@@ -22,7 +38,6 @@ impl MavlinkDriver {
             None => {
                 let dialect = DIALECTS.iter().copied().find(|dialect| (dialect.is)(beat));
                 if let Some(dialect) = dialect {
-                    self.list.keep(dialect.feeding);
                     self.session.manner = dialect.manner;
                 }
                 self.list.supported = dialect.is_some();
@@ -48,9 +63,14 @@ impl MavlinkDriver {
                 self.tell(Err(unsupported(kind)))
             };
         };
-        let verdict = dialect.need.map_or(Some(Ok(())), |need| self.needed.verdict(need));
+        if dialect.landing_limit.is_some() && !self.landing_limit.is_settled() {
+            return;
+        }
+        let landing_deg = self.landing_limit.value();
+        self.list.keep(dialect.feeding, landing_deg);
+        let verdict = dialect.need.map_or(Some(Ok(())), |need| need.verdict(&self.needed));
         if let Some(verdict) = verdict {
-            self.tell(verdict.map(|()| dialect.kind));
+            self.tell(verdict.map(|()| Kind { landing_deg, ..dialect.kind }));
         }
     }
 

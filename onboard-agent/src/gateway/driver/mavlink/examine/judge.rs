@@ -87,7 +87,7 @@ fn place(beat: &HEARTBEAT_DATA) -> Finding {
 
 fn needed(looked: &Looked) -> Option<Finding> {
     let need = looked.dialect?.need?;
-    Some(match looked.needed.verdict(need) {
+    Some(match need.verdict(&looked.needed) {
         Some(Ok(())) => {
             ok("parameters", format!("{} is {}, or this version has none", need.name, need.wanted))
         }

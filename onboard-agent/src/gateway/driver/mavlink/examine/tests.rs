@@ -140,6 +140,7 @@ fn what_takes_the_aircraft_from_the_plan_or_off_its_path_is_told_with_what_to_do
         (Px4, "FW_T_CLMB_R_SP", 3.0, 6.0, Degree::Note, "in cruise"),
         (Px4, "FW_T_SINK_R_SP", 2.0, 4.0, Degree::Note, "in cruise"),
         (Px4, "NAV_FW_ALT_RAD", 1.0, 10.0, Degree::Note, "set it to 10"),
+        (Px4, "FW_LND_ANG", 3.0, 8.0, Degree::Note, "set it to 5"),
     ] {
         let told = said_of(personality, name, bad);
         assert!(matches!(&told[..], [(of, says)] if *of == degree && says.contains(remedy)), "{told:?}");

@@ -46,6 +46,8 @@ pub struct Px4 {
     pub uses: u32,
     /// What its lists need to have.
     pub required: i32,
+    /// `FW_LND_ANG`.
+    pub landing_deg: f32,
     pub speeds: Vec<f32>,
     /// Places that it was sent to; `None`: hold here.
     pub sent_to: Vec<Option<(i32, i32)>>,
@@ -57,7 +59,7 @@ pub struct Px4 {
 
 impl Px4 {
     pub fn new() -> Self {
-        Self { kind: MavType::MAV_TYPE_FIXED_WING, main: 1, ..Self::default() }
+        Self { kind: MavType::MAV_TYPE_FIXED_WING, main: 1, landing_deg: 5.0, ..Self::default() }
     }
 
     fn name(&self) -> u32 {
@@ -143,6 +145,15 @@ impl Px4 {
     pub fn receive(&mut self, message: &MavMessage) {
         match message {
             MavMessage::HEARTBEAT(beat) => self.hears_station |= beat.mavtype == MavType::MAV_TYPE_GCS,
+            MavMessage::PARAM_REQUEST_READ(r) if r.param_id.to_str() == Ok("FW_LND_ANG") => {
+                let value = PARAM_VALUE_DATA {
+                    param_value: self.landing_deg,
+                    param_id: r.param_id,
+                    param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
+                    ..PARAM_VALUE_DATA::DEFAULT
+                };
+                self.out.push(MavMessage::PARAM_VALUE(value));
+            }
             MavMessage::PARAM_REQUEST_READ(r) if r.param_id.to_str() == Ok("MIS_TKO_LAND_REQ") => {
                 let value = PARAM_VALUE_DATA {
                     param_value: f32::from_bits(self.required as u32),

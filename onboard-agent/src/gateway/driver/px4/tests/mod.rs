@@ -254,7 +254,28 @@ fn a_parameter_that_forbids_our_lists_is_named_with_the_remedy_and_asked_for_aga
     assert!(why.contains("MIS_TKO_LAND_REQ is 2") && why.contains("Set it to 0"), "{why}");
     rig.px4.required = 0;
     rig.run(5);
-    assert_eq!(rig.capability(), Some(Ok(FIXED_WING.kind)));
+    assert_eq!(rig.capability(), Some(Ok(Kind { landing_deg: Some(5.0), ..FIXED_WING.kind })));
+}
+
+/// It would refuse the list, and then nobody steers: nothing is written before the limit is known. The landing is 3.7° steep.
+#[test]
+fn a_landing_is_written_by_the_limit_that_px4_says_although_the_waypoints_were_there_before() {
+    for (landing_deg, items) in [(5.0, 4), (3.0, 5)] {
+        let mut rig = Rig::new();
+        rig.px4.landing_deg = landing_deg;
+        let mut plan = waypoints(1, 3);
+        let [.., gate, land] = &mut plan[..] else { panic!() };
+        land.waypoint.action = Action::Land { heading_deg: 0.0 };
+        let way_m = gate.waypoint.position.distance_m(land.waypoint.position);
+        gate.waypoint.altitude_amsl_m = land.waypoint.altitude_amsl_m + way_m * 3.7_f64.to_radians().tan();
+        rig.feed(0, plan);
+        rig.pass = Box::new(|_, m| !matches!(m, MavMessage::PARAM_REQUEST_READ(_)));
+        rig.run(5);
+        assert_eq!((rig.capability(), rig.px4.list.len()), (None, 0), "nothing is known");
+        rig.pass = Box::new(|_, _| true);
+        rig.until("ready", Rig::ready);
+        assert_eq!(rig.px4.list.len(), items, "{landing_deg}°");
+    }
 }
 
 #[test]

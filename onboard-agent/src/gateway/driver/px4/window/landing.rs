@@ -11,45 +11,68 @@ use geometry::near::distance_m;
 use geometry::{LatLon, LocalFrame, Vec2};
 use usal::contract::{Action, Waypoint};
 
-/// It refuses a list whose landing comes from more steeply than this above the place of the touch-down (its default), degrees.
-const STEEPEST_DEG: f64 = 5.0;
-/// It takes this whatever it is set to, degrees.
+/// How steep a landing may be as PX4 comes, degrees above the place of the touch-down, and the least and the most that it can be set to.
+const USUAL_DEG: f64 = 5.0;
+const LEAST_DEG: f64 = 1.0;
+const MOST_DEG: f64 = 45.0;
+/// What stands before a landing by itself is so steep, as a share of the steepest, and never more than that.
+const EASY: f64 = 0.6;
 const EASY_DEG: f64 = 3.0;
 /// What stands before a landing that is come to more steeply is so far before it, metres, and no farther than this share of the way to it.
 const CLOSE_M: f64 = 60.0;
 const CLOSE_SHARE: f64 = 0.5;
 
-/// The waypoints, with one more before each landing that PX4 would find too steep; `before`: what comes before the first of them.
-pub(super) fn with_close_ins(mut before: Option<Item>, waypoints: Vec<Fed>) -> Vec<Fed> {
-    let with_its_own = |fed: Fed| {
-        let from = before.replace(Item::of(&fed.waypoint));
-        [from.and_then(|from| close_in(&from, &fed)), Some(fed)].into_iter().flatten()
-    };
-    waypoints.into_iter().flat_map(with_its_own).collect()
+/// How steep a landing may be in a list: PX4 refuses one that is steeper, degrees.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Steepest(f64);
+
+impl Default for Steepest {
+    /// As PX4 comes.
+    fn default() -> Self {
+        Self(USUAL_DEG)
+    }
 }
 
-fn close_in(from: &Item, landing: &Fed) -> Option<Fed> {
-    let Waypoint { position, altitude_amsl_m, .. } = landing.waypoint;
-    let way_m = distance_m(from.position, position);
-    let is_steep = from.altitude_amsl_m - altitude_amsl_m > way_m * STEEPEST_DEG.to_radians().tan();
-    let is_landing = matches!(landing.waypoint.action, Action::Land { .. });
-    let is_flown = matches!(from.kind, ItemKind::Fly(_));
-    (is_landing && is_flown && is_steep && way_m > 0.0).then(|| {
-        let (position, height_m) = before_landing(position, from.position, CLOSE_M.min(CLOSE_SHARE * way_m));
-        let waypoint = Waypoint {
-            position,
-            altitude_amsl_m: altitude_amsl_m + height_m,
-            action: Action::Fly,
-            end_of_plan: false,
-            ..landing.waypoint.clone()
+impl Steepest {
+    /// As it is set, if it tells that.
+    pub(super) fn told(degrees: Option<f64>) -> Self {
+        degrees.map_or_else(Self::default, |degrees| Self(degrees.clamp(LEAST_DEG, MOST_DEG)))
+    }
+
+    /// The waypoints, with one more before each landing that PX4 would find too steep; `before`: what comes before the first of them.
+    pub(super) fn with_close_ins(self, mut before: Option<Item>, waypoints: Vec<Fed>) -> Vec<Fed> {
+        let with_its_own = |fed: Fed| {
+            let from = before.replace(Item::of(&fed.waypoint));
+            [from.and_then(|from| self.close_in(&from, &fed)), Some(fed)].into_iter().flatten()
         };
-        Fed { waypoint, ..*landing }
-    })
-}
+        waypoints.into_iter().flat_map(with_its_own).collect()
+    }
 
-/// A place so many metres before a landing, as seen from another, and its height above that.
-fn before_landing(landing: LatLon, from: LatLon, metres: f64) -> (LatLon, f64) {
-    (landing.destination(landing.bearing_deg(from), metres), metres * EASY_DEG.to_radians().tan())
+    fn close_in(self, from: &Item, landing: &Fed) -> Option<Fed> {
+        let Waypoint { position, altitude_amsl_m, .. } = landing.waypoint;
+        let way_m = distance_m(from.position, position);
+        let is_steep = from.altitude_amsl_m - altitude_amsl_m > way_m * self.0.to_radians().tan();
+        let is_landing = matches!(landing.waypoint.action, Action::Land { .. });
+        let is_flown = matches!(from.kind, ItemKind::Fly(_));
+        (is_landing && is_flown && is_steep && way_m > 0.0).then(|| {
+            let close_m = CLOSE_M.min(CLOSE_SHARE * way_m);
+            let (position, height_m) = self.before_landing(position, from.position, close_m);
+            let waypoint = Waypoint {
+                position,
+                altitude_amsl_m: altitude_amsl_m + height_m,
+                action: Action::Fly,
+                end_of_plan: false,
+                ..landing.waypoint.clone()
+            };
+            Fed { waypoint, ..*landing }
+        })
+    }
+
+    /// A place so many metres before a landing, as seen from another, and its height above that.
+    fn before_landing(self, landing: LatLon, from: LatLon, metres: f64) -> (LatLon, f64) {
+        let height_m = metres * (EASY * self.0).min(EASY_DEG).to_radians().tan();
+        (landing.destination(landing.bearing_deg(from), metres), height_m)
+    }
 }
 
 impl Window {
@@ -68,7 +91,7 @@ impl Window {
         let at = self.chain.at(landing).filter(|at| is_next && matches!(at.action, Action::Land { .. }))?;
         let from = self.fix.map(|fix| fix.position).or_else(|| Some(self.chain.before(landing)?.position))?;
         let (position, height_m) =
-            before_landing(at.position, from, distance_m(from, at.position).max(CLOSE_M));
+            self.steepest.before_landing(at.position, from, distance_m(from, at.position).max(CLOSE_M));
         Some(Item { position, altitude_amsl_m: at.altitude_amsl_m + height_m, ..ring::passing(Item::of(at)) })
     }
 

@@ -21,6 +21,7 @@ use crate::gateway::driver::mavlink::chain::Chain;
 use crate::gateway::driver::mavlink::item::{Item, ItemKind, matches};
 use crate::gateway::driver::mavlink::list::{Change, Feeding};
 use crate::gateway::order::{Fed, Fix, Serial, Target};
+use landing::Steepest;
 use ring::{RING, entry};
 
 /// Waypoints ahead of the aircraft that are put on board.
@@ -72,11 +73,13 @@ pub struct Window {
     edition: u16,
     /// Where the aircraft is.
     fix: Option<Fix>,
+    /// How steep a landing may be.
+    steepest: Steepest,
 }
 
 impl Feeding for Window {
     fn feed(&mut self, after: Serial, waypoints: Vec<Fed>) {
-        let waypoints = landing::with_close_ins(self.chain.last_up_to(after), waypoints);
+        let waypoints = self.steepest.with_close_ins(self.chain.last_up_to(after), waypoints);
         self.chain.feed(after, waypoints, self.entered);
         self.end = self.end.min(self.chain.end());
     }
@@ -88,13 +91,13 @@ impl Feeding for Window {
     }
 
     fn clear(&mut self) {
-        *self = Self::default();
+        *self = self.anew();
     }
 
     fn invalidate(&mut self) {
         // the same list again would be no news
         let edition = (self.edition + 1) % MOST_EDITIONS;
-        *self = Self { chain: std::mem::take(&mut self.chain), edition, ..Self::default() };
+        *self = Self { chain: std::mem::take(&mut self.chain), edition, ..self.anew() };
     }
 
     fn adopt(&mut self, list: &[Item], current: u16, waypoints: Vec<Fed>) -> Option<usize> {
@@ -103,7 +106,8 @@ impl Feeding for Window {
         }
         let first = u64::from(current);
         let before = current.checked_sub(1).and_then(|before| list.get(usize::from(before)).copied());
-        let (up_to, known) = ring::known_on_board(list, first, landing::with_close_ins(before, waypoints));
+        let (up_to, known) =
+            ring::known_on_board(list, first, self.steepest.with_close_ins(before, waypoints));
         *self = Self {
             lists: vec![list.to_vec()],
             installed: true,
@@ -111,7 +115,7 @@ impl Feeding for Window {
             end: first + known.len() as u64,
             farthest: first + RING - 2,
             chain: Chain::resumed(first, known),
-            ..Self::default()
+            ..self.anew()
         };
         Some(up_to)
     }
@@ -242,9 +246,16 @@ impl Feeding for Window {
 }
 
 impl Window {
-    /// A window with waypoints that were fed before the autopilot was known.
-    pub fn new(chain: Chain) -> Self {
-        Self { chain, ..Self::default() }
+    /// A window with waypoints that were fed before the autopilot was known; `landing_deg`: how steep a landing may be, if it says that.
+    pub fn new(early: Chain, landing_deg: Option<f64>) -> Self {
+        let steepest = Steepest::told(landing_deg);
+        let chain = Chain::resumed(0, steepest.with_close_ins(None, early.into_waypoints()));
+        Self { chain, steepest, ..Self::default() }
+    }
+
+    /// With nothing in it, for the same autopilot.
+    fn anew(&self) -> Self {
+        Self { steepest: self.steepest, ..Self::default() }
     }
 
     /// What it steers to for certain.

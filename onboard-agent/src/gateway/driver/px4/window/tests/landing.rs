@@ -176,9 +176,13 @@ fn on_the_steep_way(reached: usize) -> Rig {
 
 /// By PX4's rule: above the landing, and not steeper than it is set to.
 fn assert_is_taken(list: &[Item]) {
+    assert_is_taken_at(5.0, list);
+}
+
+fn assert_is_taken_at(landing_deg: f64, list: &[Item]) {
     for pair in list.windows(2).filter(|pair| pair[1].kind == ItemKind::Land) {
         let height_m = pair[0].altitude_amsl_m - pair[1].altitude_amsl_m;
-        let steepest = 5.1_f64.to_radians().tan();
+        let steepest = (landing_deg + 0.1).to_radians().tan();
         let way_m = pair[0].position.distance_m(pair[1].position);
         assert!(height_m > 0.0 && height_m < steepest * way_m, "{pair:?}");
     }
@@ -207,6 +211,39 @@ fn a_landing_that_px4_takes_has_nothing_before_it_but_what_was_fed() {
     let rig = Rig::flying(plan, steep_place);
     let [.., before, land] = &rig.autopilot.list[..] else { panic!() };
     assert_eq!((land.kind, before.position), (ItemKind::Land, steep_place(6)));
+}
+
+/// It is come to at 8°: from 45° that it takes to 1°, wherever it was set, and by a gateway that starts anew on the way.
+#[test]
+fn a_landing_is_as_steep_as_px4_is_set_to_take_it() {
+    for (told, landing_deg, has_close_in) in [
+        (Some(45.0), 45.0, false),
+        (Some(9.0), 9.0, false),
+        (Some(3.0), 3.0, true),
+        (Some(1.0), 1.0, true),
+        (Some(0.0), 1.0, true),
+        (None, 5.0, true),
+    ] {
+        let window = || Window::new(Chain::default(), told);
+        let mut rig = Rig::in_window(window(), steep(), steep_place);
+        let anew = |rig: &Rig| {
+            let Target::Waypoint(next) = rig.window.target() else { panic!("{told:?}") };
+            let left: Vec<Fed> = steep().into_iter().filter(|fed| fed.serial >= next).collect();
+            let mut anew = window();
+            assert_eq!(anew.adopt(&rig.autopilot.list, rig.autopilot.seq, left.clone()), Some(left.len()));
+            anew
+        };
+        for reached in 1..8 {
+            assert_is_taken_at(landing_deg, &rig.autopilot.list);
+            rig.reach();
+            rig.settle();
+            rig.window = anew(&rig);
+            assert!(rig.window.ready(), "{told:?}, {reached}");
+        }
+        let land = rig.autopilot.list.len() - 1;
+        let before_m = rig.autopilot.list[land - 1].position.distance_m(steep_place(7));
+        assert_eq!(before_m < 61.0, has_close_in, "{told:?}: {before_m} m");
+    }
 }
 
 /// A gateway that starts anew, wherever on the way, knows all that is aboard.

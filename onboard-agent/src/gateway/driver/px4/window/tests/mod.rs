@@ -115,8 +115,11 @@ impl Rig {
     }
 
     fn flying(plan: Vec<Fed>, place: fn(u64) -> LatLon) -> Self {
-        let (window, autopilot) = (Window::default(), Autopilot::default());
-        let mut rig = Self { window, autopilot, flying: false, place };
+        Self::in_window(Window::default(), plan, place)
+    }
+
+    fn in_window(window: Window, plan: Vec<Fed>, place: fn(u64) -> LatLon) -> Self {
+        let mut rig = Self { window, autopilot: Autopilot::default(), flying: false, place };
         rig.window.feed(ALL, plan);
         rig.settle();
         rig.flying = true;
