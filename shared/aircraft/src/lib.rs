@@ -35,6 +35,7 @@ pub mod air;
 pub mod autopilot;
 pub mod dynamics;
 pub mod glide;
+pub mod glide_in;
 pub mod power;
 pub mod profile;
 pub mod strip;

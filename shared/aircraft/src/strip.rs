@@ -1,5 +1,6 @@
 //! A runway as a strip of ground: what stands on it.
 
+use geometry::geodesy::normalise_360;
 use geometry::near::distance_and_course;
 use geometry::{LatLon, Vec2};
 
@@ -21,6 +22,24 @@ pub struct Strip {
 }
 
 impl Strip {
+    /// The same from its other end.
+    pub fn from_other_end(&self) -> Self {
+        Self {
+            threshold: self.threshold.destination(self.heading_deg, self.length_m),
+            heading_deg: normalise_360(self.heading_deg + 180.0),
+            ..*self
+        }
+    }
+
+    /// What is left of it behind a place so far from where it begins, metres.
+    pub fn from(&self, metres: f64) -> Self {
+        Self {
+            threshold: self.threshold.destination(self.heading_deg, metres),
+            length_m: self.length_m - metres,
+            ..*self
+        }
+    }
+
     /// A place as seen from the threshold, metres: along the strip and to the right of it.
     fn along_and_aside_m(&self, place: LatLon) -> Vec2 {
         let (metres, course_deg) = distance_and_course(self.threshold, place);

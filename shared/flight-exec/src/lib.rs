@@ -23,6 +23,7 @@ pub mod value;
 
 pub use api::*;
 pub use executor::{Executor, RestoreError, Snapshot};
+pub use layout::above_ground::clears_ground;
 pub use rehearse::{Preview, PreviewError, preview};
 pub use review::{
     Conditions, Margins, compile_and_review, compile_and_review_ahead, foresee, leave_zones_out,

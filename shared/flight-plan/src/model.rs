@@ -117,12 +117,8 @@ impl Runway {
 
     /// The same runway from its other end, of which only the place is known.
     pub fn from_other_end(&self) -> Self {
-        Self {
-            threshold: self.threshold.destination(self.heading_deg, self.length_m),
-            heading_deg: geometry::geodesy::normalise_360(self.heading_deg + 180.0),
-            approach_entry: None,
-            ..self.clone()
-        }
+        let aircraft::Strip { threshold, heading_deg, .. } = self.strip().from_other_end();
+        Self { threshold, heading_deg, approach_entry: None, ..self.clone() }
     }
 }
 

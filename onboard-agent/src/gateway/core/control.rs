@@ -282,8 +282,7 @@ impl Gateway {
     fn steer_speed(&mut self, out: &mut Vec<Output>) {
         let wanted = match self.buffer.current() {
             Some(w)
-                if self.flies_ours()
-                    && !matches!(w.action, Action::TakeOff { .. } | Action::Land { .. }) =>
+                if self.flies_ours() && !matches!(w.action, Action::TakeOff { .. } | Action::Land { .. }) =>
             {
                 w.airspeed_mps
             }

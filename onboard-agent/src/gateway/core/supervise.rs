@@ -285,7 +285,7 @@ impl Gateway {
         let situation = self.situation()?;
         let landing = safe::choose(&self.runways, &self.safe, &situation)?;
         let cause = format!("{} to {landing}", if situation.glides { "gliding" } else { "returning" });
-        Some((cause, safe::path(&landing, &self.safe, &situation)))
+        Some((cause, safe::path(&landing, &situation)))
     }
 
     /// It is in the air, and its engine has failed, or seems to have.

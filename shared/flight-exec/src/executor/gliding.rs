@@ -6,9 +6,10 @@
 use super::Executor;
 use crate::api::{Action, AircraftState, Event, Output};
 use crate::layout::cursor::Cursor;
-use crate::layout::homeward::{Arrival, GlideIn, Halt, halts, is_clear};
+use crate::layout::homeward::{self, GlideIn, Halt, halts, is_clear};
 use crate::layout::touch_down::TouchDown;
 use aircraft::glide::GlideStart;
+use aircraft::glide_in::Arrival;
 use flight_plan::{Id, Runway};
 use geometry::geodesy::normalise_180;
 
@@ -188,7 +189,7 @@ impl Executor {
     /// The glide from here by way of what is ahead.
     fn arrival(&self, state: &AircraftState, halts: &[Halt], runway: &Runway) -> Option<Arrival> {
         let places = halts.iter().filter_map(|halt| halt.place);
-        Arrival::of(&self.world(), state.wind(), glide_from(state), places, runway)
+        homeward::arrival(&self.world(), state.wind(), glide_from(state), places, runway)
     }
 
     /// True: that is flown now.

@@ -3,7 +3,7 @@
 //! Each module may use those above it:
 //! [`path`] and [`world`], [`expand`] (one leg), [`cursor`] (from leg to leg), [`stretch`] (waypoint after waypoint).
 
-mod above_ground;
+pub(crate) mod above_ground;
 pub mod cursor;
 pub(crate) mod elevations;
 pub mod expand;

@@ -3,8 +3,8 @@
 use super::View;
 use super::flown::Flown;
 use crate::api::Action;
-use crate::layout::homeward::ALIGNED_DEG;
 use crate::layout::path::{distance_and_course, distance_m};
+use aircraft::glide_in::ALIGNED_DEG;
 use flight_plan::{Edit, Id, Problem};
 use geometry::geodesy::normalise_180;
 use std::collections::HashSet;

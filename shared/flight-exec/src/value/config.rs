@@ -46,7 +46,7 @@ impl Default for Config {
             ask_ahead_s: 120.0,
             altitude_tolerance_m: 15.0,
             glide_slope_deg: 4.5,
-            final_approach_m: 700.0,
+            final_approach_m: aircraft::glide_in::FINAL_M,
         }
     }
 }

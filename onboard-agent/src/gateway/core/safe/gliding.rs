@@ -1,89 +1,133 @@
 //! A glide to a landing: where it leads, and the altitude that it has there. What is checked here is what is fed.
 //!
-//! The autopilot flies straight from altitude to altitude. So it is told at each place the altitude that the glide has there: led
-//! down sooner it would lack that height before the runway. What the rest of the way can't lose is lost in circles where the approach
-//! begins, and what is left of it on the way there.
+//! The way in is chosen as an emergency plan's ([`WayIn::best`]). The autopilot flies straight from altitude to altitude. So it is told at
+//! each place the altitude that the glide has there: led down sooner it would lack that height before the runway. What the rest of the way
+//! can't lose is lost in circles where the final approach begins, and what is left of it on the way there. With more height than that, and
+//! no room for a circle, it touches down farther along the runway.
 
+use super::Situation;
 use super::gates::{Circles, Gate, is_over_ground};
-use super::way::gates;
-use super::{Approach, Situation};
-use aircraft::glide::{Circle, GlidePoint, GlideStart, glide, reserve_m};
+use super::way::TOUCHDOWN;
+use aircraft::glide::{Circle, GlidePoint, GlideStart, reserve_m};
+use aircraft::glide_in::{End, FINAL_M, WayIn};
+use flight_exec::clears_ground;
+use geometry::LatLon;
 use geometry::geodesy::normalise_180;
-use usal::contract::{SafeParameters, SafeRunway};
 
 /// Least height above the ground on the way, metres.
 pub(super) const SPARE_M: f64 = 15.0;
 /// Share of the steepest descent that is counted on.
 const STEEP: f64 = 0.7;
+/// It may be landed on from these places on, as shares of a runway's length, if there is room to stop.
+const FROM: [f64; 3] = [0.0, 0.25, 0.5];
 
 /// A glide that comes to a runway, and above the ground on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Glide {
-    /// From the initial approach point, with its circles, to the last gate before the landing.
+    /// From where the final approach begins, with its circles; none: straight to the landing.
     pub gates: Vec<Gate>,
+    /// What is landed on: the runway from some place on.
+    pub end: End,
+    /// Length of the final approach, metres; `None`: it is on it.
+    pub final_m: Option<f64>,
     /// Time to the threshold without circles, seconds: these take away nothing but height that is too much.
     pub time_s: f64,
-    /// It comes there with the whole reserve, and not only with that of a short one.
+    /// It comes there with the whole reserve.
     pub keeps_reserve: bool,
+    /// It comes to the threshold with more height than it can lose.
+    is_too_high: bool,
 }
 
-/// The glide from where the aircraft is; `None`: it does not come there.
-pub(super) fn glide_in(
-    runway: &SafeRunway,
-    approach: Approach,
-    safe: &SafeParameters,
-    s: &Situation,
-) -> Option<Glide> {
-    let [initial, last] = gates(runway, approach, safe).map(|(place, _)| place);
+/// The best glide from where the aircraft is to an end of a runway; `None`: it does not come there, in line with it.
+pub(super) fn glide_in(end: End, s: &Situation) -> Option<Glide> {
+    let ends = from_there_on(end, s);
     let start =
         GlideStart { position: s.position, altitude_amsl_m: s.altitude_amsl_m, course_deg: s.track_deg };
-    let way = [initial, last, runway.threshold];
-    let points = glide(s.profile, s.wind().into(), start, &way, runway.heading_deg)?;
-    let [.., at_initial, at_last, end] = points.as_slice() else { return None };
-    let takes_m = s.altitude_amsl_m - end.altitude_amsl_m;
-    let height_m = end.altitude_amsl_m - runway.elevation_amsl_m;
-    if height_m < reserve_m(0.0) {
-        return None;
-    }
-    let told = told(runway, s, [at_initial, at_last, end]);
-    let right = normalise_180(runway.heading_deg - s.position.bearing_deg(initial)) >= 0.0;
-    let sides = [right, !right].map(|right| {
-        let altitudes = (at_initial.altitude_amsl_m, told.initial_m);
-        let circles =
-            Circles { count: told.circles, radius_m: Circle::of(s.profile, s.wind()).radius_m, right };
-        let mut gates = circles.gates(initial, runway.heading_deg, altitudes);
-        gates.push(Gate { position: last, altitude_amsl_m: told.last_m, on_arc: false });
-        gates
-    });
-    let gates = sides.into_iter().find(|gates| is_over_ground(gates, s, |_| SPARE_M))?;
-    Some(Glide { gates, time_s: end.time_s, keeps_reserve: height_m >= reserve_m(takes_m) })
+    let mut ways = WayIn::all((s.profile, s.wind()), start, &ends, FINAL_M);
+    ways.retain(WayIn::is_in_line);
+    let glide = |way: &WayIn| Glide::of(way, *ends.get(way.end)?, s);
+    let best = WayIn::best(&ways, |way| glide(way).is_some_and(|glide| !glide.is_too_high));
+    glide(best.or_else(|| WayIn::best(&ways, |way| glide(way).is_some()))?)
 }
 
-/// What it is told.
+/// The whole runway, and what is left of it from farther on.
+fn from_there_on(end: End, s: &Situation) -> Vec<End> {
+    let from = |share: f64| {
+        let strip = end.strip.from(share * end.strip.length_m);
+        let has_room = share == 0.0 || (1.0 - TOUCHDOWN) * strip.length_m >= s.profile.min_runway_m;
+        has_room.then_some(End { strip, ..end })
+    };
+    FROM.into_iter().filter_map(from).collect()
+}
+
+impl Glide {
+    /// `None`: it leads through the ground, or does not get there.
+    fn of(way: &WayIn, end: End, s: &Situation) -> Option<Self> {
+        let (over, threshold) = match (way.final_m, way.points.as_slice()) {
+            (None, [here, .., threshold]) => (here, threshold),
+            (Some(_), [.., gate, threshold]) => (gate, threshold),
+            _ => return None,
+        };
+        let told = Told::of(end.elevation_amsl_m, s, [over, threshold]);
+        let (place, course_deg) = match way.final_m {
+            Some(metres) => (end.final_begins_at(metres), end.strip.heading_deg),
+            None => (s.position, s.track_deg),
+        };
+        let right = normalise_180(course_deg - s.position.bearing_deg(place)) >= 0.0;
+        let sides = [right, !right].map(|right| {
+            let mut gates = told.circled(place, course_deg, right, s);
+            // it is there
+            let first = usize::from(way.final_m.is_none());
+            gates.split_off(first)
+        });
+        let clears = s.terrain.is_none_or(|terrain| clears_ground(terrain, &way.points));
+        let gates = sides.into_iter().find(|gates| clears && is_over_ground(gates, s, |_| SPARE_M))?;
+        Some(Self {
+            gates,
+            end,
+            final_m: way.final_m,
+            time_s: threshold.time_s,
+            keeps_reserve: way.keeps_reserve(),
+            is_too_high: told.is_too_high,
+        })
+    }
+}
+
+/// What it is told where the final approach begins.
 struct Told {
     /// So many circles first.
     circles: u32,
-    /// When the approach begins, metres AMSL.
-    initial_m: f64,
-    /// Where the final descent begins, metres AMSL.
-    last_m: f64,
+    /// What it has there before them, metres AMSL.
+    has_m: f64,
+    /// And after them.
+    begins_m: f64,
+    /// It comes to the threshold with more height than it can lose.
+    is_too_high: bool,
 }
 
-/// From each place on it keeps the reserve of the way from there.
-fn told(runway: &SafeRunway, s: &Situation, [initial, last, end]: [&GlidePoint; 3]) -> Told {
-    let (height_m, sinks_m) = (initial.altitude_amsl_m, initial.altitude_amsl_m - last.altitude_amsl_m);
-    let needed_m = |from: &GlidePoint| {
-        let takes_m = from.altitude_amsl_m - end.altitude_amsl_m;
-        runway.elevation_amsl_m + takes_m + reserve_m(takes_m)
-    };
-    let falls_m =
-        |from: &GlidePoint, to: &GlidePoint| STEEP * s.profile.max_descent_mps * (to.time_s - from.time_s);
-    let most_last_m = needed_m(last).max(runway.elevation_amsl_m + falls_m(last, end));
-    let most_initial_m = needed_m(initial).max(most_last_m + falls_m(initial, last));
-    let circle = Circle::of(s.profile, s.wind());
-    let circles = if height_m > most_initial_m { circle.most(height_m - needed_m(initial)) } else { 0 };
-    let initial_m = (height_m - f64::from(circles) * circle.height_m).min(most_initial_m);
-    Told { circles, initial_m, last_m: (initial_m - sinks_m).min(most_last_m) }
+impl Told {
+    /// From there on it keeps the reserve of the way.
+    fn of(elevation_m: f64, s: &Situation, [over, threshold]: [&GlidePoint; 2]) -> Self {
+        let (circle, has_m) = (Circle::of(s.profile, s.wind()), over.altitude_amsl_m);
+        let takes_m = over.altitude_amsl_m - threshold.altitude_amsl_m;
+        let needed_m = elevation_m + takes_m + reserve_m(takes_m);
+        let falls_m = STEEP * s.profile.max_descent_mps * (threshold.time_s - over.time_s);
+        let most_m = needed_m.max(elevation_m + falls_m);
+        let circles = if has_m > most_m { circle.most(has_m - needed_m) } else { 0 };
+        let in_circles_s = f64::from(circles) * circle.time_s;
+        let lowest_m = s.altitude_amsl_m - s.profile.max_descent_mps * (threshold.time_s + in_circles_s);
+        Self {
+            circles,
+            has_m,
+            begins_m: (has_m - f64::from(circles) * circle.height_m).min(most_m),
+            is_too_high: lowest_m > elevation_m,
+        }
+    }
+
+    fn circled(&self, at: LatLon, course_deg: f64, right: bool, s: &Situation) -> Vec<Gate> {
+        let radius_m = Circle::of(s.profile, s.wind()).radius_m;
+        Circles { count: self.circles, radius_m, right }.gates(at, course_deg, (self.has_m, self.begins_m))
+    }
 }
 
 #[cfg(test)]
@@ -92,9 +136,8 @@ mod tests {
     use super::super::{choose, path};
     use super::*;
     use aircraft::autopilot::{Action as Does, Guidance, Target};
-    use aircraft::{Aircraft, Profile, Wind};
-    use geometry::LatLon;
-    use usal::contract::{Action, Air, Waypoint};
+    use aircraft::{Aircraft, Profile, Strip, Wind};
+    use usal::contract::{Action, Air, SafeParameters, Waypoint};
 
     const LENGTH_M: f64 = 600.0;
 
@@ -159,7 +202,7 @@ mod tests {
                     ..situation(&profile)
                 };
                 let Some(landing) = choose(&runways, &SafeParameters::default(), &s) else { continue };
-                let down = comes_down(&path(&landing, &SafeParameters::default(), &s), &s);
+                let down = comes_down(&path(&landing, &s), &s);
                 let threshold = landing.runway.threshold;
                 let off_deg = threshold.bearing_deg(down) - landing.runway.heading_deg;
                 let (distance_m, off_rad) = (threshold.distance_m(down), off_deg.to_radians());
@@ -178,7 +221,8 @@ mod tests {
         let profile = Profile::default();
         let s = Situation { glides: true, altitude_amsl_m: 1522.0, ..situation(&profile) };
         let runway = runway("it", 0.0, 4.0, 0.0, 1);
-        let glide = glide_in(&runway, Approach::Whole, &SafeParameters::default(), &s).unwrap();
+        let strip = Strip { threshold: runway.threshold, heading_deg: 0.0, length_m: LENGTH_M };
+        let glide = glide_in(End { strip, elevation_amsl_m: 322.0 }, &s).unwrap();
         let has_m = 1522.0 - s.position.distance_m(glide.gates[0].position) / profile.glide_ratio;
         assert!((glide.gates[0].altitude_amsl_m - has_m).abs() < 5.0, "{glide:?}");
         assert!(glide.gates.iter().filter(|gate| gate.on_arc).count() > 16, "{glide:?}");

@@ -40,7 +40,7 @@ fn ground_that_is_not_known_is_in_nobodys_way() {
     for glides in [false, true] {
         let s = Situation { glides, altitude_amsl_m: 1200.0, terrain: Some(&Nowhere), ..situation(&profile) };
         assert_eq!(chosen(&ahead, &s).as_deref(), Some("runway ahead"));
-        let with_wind = Situation { air: blowing(0.0, 5.0), ..s };
+        let with_wind = Situation { air: blowing(0.0, 6.0), ..s };
         let way = chosen(&ahead, &with_wind).unwrap();
         assert_eq!(
             way == "runway ahead",
@@ -57,7 +57,7 @@ fn height_that_is_too_much_for_the_way_is_circled_away_before_the_approach() {
     let near = runway("near", 0.0, 1.0, 0.0, 1);
     let s = Situation { altitude_amsl_m: 1500.0, ..situation(&profile) };
     let landing = choose(std::slice::from_ref(&near), &SafeParameters::default(), &s).unwrap();
-    let way = path(&landing, &SafeParameters::default(), &s);
+    let way = path(&landing, &s);
     assert!(way.iter().filter(|w| w.on_arc).count() > 8, "{way:?}");
     assert!(way.windows(2).all(|pair| pair[1].altitude_amsl_m <= pair[0].altitude_amsl_m + 1e-6), "{way:?}");
     let high = Profile { ceiling_amsl_m: 20_000.0, ..profile.clone() };

@@ -11,6 +11,7 @@ mod way;
 
 use aircraft::{Profile, Wind};
 use flight_exec::review::plausibility::ALTITUDES_M;
+use gates::Gate;
 use geometry::LatLon;
 pub use ranking::choose;
 use terrain::Terrain;
@@ -49,21 +50,25 @@ impl Situation<'_> {
 /// A runway, and how it is come to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Landing {
-    /// As it is landed on: perhaps from its other end.
+    /// As it is landed on: perhaps from its other end, or from farther along it.
     pub runway: SafeRunway,
     /// Landed on from its other end.
     pub reversed: bool,
     /// The way in.
     pub approach: Approach,
+    /// What is flown before the landing.
+    gates: Vec<Gate>,
 }
 
 /// A way in to a runway.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Approach {
-    /// By the initial approach point and along the extended centre line.
+    /// Along the extended centre line.
     Whole,
     /// Gliding, with no height to spare for it: to a short final.
     Short,
+    /// Gliding, from where it is: that is on the final approach.
+    Straight,
 }
 
 impl std::fmt::Display for Landing {
@@ -76,6 +81,7 @@ impl std::fmt::Display for Landing {
         match self.approach {
             Approach::Whole => Ok(()),
             Approach::Short => f.write_str(" by a short final"),
+            Approach::Straight => f.write_str(", straight in"),
         }
     }
 }

@@ -4,11 +4,11 @@
 //! altitude of a far place it would climb all the way there, and come to a ridge too low. Where that slope, or the one down to the
 //! approach, leads too near to the ground, it circles up before the transit, and down where the approach begins.
 
+use super::Situation;
 use super::gates::{CORNERS, Circles, Gate, is_over_ground, turned_m};
 use super::gliding::SPARE_M;
 use super::ground::along_high;
 use super::way::{INITIAL_M, gates};
-use super::{Approach, Situation};
 use aircraft::power::demanded_power_w;
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
@@ -54,7 +54,7 @@ type InCircles = Option<bool>;
 
 /// `None`: the ground on the way is too high, or the wind too strong.
 pub(super) fn powered(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Option<Powered> {
-    let [initial, last] = gates(runway, Approach::Whole, safe);
+    let [initial, last] = gates(runway, safe);
     let needed_m = ground_to_clear_m(s, initial).unwrap_or(initial.1);
     if needed_m > s.profile.ceiling_amsl_m {
         return None;
@@ -190,7 +190,7 @@ mod tests {
         let safe = SafeParameters::default();
         let landing =
             choose(&[runway("behind", 0.0, threshold_km, 0.0, 1)], &safe, &s).expect("it can be flown over");
-        let way = path(&landing, &safe, &s);
+        let way = path(&landing, &s);
         let mut from = (s.position, altitude_amsl_m);
         let mut least_m = f64::INFINITY;
         for waypoint in &way {

@@ -5,12 +5,13 @@
 //! cost is the time for the way; a lower priority, a tailwind on landing, a short runway and the other end of
 //! one make it worse.
 
-use super::gliding::glide_in;
+use super::gliding::{Glide, glide_in};
 use super::ground::along;
 use super::powered::powered;
 use super::way::gates;
 use super::{Approach, Landing, Situation, is_usable};
-use aircraft::glide::may_land_unnamed;
+use aircraft::Strip;
+use aircraft::glide_in::{End, FINAL_M};
 use geometry::LatLon;
 use usal::contract::{SafeParameters, SafeRunway};
 
@@ -31,22 +32,52 @@ const MODEL_ERROR_M: f64 = 5.0;
 
 /// The best landing of those within reach. A glide that would come there without its whole reserve is one only if there is no other.
 pub fn choose(runways: &[SafeRunway], safe: &SafeParameters, s: &Situation) -> Option<Landing> {
-    best(runways, safe, (s, true)).or_else(|| if s.glides { best(runways, safe, (s, false)) } else { None })
+    let usable = || runways.iter().filter(|runway| is_usable(runway, s.profile));
+    let best = |ways: &mut dyn Iterator<Item = (Landing, f64)>| {
+        let ranked = ways.map(|(landing, time_s)| (cost_s(&landing, time_s, s), landing));
+        ranked.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, landing)| landing)
+    };
+    if !s.glides {
+        return best(&mut usable().flat_map(|runway| with_engine(runway, safe, s)));
+    }
+    let glides: Vec<_> = usable().flat_map(|runway| gliding(runway, s)).collect();
+    let ways = |reserve: bool| {
+        let keeps = glides.iter().filter(move |(_, glide)| glide.keeps_reserve || !reserve);
+        keeps.map(|(landing, glide)| (landing.clone(), glide.time_s))
+    };
+    best(&mut ways(true)).or_else(|| best(&mut ways(false)))
 }
 
-fn best(runways: &[SafeRunway], safe: &SafeParameters, (s, reserve): (&Situation, bool)) -> Option<Landing> {
-    let usable = runways.iter().filter(|runway| is_usable(runway, s.profile));
-    let ends = usable.flat_map(|runway| [Some((runway.clone(), false)), other_end(runway, safe, s)]);
-    let approaches: &[Approach] =
-        if s.glides { &[Approach::Whole, Approach::Short] } else { &[Approach::Whole] };
-    let in_reach = ends.flatten().filter_map(|(runway, reversed)| {
-        approaches.iter().find_map(|approach| {
-            let time_s = time_s(&runway, *approach, safe, (s, reserve))?;
-            let landing = Landing { runway: runway.clone(), reversed, approach: *approach };
-            Some((cost_s(&landing, time_s, s), landing))
-        })
-    });
-    in_reach.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, landing)| landing)
+/// The glides to the ends of a runway.
+fn gliding(runway: &SafeRunway, s: &Situation) -> impl Iterator<Item = (Landing, Glide)> {
+    let named = End { strip: strip(runway), elevation_amsl_m: runway.elevation_amsl_m };
+    let other = named.other(s.profile, s.wind(), |place| s.terrain?.elevation_m(place));
+    let ends = [(Some(named), false), (other, true)].into_iter();
+    ends.filter_map(move |(end, reversed)| {
+        let glide = glide_in(end?, s)?;
+        let approach = match glide.final_m {
+            Some(metres) if metres >= FINAL_M => Approach::Whole,
+            Some(_) => Approach::Short,
+            None => Approach::Straight,
+        };
+        let gates = glide.gates.clone();
+        Some((Landing { runway: landed_on(runway, glide.end.strip), reversed, approach, gates }, glide))
+    })
+}
+
+/// The ways to the ends of a runway that the energy lasts for.
+fn with_engine(
+    runway: &SafeRunway,
+    safe: &SafeParameters,
+    s: &Situation,
+) -> impl Iterator<Item = (Landing, f64)> {
+    let ends = [Some((runway.clone(), false)), other_end(runway, safe, s)].into_iter().flatten();
+    ends.filter_map(move |(runway, reversed)| {
+        let way = powered(&runway, safe, s)?;
+        let lasts = way.energy_j < USABLE * s.battery * s.profile.energy_j;
+        let landing = Landing { runway, reversed, approach: Approach::Whole, gates: way.gates };
+        lasts.then_some((landing, way.time_s))
+    })
 }
 
 fn cost_s(landing: &Landing, time_s: f64, s: &Situation) -> f64 {
@@ -64,22 +95,22 @@ fn tailwind_mps(s: &Situation, direction_deg: f64) -> f64 {
     s.wind().vector().dot(geometry::Vec2::from_bearing_rad(direction_deg.to_radians()))
 }
 
-/// The same runway from its other end, where the wind is better there and the ground before it is known to be low. A glide takes the end
-/// that it reaches: what it flies over is looked at there.
+fn strip(runway: &SafeRunway) -> Strip {
+    Strip { threshold: runway.threshold, heading_deg: runway.heading_deg, length_m: runway.length_m }
+}
+
+/// A runway, as it is landed on.
+fn landed_on(runway: &SafeRunway, Strip { threshold, heading_deg, length_m }: Strip) -> SafeRunway {
+    SafeRunway { threshold, heading_deg, length_m, ..runway.clone() }
+}
+
+/// With the engine: the same runway from its other end, where the wind is better there and the ground before it is known to be low.
 fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Option<(SafeRunway, bool)> {
-    if !s.glides && tailwind_mps(s, runway.heading_deg) <= 0.0 {
+    if tailwind_mps(s, runway.heading_deg) <= 0.0 {
         return None;
     }
-    let reversed = SafeRunway {
-        threshold: runway.threshold.destination(runway.heading_deg, runway.length_m),
-        heading_deg: geometry::geodesy::normalise_360(runway.heading_deg + 180.0),
-        ..runway.clone()
-    };
-    if s.glides {
-        let may_land = may_land_unnamed(s.profile, s.wind(), reversed.heading_deg);
-        return may_land.then_some((reversed, true));
-    }
-    let [initial, last] = gates(&reversed, Approach::Whole, safe);
+    let reversed = landed_on(runway, strip(runway).from_other_end());
+    let [initial, last] = gates(&reversed, safe);
     let terrain = s.terrain?;
     let is_low = |place: LatLon, height_m: f64| {
         let ground_m = terrain.elevation_m(place);
@@ -91,21 +122,6 @@ fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Optio
         && along(terrain, last.0, reversed.threshold)
             .all(|(share, place)| is_low(place, height_m * (1.0 - share)));
     is_clear.then_some((reversed, true))
-}
-
-/// Time of the way to a landing, seconds; `None`: out of reach.
-fn time_s(
-    runway: &SafeRunway,
-    approach: Approach,
-    safe: &SafeParameters,
-    (s, reserve): (&Situation, bool),
-) -> Option<f64> {
-    if s.glides {
-        let glide = glide_in(runway, approach, safe, s).filter(|glide| glide.keeps_reserve || !reserve)?;
-        return Some(glide.time_s);
-    }
-    let way = powered(runway, safe, s)?;
-    (way.energy_j < USABLE * s.battery * s.profile.energy_j).then_some(way.time_s)
 }
 
 #[cfg(test)]

@@ -1,9 +1,7 @@
 //! The waypoints to a runway.
 
 use super::gates::Gate;
-use super::gliding::glide_in;
-use super::powered::powered;
-use super::{Approach, Landing, Situation};
+use super::{Landing, Situation};
 use aircraft::Profile;
 use geometry::LatLon;
 use usal::contract::{Action, Id, SafeParameters, SafeRunway, Token, Waypoint};
@@ -12,32 +10,22 @@ use usal::contract::{Action, Id, SafeParameters, SafeRunway, Token, Waypoint};
 const GLIDE_SLOPE: f64 = 0.08;
 /// Straight and level before the final descent, metres.
 pub(super) const INITIAL_M: f64 = 700.0;
-/// Length of a short final, and of what is straight before it, metres.
-const SHORT_FINAL_M: f64 = 400.0;
-const SHORT_INITIAL_M: f64 = 100.0;
 /// Touch-down point behind the threshold, as a share of the length.
-const TOUCHDOWN: f64 = 0.15;
+pub(super) const TOUCHDOWN: f64 = 0.15;
 
-/// Where an approach begins, and where its final descent begins; each with its altitude, metres AMSL.
-pub(super) fn gates(runway: &SafeRunway, approach: Approach, safe: &SafeParameters) -> [(LatLon, f64); 2] {
-    let (final_m, initial_m) = match approach {
-        Approach::Whole => (safe.return_height_m.clamp(40.0, 500.0) / GLIDE_SLOPE, INITIAL_M),
-        Approach::Short => (SHORT_FINAL_M, SHORT_INITIAL_M),
-    };
+/// With the engine: where an approach begins, and where its final descent begins; each with its altitude, metres AMSL.
+pub(super) fn gates(runway: &SafeRunway, safe: &SafeParameters) -> [(LatLon, f64); 2] {
+    let final_m = safe.return_height_m.clamp(40.0, 500.0) / GLIDE_SLOPE;
     let back_deg = runway.heading_deg + 180.0;
     let altitude_m = runway.elevation_amsl_m + final_m * GLIDE_SLOPE;
-    [final_m + initial_m, final_m].map(|m| (runway.threshold.destination(back_deg, m), altitude_m))
+    [final_m + INITIAL_M, final_m].map(|m| (runway.threshold.destination(back_deg, m), altitude_m))
 }
 
-/// The way to a landing: over the ground on the way, down to the initial approach point, along the
-/// extended centre line, and the landing. Its tokens are 0: they are not reported.
-pub fn path(landing: &Landing, safe: &SafeParameters, s: &Situation) -> Vec<Waypoint> {
+/// The way to a landing: over the ground on the way, along the extended centre line, and the landing. Its tokens are 0: they are not
+/// reported.
+pub fn path(landing: &Landing, s: &Situation) -> Vec<Waypoint> {
     let runway = &landing.runway;
-    let gates = match s.glides {
-        true => glide_in(runway, landing.approach, safe, s).map(|glide| glide.gates),
-        false => powered(runway, safe, s).map(|way| way.gates),
-    };
-    let mut way = flown(gates.unwrap_or_default(), s);
+    let mut way = flown(&landing.gates, s);
     let touchdown = runway.threshold.destination(runway.heading_deg, TOUCHDOWN * runway.length_m);
     let landing = Action::Land { heading_deg: runway.heading_deg };
     way.push(waypoint(touchdown, runway.elevation_amsl_m, approach_speed(s.profile), landing));
@@ -45,14 +33,14 @@ pub fn path(landing: &Landing, safe: &SafeParameters, s: &Situation) -> Vec<Wayp
 }
 
 /// Slower from where the final descent begins, but without an engine at the speed of the best glide until the landing.
-fn flown(gates: Vec<Gate>, s: &Situation) -> Vec<Waypoint> {
+fn flown(gates: &[Gate], s: &Situation) -> Vec<Waypoint> {
     let last = gates.len().saturating_sub(1);
-    let fly = |(i, gate): (usize, Gate)| {
+    let fly = |(i, gate): (usize, &Gate)| {
         let slower = i == last && !s.glides;
         let mps = if slower { approach_speed(s.profile) } else { s.profile.cruise_airspeed_mps };
         Waypoint { on_arc: gate.on_arc, ..waypoint(gate.position, gate.altitude_amsl_m, mps, Action::Fly) }
     };
-    gates.into_iter().enumerate().map(fly).collect()
+    gates.iter().enumerate().map(fly).collect()
 }
 
 fn approach_speed(profile: &Profile) -> f64 {
@@ -76,6 +64,7 @@ fn waypoint(position: LatLon, altitude_amsl_m: f64, airspeed_mps: f64, action: A
 
 #[cfg(test)]
 mod tests {
+    use super::super::choose;
     use super::super::tests::{HOME, Wall, runway, situation};
     use super::*;
 
@@ -84,8 +73,7 @@ mod tests {
         let (profile, ground) = (Profile::default(), Wall(HOME.lat_deg + 0.02, 700.0));
         let runway = runway("main", 0.0, 12.0, 52.0, 1);
         let s = Situation { altitude_amsl_m: 500.0, terrain: Some(&ground), ..situation(&profile) };
-        let landing = Landing { runway, reversed: false, approach: Approach::Whole };
-        let way = path(&landing, &SafeParameters::default(), &s);
+        let way = path(&choose(&[runway], &SafeParameters::default(), &s).unwrap(), &s);
         assert!(way.iter().any(|w| w.altitude_amsl_m >= 800.0));
         let [initial, last, land] = &way[way.len() - 3..] else { panic!() };
         assert!(matches!(land.action, Action::Land { .. }) && land.end_of_plan);
@@ -100,11 +88,12 @@ mod tests {
     #[test]
     fn a_glide_to_a_short_final_has_nothing_that_is_climbed_to() {
         let profile = Profile::default();
-        let landing =
-            Landing { runway: runway("main", 0.0, 3.0, 0.0, 1), reversed: false, approach: Approach::Short };
-        let s = Situation { glides: true, ..situation(&profile) };
-        let way = path(&landing, &SafeParameters::default(), &s);
-        assert_eq!(way.len(), 3);
+        // by the whole final it would take 360 m
+        let abeam = runway("abeam", 90.0, 3.0, 0.0, 1);
+        let s = Situation { glides: true, altitude_amsl_m: 322.0 + 366.0, ..situation(&profile) };
+        let landing = choose(&[abeam], &SafeParameters::default(), &s).unwrap();
+        let way = path(&landing, &s);
+        assert_eq!(way.len(), 2, "{landing}: {way:?}");
         assert!(way.iter().all(|w| w.altitude_amsl_m < s.altitude_amsl_m));
         assert!(way[0].position.distance_m(landing.runway.threshold) < 600.0);
     }

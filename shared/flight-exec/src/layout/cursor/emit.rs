@@ -3,7 +3,7 @@
 use super::{Cursor, CursorLog, CursorPhase, Emission, Step};
 use crate::api::{Action, TERRAIN_MARGIN_M};
 use crate::layout::expand::Point;
-use crate::layout::homeward::{Arrival, halts};
+use crate::layout::homeward::{arrival, halts};
 use crate::layout::path::{PathEnd, PathState, distance_and_course};
 use crate::layout::world::World;
 use crate::value::Choice;
@@ -85,7 +85,7 @@ impl Cursor {
             let top = self.loops.first().map_or(self.index, |outermost| outermost.index);
             let ahead = halts(world, section, (self.stage, top + 1));
             let from = GlideStart { position: point.position, altitude_amsl_m: 0.0, course_deg };
-            let arrival = Arrival::of(world, wind, from, ahead.iter().filter_map(|halt| halt.place), runway)?;
+            let arrival = arrival(world, wind, from, ahead.iter().filter_map(|halt| halt.place), runway)?;
             Some(-arrival.spare_m())
         };
         needed_m().unwrap_or(f64::NEG_INFINITY)

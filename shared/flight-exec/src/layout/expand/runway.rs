@@ -4,11 +4,12 @@ use super::arc::vertices;
 use super::track::SAME_PLACE_M;
 use super::{ExpandError, Point};
 use crate::api::Action;
-use crate::layout::homeward::{ALIGNED_DEG, Arrival, GlideIn, final_begins_at, is_on_final};
+use crate::layout::homeward::{GlideIn, end_of, needed_amsl_m};
 use crate::layout::path::{Level, PathState, distance_m};
 use crate::layout::world::World;
 use aircraft::Wind;
 use aircraft::glide::{Circle, GlideStart};
+use aircraft::glide_in::ALIGNED_DEG;
 use aircraft::power::glide_sink_mps;
 use flight_plan::{AltitudeReference, Runway, Stage};
 use geometry::geodesy::{normalise_180, normalise_360};
@@ -88,11 +89,12 @@ fn gliding_in(path: &PathState, runway: &Runway, (wind, world): (Wind, &World)) 
     let from = GlideStart { position, altitude_amsl_m, course_deg: path.course_deg };
     let lands = GlideIn::of(world, wind, from, runway);
     let (runway, final_m) = (&lands.runway, world.config.final_approach_m);
+    let end = end_of(runway);
     let left_s = distance_m(position, runway.threshold) / path.last.airspeed_mps.max(1.0);
     let is_too_high = altitude_amsl_m - world.profile.max_descent_mps * left_s > runway.elevation_amsl_m;
     let mut points = if let Some(final_m) = lands.final_m {
         losing_height(on_final(runway, final_m, world), path, runway, (wind, world))
-    } else if is_too_high && is_on_final(position, final_begins_at(runway, final_m), runway) {
+    } else if is_too_high && end.is_on_final(position, end.final_begins_at(final_m)) {
         // it is there
         losing_height(Point::fly(position), path, runway, (wind, world)).split_off(1)
     } else {
@@ -113,7 +115,7 @@ fn losing_height(
 ) -> Vec<Point> {
     let (profile, mps) = (world.profile, path.last.airspeed_mps.max(1.0));
     let way_s = distance_m(path.last.position, gate.position) / mps;
-    let needed_m = Arrival::needed_amsl_m(world, wind, gate.position, runway);
+    let needed_m = needed_amsl_m(world, wind, gate.position, runway);
     let wanted_m =
         needed_m.unwrap_or(runway.elevation_amsl_m).max(gate.level.map_or(f64::NEG_INFINITY, |l| l.metres));
     let (steep_mps, glide_mps) = (profile.max_descent_mps, glide_sink_mps(profile, mps, 1.0));

@@ -1,0 +1,232 @@
+//! How a glide comes in to a runway: at which of its ends, and by how long a final approach. An emergency plan and Safe mode choose by the
+//! same rule: when the one takes over from the other, a glide does not turn round.
+
+use crate::glide::{GlidePoint, GlideStart, glide, may_land_unnamed, reserve_m};
+use crate::{Profile, Strip, Wind};
+use geometry::LatLon;
+use geometry::geodesy::normalise_180;
+use geometry::near::distance_m;
+
+/// Length of a whole final approach, metres.
+pub const FINAL_M: f64 = 700.0;
+/// Final approaches that a glide may fly, as shares of the whole one.
+const FINALS: [f64; 3] = [1.0, 0.5, 0.3];
+/// Off the runway's heading by more than this a path is not on the final approach, which then gets a point to line up at first, degrees.
+pub const ALIGNED_DEG: f64 = 30.0;
+/// The other end of a runway, of which only the place is known, may be so much higher or lower by the elevation model, metres.
+const LEVEL_M: f64 = 8.0;
+
+/// An end of a runway.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End {
+    /// Its ground, from this end on.
+    pub strip: Strip,
+    /// Metres AMSL.
+    pub elevation_amsl_m: f64,
+}
+
+impl End {
+    /// The other end, if a glide may land there and it is not known to lie higher or lower. `ground_m`: what is known of the ground at a
+    /// place, metres AMSL.
+    pub fn other(
+        &self,
+        profile: &Profile,
+        wind: Wind,
+        ground_m: impl Fn(LatLon) -> Option<f64>,
+    ) -> Option<Self> {
+        let strip = self.strip.from_other_end();
+        let is_level = |ground_m: f64| (ground_m - self.elevation_amsl_m).abs() <= LEVEL_M;
+        let fits = may_land_unnamed(profile, wind, strip.heading_deg)
+            && ground_m(strip.threshold).is_none_or(is_level);
+        fits.then_some(Self { strip, ..*self })
+    }
+
+    /// Where a final approach of a length begins.
+    pub fn final_begins_at(&self, length_m: f64) -> LatLon {
+        self.strip.threshold.destination(self.strip.heading_deg + 180.0, length_m)
+    }
+
+    /// Nearer to the threshold than where the final approach begins, and on the runway's line.
+    pub fn is_on_final(&self, here: LatLon, begins: LatLon) -> bool {
+        let Strip { threshold, heading_deg, .. } = self.strip;
+        let off_deg = normalise_180(here.bearing_deg(threshold) - heading_deg);
+        distance_m(here, threshold) <= distance_m(begins, threshold) && off_deg.abs() <= ALIGNED_DEG
+    }
+
+    /// Lengths of the final approaches that may be flown from a place, the longest first; `None`: straight, as it is on one. Nobody goes
+    /// back to where a final begins from nearer on the runway's line.
+    fn finals(&self, here: LatLon, whole_m: f64) -> impl Iterator<Item = Option<f64>> + use<> {
+        let is_there = self.is_on_final(here, self.final_begins_at(whole_m));
+        let shares = FINALS.into_iter().filter(move |_| !is_there).map(move |share| Some(share * whole_m));
+        shares.chain(is_there.then_some(None))
+    }
+}
+
+/// How a glide ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrival {
+    /// Height above the threshold there, metres; what is lacking, if it is negative.
+    pub height_m: f64,
+    /// Height that the way takes, metres.
+    pub taken_m: f64,
+}
+
+impl Arrival {
+    /// Of a glide that ends over the threshold of a runway, at this altitude, metres AMSL.
+    pub fn along(points: &[GlidePoint], elevation_amsl_m: f64) -> Option<Self> {
+        let (from, end) = (points.first()?, points.last()?);
+        Some(Self {
+            height_m: end.altitude_amsl_m - elevation_amsl_m,
+            taken_m: from.altitude_amsl_m - end.altitude_amsl_m,
+        })
+    }
+
+    /// So much more than the reserve, metres; what of it is lacking, if it is negative.
+    pub fn spare_m(&self) -> f64 {
+        self.height_m - reserve_m(self.taken_m)
+    }
+}
+
+/// A way in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WayIn {
+    /// Which of the ends it lands at.
+    pub end: usize,
+    /// By a place so far before the threshold, in line with the runway, metres. `None`: straight to the threshold.
+    pub final_m: Option<f64>,
+    /// In line with the runway at last.
+    is_in_line: bool,
+    /// From where the glide is to the threshold; empty: the wind does not let it get there.
+    pub points: Vec<GlidePoint>,
+    /// `None`: the wind does not let it get there.
+    pub arrival: Option<Arrival>,
+}
+
+impl WayIn {
+    /// All ways in to some ends of a runway, the end that is wanted most first: in line with it by longer and shorter finals, then those
+    /// straight to the threshold from wherever the glide is.
+    pub fn all((profile, wind): (&Profile, Wind), from: GlideStart, ends: &[End], whole_m: f64) -> Vec<Self> {
+        let way = |index: usize, end: &End, final_m: Option<f64>, is_in_line: bool| {
+            let gate = final_m.map(|metres| end.final_begins_at(metres));
+            let places: Vec<LatLon> = gate.into_iter().chain([end.strip.threshold]).collect();
+            let points =
+                glide(profile, wind.into(), from, &places, end.strip.heading_deg).unwrap_or_default();
+            let arrival = Arrival::along(&points, end.elevation_amsl_m);
+            Self { end: index, final_m, is_in_line, points, arrival }
+        };
+        let numbered = || ends.iter().enumerate();
+        let in_line = numbered()
+            .flat_map(|(i, end)| end.finals(from.position, whole_m).map(move |m| (i, end, m)))
+            .map(|(i, end, final_m)| way(i, end, final_m, true));
+        in_line.chain(numbered().map(|(i, end)| way(i, end, None, false))).collect()
+    }
+
+    /// The best of these that is no way through the ground: in line with the runway and with the whole reserve, else without that, else
+    /// straight.
+    pub fn best(ways: &[Self], clears: impl Fn(&Self) -> bool) -> Option<&Self> {
+        let first = |is_good: fn(&Self) -> bool| ways.iter().find(|way| is_good(way) && clears(way));
+        first(|way| way.is_in_line && way.keeps_reserve())
+            .or_else(|| first(|way| way.is_in_line && way.gets_there()))
+            .or_else(|| first(Self::gets_there))
+    }
+
+    /// Above the threshold, metres.
+    pub fn height_m(&self) -> f64 {
+        self.arrival.map_or(f64::NEG_INFINITY, |arrival| arrival.height_m)
+    }
+
+    /// The height suffices.
+    pub fn gets_there(&self) -> bool {
+        self.height_m() >= 0.0
+    }
+
+    /// With the whole reserve.
+    pub fn keeps_reserve(&self) -> bool {
+        self.arrival.is_some_and(|arrival| arrival.spare_m() >= 0.0)
+    }
+
+    /// It is in line with the runway at last.
+    pub fn is_in_line(&self) -> bool {
+        self.is_in_line
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const THRESHOLD: LatLon = LatLon::new(36.49, -84.27);
+
+    /// A runway to the north, 600 m long, at sea level.
+    fn named() -> End {
+        let strip = Strip { threshold: THRESHOLD, heading_deg: 0.0, length_m: 600.0 };
+        End { strip, elevation_amsl_m: 0.0 }
+    }
+
+    /// The ways to it from a place as seen from its threshold, towards it.
+    fn ways(bearing_deg: f64, metres: f64, altitude_amsl_m: f64, ends: &[End]) -> Vec<WayIn> {
+        let position = THRESHOLD.destination(bearing_deg, metres);
+        let from = GlideStart { position, altitude_amsl_m, course_deg: bearing_deg + 180.0 };
+        WayIn::all((&Profile::default(), Wind::CALM), from, ends, FINAL_M)
+    }
+
+    /// From the side: by the whole final it takes 200 m, by the shortest 130 m, straight 103 m; the reserve is 25 to 35 m.
+    #[test]
+    fn the_longest_final_with_the_whole_reserve_comes_first_then_one_without_it_then_straight() {
+        let final_m = |altitude_m: f64| {
+            let ways = ways(90.0, 1000.0, altitude_m, &[named()]);
+            WayIn::best(&ways, |_| true).map(|way| way.final_m.map(f64::round))
+        };
+        assert_eq!(final_m(260.0), Some(Some(700.0)));
+        assert_eq!(final_m(210.0), Some(Some(350.0)), "the whole one has no reserve");
+        assert_eq!(final_m(140.0), Some(Some(210.0)), "none has the reserve");
+        assert_eq!([final_m(110.0), final_m(80.0)], [Some(None), None]);
+    }
+
+    #[test]
+    fn a_way_that_leads_through_the_ground_is_none_and_the_named_end_comes_first() {
+        let other = named().other(&Profile::default(), Wind::CALM, |_| None).unwrap();
+        let ways = ways(90.0, 1000.0, 400.0, &[named(), other]);
+        let best = |clears: fn(&WayIn) -> bool| WayIn::best(&ways, clears).map(|way| (way.end, way.final_m));
+        assert_eq!(best(|_| true), Some((0, Some(700.0))));
+        assert_eq!(best(|way| way.final_m != Some(700.0)), Some((0, Some(350.0))));
+        assert_eq!(best(|way| way.end == 1), Some((1, Some(700.0))));
+        assert_eq!(best(|_| false), None);
+    }
+
+    #[test]
+    fn nobody_goes_back_to_where_a_final_begins_from_nearer_on_it() {
+        for (bearing_deg, metres, is_straight) in
+            [(180.0, 600.0, true), (200.0, 300.0, true), (180.0, 800.0, false)]
+        {
+            let ways = ways(bearing_deg, metres, 300.0, &[named()]);
+            let best = WayIn::best(&ways, |_| true).unwrap();
+            assert_eq!(
+                (best.final_m.is_none(), best.is_in_line()),
+                (is_straight, true),
+                "{bearing_deg}° {metres} m"
+            );
+        }
+    }
+
+    #[test]
+    fn the_other_end_is_one_where_it_is_level_and_without_much_tailwind() {
+        let other = |wind: Wind, ground_m: Option<f64>| {
+            named().other(&Profile::default(), wind, |_| ground_m).map(|end| end.strip)
+        };
+        let strip = other(Wind::CALM, Some(7.0)).unwrap();
+        assert!((strip.heading_deg - 180.0).abs() < 1e-9);
+        assert!(strip.threshold.distance_m(THRESHOLD.destination(0.0, 600.0)) < 0.1);
+        assert!(other(Wind::CALM, None).is_some() && other(Wind::CALM, Some(9.0)).is_none());
+        assert!(other(Wind::from_direction(0.0, 4.0), None).is_none());
+    }
+
+    #[test]
+    fn against_a_wind_that_is_faster_than_it_no_way_gets_there() {
+        let position = THRESHOLD.destination(180.0, 900.0);
+        let from = GlideStart { position, altitude_amsl_m: 500.0, course_deg: 0.0 };
+        let storm = Wind::from_direction(0.0, 40.0);
+        let ways = WayIn::all((&Profile::default(), storm), from, &[named()], FINAL_M);
+        assert!(ways.iter().all(|way| !way.gets_there()) && WayIn::best(&ways, |_| true).is_none());
+    }
+}
