@@ -52,7 +52,7 @@ pub fn note_losses(export: &Export<'_>, kept: Kept, whole: &dyn Fn(&Leg) -> bool
     for emergency in &plan.emergency_plans {
         let is_flown = emergency.stages.iter().flat_map(|s| &s.legs).any(|l| flown.contains(l.id.as_str()));
         if !is_flown && !kept.rally {
-            notes.push("emergency-not-carried", emergency.id.as_str(), left_out(emergency.id.as_str()));
+            notes.push("emergency-not-carried", emergency.id.as_str(), unwritten(emergency.id.as_str()));
         }
     }
     turnarounds(export, &flown, notes);
@@ -60,7 +60,7 @@ pub fn note_losses(export: &Export<'_>, kept: Kept, whole: &dyn Fn(&Leg) -> bool
 }
 
 /// What becomes of an emergency plan for which a file has no room, and what writes it.
-pub fn left_out(emergency: &str) -> String {
+pub fn unwritten(emergency: &str) -> String {
     format!(
         "this emergency plan is left out: `legwork convert --emergency {emergency}` writes it to another file"
     )

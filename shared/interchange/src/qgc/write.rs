@@ -188,7 +188,7 @@ fn rally(export: &Export<'_>, home_amsl_m: f64, notes: &mut Notes) -> Vec<Value>
                 );
                 points.push(json!([at.lat_deg, at.lon_deg, height_m]));
             }
-            None => notes.push("emergency-not-carried", id, losses::left_out(id)),
+            None => notes.push("emergency-not-carried", id, losses::unwritten(id)),
         }
     }
     points
