@@ -2,7 +2,7 @@
 
 use super::lists::waypoint;
 use super::station::{FLIGHT, Station, heartbeat, same};
-use super::{ARDUPLANE, Autopilot, BOTH, PX4, Quirk};
+use super::{ARDUPLANE, Autopilot, BOTH, PX4, Quirk, parameters};
 use MavCmd::{
     MAV_CMD_COMPONENT_ARM_DISARM as ARM_DISARM, MAV_CMD_DO_CHANGE_SPEED as CHANGE_SPEED,
     MAV_CMD_DO_REPOSITION as REPOSITION, MAV_CMD_DO_SET_MISSION_CURRENT as SET_CURRENT,
@@ -190,6 +190,28 @@ pub(super) const QUIRKS: &[Quirk] = &[
             s.shows(PX4_HOLD)?;
             let long = [-1., 1., 0., f32::NAN, lat as f32, lon as f32, f32::NAN];
             s.expect(REPOSITION, long, ACCEPTED)
+        },
+        flies: true,
+    },
+    Quirk {
+        name: "return_flies_the_landing_of_the_list",
+        of: ARDUPLANE,
+        does: "RTL with RTL_AUTOLAND 2 and `DO_LAND_START` in the list: AUTO, behind that item",
+        check: |s| {
+            let mut items = airborne(s, 3)?;
+            let last = items[4].clone();
+            let marker =
+                MISSION_ITEM_INT_DATA { command: MavCmd::MAV_CMD_DO_LAND_START, x: 0, y: 0, ..last.clone() };
+            let land =
+                MISSION_ITEM_INT_DATA { command: MavCmd::MAV_CMD_NAV_LAND, z: 0.0, ..items[2].clone() };
+            items.extend([marker, last, land]);
+            s.send_list(&items)?;
+            parameters::set(s, "RTL_AUTOLAND", 2.0, MavParamType::MAV_PARAM_TYPE_INT8)?;
+            s.expect(DO_SET_MODE, [1., RTL as f32, 0., 0., 0., 0., 0.], ACCEPTED)?;
+            let landing =
+                s.hear("the landing", |m| current_of(m).filter(|seq| *seq > 4)).and_then(|_| s.shows(AUTO));
+            parameters::set(s, "RTL_AUTOLAND", 0.0, MavParamType::MAV_PARAM_TYPE_INT8)?;
+            landing
         },
         flies: true,
     },

@@ -11,7 +11,7 @@ use mavlink::dialects::ardupilotmega::*;
 
 /// What comes of a question for a parameter.
 #[derive(Debug, PartialEq)]
-enum Told {
+pub(super) enum Told {
     Value(f32, MavParamType),
     Error(MavParamError),
 }
@@ -116,7 +116,13 @@ fn types(s: &mut Station, kind: MavParamType, names: &[&str]) -> anyhow::Result<
     Ok(())
 }
 
-fn set(s: &mut Station, name: &str, param_value: f32, param_type: MavParamType) -> anyhow::Result<Told> {
+/// Sets one, and what is told of it then.
+pub(super) fn set(
+    s: &mut Station,
+    name: &str,
+    param_value: f32,
+    param_type: MavParamType,
+) -> anyhow::Result<Told> {
     s.forget();
     s.say(&MavMessage::PARAM_SET(PARAM_SET_DATA {
         param_value,
