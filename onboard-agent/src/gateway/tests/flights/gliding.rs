@@ -78,8 +78,8 @@ fn an_engine_that_fails_on_the_way_home_makes_it_choose_again() {
 }
 
 /// Its engine fails near an end of the runway, so high above it, on its way along a course off the runway's heading.
-fn fails_near_the_end(height_m: f64, off_deg: f64) -> Flight {
-    let mut flight = Flight::new(54, &[]);
+fn fails_near_the_end(personality: Personality, height_m: f64, off_deg: f64) -> Flight {
+    let mut flight = Flight::on_ground(personality, 54, &[]);
     flight.store_runway();
     let near = HOME.destination(HEADING_DEG, 1100.0);
     let along = |m: f64| near.destination(HEADING_DEG + off_deg, m);
@@ -98,7 +98,7 @@ fn fails_near_the_end(height_m: f64, off_deg: f64) -> Flight {
 fn height_that_is_too_much_near_the_runway_is_lost_before_the_landing() {
     for height_m in [150.0, 270.0] {
         for off_deg in [0.0, 45.0, 90.0, 180.0, 240.0, 300.0] {
-            let mut flight = fails_near_the_end(height_m, off_deg);
+            let mut flight = fails_near_the_end(Personality::ArduPlane, height_m, off_deg);
             let is_out =
                 |f: &Flight| f.station.gateway().status(f.now).alarms.iter().any(|a| a.id == "engine-out");
             flight.run_until(10.0, "the engine's alarm", is_out);
@@ -107,4 +107,42 @@ fn height_that_is_too_much_near_the_runway_is_lost_before_the_landing() {
             assert_on_runway(&flight, HOME);
         }
     }
+}
+
+/// Its engine fails 81 m above the runway, 500 m beyond an end of it, and Safe mode takes over. Whether it then says that it glides to one.
+fn falls_low(personality: Personality, off_deg: f64) -> (Flight, bool) {
+    let mut flight = fails_near_the_end(personality, 81.0, off_deg);
+    let is_out =
+        |f: &Flight| f.station.gateway().status(f.now).alarms.iter().any(|a| a.id.starts_with("engine-"));
+    flight.run_until(30.0, "the engine's alarm", is_out);
+    flight.ask(GatewayRequest::Safe).unwrap();
+    flight.run_until(900.0, "down", |f| f.state() == GatewayState::Stop);
+    let promises = |(_, event): &(f64, GatewayEvent)| matches!(event, GatewayEvent::StateChanged { cause, .. } if cause.starts_with("gliding to runway"));
+    let is_promised = flight.events.iter().any(promises);
+    (flight, is_promised)
+}
+
+/// On these courses off the runway's heading it lands on the runway, and says so before.
+fn lands_from_low(personality: Personality) -> Vec<f64> {
+    let lands = |off_deg: &f64| {
+        let (flight, is_promised) = falls_low(personality, *off_deg);
+        if is_promised {
+            assert_on_runway(&flight, HOME);
+        }
+        is_promised
+    };
+    [0.0, 45.0, 90.0, 180.0, 240.0, 300.0].into_iter().filter(lands).collect()
+}
+
+/// There is no height for a circle, and towards the runway too much for its end: it crossed the whole runway, or came down beside it, as
+/// none was within reach. Straight away from it a turn takes too much, and nothing is promised.
+#[test]
+fn low_beyond_the_end_of_the_runway_a_glide_lands_on_it_wherever_that_is() {
+    assert_eq!(lands_from_low(Personality::ArduPlane), [45.0, 90.0, 180.0, 240.0, 300.0]);
+}
+
+/// It tells no rpm: that its engine has failed is known some seconds later.
+#[test]
+fn px4_lands_on_the_runway_wherever_low_beyond_its_end_that_was_promised() {
+    assert!(lands_from_low(Personality::Px4).contains(&180.0));
 }
