@@ -16,17 +16,17 @@ impl Executor {
         let program = self.flying_program()?;
         self.check_taken_off()?;
         self.flight.emergencies.check_escalation(cause)?;
-        let from_leg = self.flight.emergencies.leg_of_main_plan(|| self.main_leg());
+        let (from_leg, is_named) =
+            (self.flight.emergencies.leg_of_main_plan(|| self.main_leg()), plan.is_some());
         let found = emergencies::resolve(&program, cause, plan.as_ref(), from_leg.as_ref())?;
         let Some((index, plan)) = found else {
             out.push(Output::Event(Event::EmergencyUnanswered { cause }));
             let reason = "no emergency plan applies here: the gateway's Safe mode decides, or name a plan";
             return Err(refusal("no-emergency-plan", reason));
         };
-        if self.is_blocked_by_ground(index) {
+        if let Err(refused) = self.check_glide(index, is_named) {
             out.push(Output::Event(Event::EmergencyUnanswered { cause }));
-            let reason = "each glide to its runway that the height suffices for leads into the ground: the gateway's Safe mode decides";
-            return Err(refusal("glide-into-terrain", reason));
+            return Err(refused);
         }
         self.switch_to(index, Emergency { cause, plan, from_leg }, out);
         Ok(())

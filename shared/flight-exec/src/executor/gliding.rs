@@ -1,10 +1,11 @@
 //! The engine is out, and an emergency plan is flown: as much of it as the height allows. Where it does not suffice for the rest of the
 //! plan, what lies between is left out; a holding is left when the way home from there takes what is left. A way that leads into the
-//! ground is none; where the height suffices for no other, the gateway's Safe mode decides. Where it is more than the way to the landing
-//! can lose, that is said in time.
+//! ground is none; where the height suffices for no other, or only for another runway, the gateway's Safe mode decides. Where it is more
+//! than the way to the landing can lose, that is said in time.
 
 use super::Executor;
-use crate::api::{Action, AircraftState, Event, Output};
+use crate::api::{Action, AircraftState, Event, Output, Refusal};
+use crate::flight::refusal;
 use crate::layout::cursor::Cursor;
 use crate::layout::homeward::{self, GlideIn, Halt, halts, is_clear};
 use crate::layout::touch_down::TouchDown;
@@ -21,6 +22,8 @@ enum Rest {
     Shortened(Shortcut),
     /// Each way that the height suffices for leads into the ground.
     Blocked,
+    /// The height suffices for no way to its runway, but for one to this other runway.
+    Elsewhere(Id),
 }
 
 /// A part of the plan that is gone to at once.
@@ -46,11 +49,11 @@ impl Executor {
         let stopped_since = self.flight.emergencies.takes_stopped_engine();
         let is_taken = match self.rest(&state, stopped_since) {
             Rest::Shortened(shortcut) => self.take(shortcut, out),
-            Rest::Blocked if stopped_since => {
+            Rest::Blocked | Rest::Elsewhere(_) if stopped_since => {
                 out.push(Output::Safe);
                 false
             }
-            Rest::Whole | Rest::Blocked => false,
+            Rest::Whole | Rest::Blocked | Rest::Elsewhere(_) => false,
         };
         if stopped_since && !is_taken {
             self.replan(out);
@@ -99,9 +102,22 @@ impl Executor {
         (end.beyond_m > 0.0).then(|| (landing.place.leg.clone(), runway.id.clone(), end))
     }
 
-    /// The engine is out, and each glide home by an emergency plan that the height suffices for leads into the ground.
-    pub(super) fn is_blocked_by_ground(&self, section: usize) -> bool {
-        matches!(self.rest_of(section), Some(Rest::Blocked))
+    /// Why an emergency plan is not begun with the engine out, but left to the gateway's Safe mode, which knows all runways. One that is
+    /// `named` by a person goes to its runway, however far that is.
+    pub(super) fn check_glide(&self, section: usize, named: bool) -> Result<(), Refusal> {
+        match self.rest_of(section) {
+            Some(Rest::Blocked) => {
+                let reason = "each glide to its runway that the height suffices for leads into the ground: the gateway's Safe mode decides";
+                Err(refusal("glide-into-terrain", reason))
+            }
+            Some(Rest::Elsewhere(other)) if !named => {
+                let reason = format!(
+                    "its runway is not reached without the engine, but runway `{other}` is: the gateway's Safe mode decides"
+                );
+                Err(refusal("another-runway-reached", reason))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The beginning of an emergency plan, or with the engine out the first part of it that the height suffices for: what is out of reach
@@ -152,7 +168,8 @@ impl Executor {
         let arrival = |from: usize| self.arrival(state, ahead(from), runway).filter(|a| a.spare_m() >= 0.0);
         let clears = |from: usize| self.clears(state, ahead(from), runway);
         // on the final approach nothing can be left out but the circles before it
-        if (last == 0 && !circles) || (arrival(0).is_some() && (!begins || clears(0))) {
+        let only_lands = last == 0 && !circles;
+        if (only_lands && !begins) || (arrival(0).is_some() && (!begins || clears(0))) {
             return Some(Rest::Whole);
         }
         let enough =
@@ -165,10 +182,28 @@ impl Executor {
                 if lands.is_blocked() {
                     return Some(Rest::Blocked);
                 }
+                if begins
+                    && !lands.gets_there()
+                    && let Some(other) = self.reached_instead(state, runway)
+                {
+                    return Some(Rest::Elsewhere(other));
+                }
+                if only_lands {
+                    return Some(Rest::Whole);
+                }
                 (lands.arrival, lands.from_other_end)
             }
         };
         Some(Rest::Shortened(Shortcut { to: chosen.id.clone(), arrival, from_other_end }))
+    }
+
+    /// Another runway of the plan to which the height suffices.
+    fn reached_instead(&self, state: &AircraftState, than: &Runway) -> Option<Id> {
+        let others = self.setup.program.plan.runways.iter().filter(|runway| runway.id != than.id);
+        let is_reached = |runway: &&Runway| {
+            GlideIn::of(&self.world(), state.wind(), glide_from(state), runway).gets_there()
+        };
+        others.into_iter().find(is_reached).map(|runway| runway.id.clone())
     }
 
     /// A runway, from the end that the way ahead lands at.

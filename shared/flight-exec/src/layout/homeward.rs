@@ -140,6 +140,11 @@ impl GlideIn {
         in_line.or_else(|| straight().find(lacks_less)).or(Some(named))
     }
 
+    /// It gets there, above the ground all the way.
+    pub fn gets_there(&self) -> bool {
+        self.clears
+    }
+
     /// It would get there if no ground were in its way.
     pub fn is_blocked(&self) -> bool {
         self.arrival.is_some_and(|arrival| arrival.height_m >= 0.0) && !self.clears

@@ -294,6 +294,35 @@ fn a_hill_before_the_end_that_the_plan_names_is_passed_beside_to_the_other_end()
     assert!(matches!(land, Some(Action::Land { heading_deg }) if heading_deg == 270.0), "{land:?}");
 }
 
+/// Near a runway `R2`, so high above it, metres, and 6 km from that of the emergency plan. What is answered to the emergency, if it names
+/// the plan or not.
+fn near_another_runway(height_m: f64, plan: Option<&str>) -> Result<(), String> {
+    let near = HOME.destination(90.0, 6000.0);
+    let (lat, lon) = (near.lat_deg, near.lon_deg);
+    let other = format!(
+        r#"<runway id="R2" lat="{lat}" lon="{lon}" elevation="{GROUND_M}" heading="90" length="600"/></runways>"#
+    );
+    let mut rig = Rig::flying(&holding_first().replace("</runways>", &other));
+    rig.fly_to("b");
+    (rig.position, rig.altitude_amsl_m) = (near.destination(270.0, 900.0), Some(GROUND_M + height_m));
+    rig.engine_out = true;
+    rig.report();
+    let emergency = Command::Emergency { cause: Cause::Engine, plan: plan.map(Into::into) };
+    let answer = rig.command(emergency).map(drop).map_err(|refusal| refusal.code);
+    let is_unanswered = rig.events.contains(&Event::EmergencyUnanswered { cause: Cause::Engine });
+    assert_eq!(is_unanswered, answer.is_err());
+    answer
+}
+
+/// It flew away from the one beside it, and came down 0.6 km before the one that was named.
+#[test]
+fn a_glide_that_reaches_another_runway_only_is_left_to_safe_mode() {
+    assert_eq!(near_another_runway(180.0, None), Err("another-runway-reached".into()));
+    assert_eq!(near_another_runway(180.0, Some("back")), Ok(()), "who names the plan wants it");
+    assert_eq!(near_another_runway(1000.0, None), Ok(()), "both are reached");
+    assert_eq!(near_another_runway(20.0, None), Ok(()), "none is");
+}
+
 /// Where the ways in differ by their reserve only: 500 m behind the runway's other end, on its line, 120 m high. Straight back keeps all of
 /// it; first out to where the whole final of that end begins keeps nothing.
 #[test]
