@@ -460,6 +460,7 @@ fn altitudes_of_several_legs_that_differ_are_mixed_and_set_by_one_step() {
 fn the_other_direction_of_a_runway_is_levelled_by_a_button() {
     let mut panels = Panels::open(None);
     let mut plan = panels.plan();
+    plan.runways.truncate(1);
     let runway = plan.runways[0].clone();
     let threshold = runway.threshold.destination(runway.heading_deg, runway.length_m);
     let heading_deg = (runway.heading_deg + 180.0) % 360.0;

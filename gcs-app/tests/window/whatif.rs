@@ -353,11 +353,10 @@ fn texts_places_and_areas_are_tried_without_changing_the_plan() {
         ("crew", "south"),
     ] {
         window.harness.get_by_role_and_label(Role::TextInput, name).scroll_to_me();
-        window.steps(10);
+        window.steps(30);
         window.fill_in(Role::TextInput, name, typed);
-        // what becomes of it moves the fields
-        window.until("the other world", is_current);
-        window.steps(10);
+        // what becomes of it, and is found in it, moves the fields
+        window.until("the other world", |app| is_current(app) && app.analysis().what_if_problems().is_some());
     }
     let chosen = &window.app().view().what_if.variables;
     assert_eq!(chosen.len(), 3, "{chosen:?}");
