@@ -166,7 +166,7 @@ impl Manager {
             if refusal.code == "not-more-severe" {
                 return;
             }
-            if self.gateway_session.is_pilots() {
+            if self.gateway_session.is_pilots() || refusal.code == "on-ground" {
                 return self.alarms.read_again();
             }
             self.gateway_session.want(GatewayRequest::Safe);

@@ -16,6 +16,9 @@ pub const ALIGNED_DEG: f64 = 30.0;
 /// The other end of a runway, of which only the place is known, may be so much higher or lower by the elevation model, metres.
 const LEVEL_M: f64 = 8.0;
 
+/// Heights that differ by less are as good as each other, metres.
+const EVEN_M: f64 = 3.0;
+
 /// An end of a runway.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct End {
@@ -121,13 +124,26 @@ impl WayIn {
         in_line.chain(numbered().map(|(i, end)| way(i, end, None, false))).collect()
     }
 
-    /// The best of these that is no way through the ground: in line with the runway and with the whole reserve, else without that, else
-    /// straight.
+    /// The best of these that is no way through the ground: in line with the runway and with the whole reserve, else what has most of that,
+    /// else straight.
     pub fn best(ways: &[Self], clears: impl Fn(&Self) -> bool) -> Option<&Self> {
-        let first = |is_good: fn(&Self) -> bool| ways.iter().find(|way| is_good(way) && clears(way));
-        first(|way| way.is_in_line && way.keeps_reserve())
-            .or_else(|| first(|way| way.is_in_line && way.gets_there()))
-            .or_else(|| first(Self::gets_there))
+        let whole = ways.iter().find(|way| way.is_in_line && way.keeps_reserve() && clears(way));
+        let most = |in_line: bool| {
+            let is_good = |way: &&Self| way.is_in_line == in_line && way.gets_there() && clears(way);
+            let most_m = ways.iter().filter(is_good).map(Self::spare_m).fold(f64::NEG_INFINITY, f64::max);
+            ways.iter().filter(is_good).find(|way| way.spare_m() > most_m - EVEN_M)
+        };
+        whole.or_else(|| most(true)).or_else(|| most(false))
+    }
+
+    /// The last leg as low as it may be told, where height that is too much was lost before: with the reserve where it begins, down to the
+    /// threshold, which is so high, metres AMSL.
+    pub fn lowest_end(&self, elevation_amsl_m: f64) -> Option<[GlidePoint; 2]> {
+        let [.., from, end] = self.points.as_slice() else { return None };
+        let takes_m = from.altitude_amsl_m - end.altitude_amsl_m;
+        let needed_m = elevation_amsl_m + takes_m + reserve_m(takes_m);
+        let from = GlidePoint { altitude_amsl_m: from.altitude_amsl_m.min(needed_m), ..*from };
+        Some([from, GlidePoint { altitude_amsl_m: elevation_amsl_m, ..*end }])
     }
 
     /// Above the threshold, metres.
@@ -140,9 +156,14 @@ impl WayIn {
         self.height_m() >= 0.0
     }
 
+    /// Above the reserve at the threshold, metres.
+    pub fn spare_m(&self) -> f64 {
+        self.arrival.map_or(f64::NEG_INFINITY, |arrival| arrival.spare_m())
+    }
+
     /// With the whole reserve.
     pub fn keeps_reserve(&self) -> bool {
-        self.arrival.is_some_and(|arrival| arrival.spare_m() >= 0.0)
+        self.spare_m() >= 0.0
     }
 
     /// It is in line with the runway at last.
@@ -181,6 +202,17 @@ mod tests {
         assert_eq!(final_m(210.0), Some(Some(350.0)), "the whole one has no reserve");
         assert_eq!(final_m(140.0), Some(Some(210.0)), "none has the reserve");
         assert_eq!([final_m(110.0), final_m(80.0)], [Some(None), None]);
+    }
+
+    /// The whole final arrives with 6 m, 1 % of that glide: a little more head wind and it is down before the runway.
+    #[test]
+    fn without_the_whole_reserve_the_way_with_most_of_it_is_flown() {
+        let ways = ways(90.0, 6000.0, 590.0, &[named()]);
+        assert!(
+            ways.iter().filter(|way| way.is_in_line()).all(|way| way.gets_there() && !way.keeps_reserve())
+        );
+        let best = WayIn::best(&ways, |_| true).unwrap();
+        assert_eq!(best.final_m.map(f64::round), Some(210.0), "{} m above the threshold", best.height_m());
     }
 
     #[test]

@@ -57,10 +57,9 @@ impl Gateway {
         let Launch { arm, stand_down, .. } = self.control.launch;
         self.control.launch = Launch { since: Some(self.now), arm, stand_down, ..Launch::default() };
         self.control.set_intent(Intent::Fly, self.telemetry.mode);
-        if self.telemetry.engine(self.now).is_none() {
-            // only the take-off shows that it runs, and from the lift-off on it would count as failed
-            self.forget_engine(out);
-        }
+        // only the take-off shows that it runs, one that is thrown not before it is in the air; and there one that is still dead is noticed
+        // at once
+        self.forget_engine(out);
         out.push(Output::Save);
     }
 

@@ -22,8 +22,8 @@ enum Rest {
     Shortened(Shortcut),
     /// Each way that the height suffices for leads into the ground.
     Blocked,
-    /// The height suffices for no way to its runway, but for one to this other runway.
-    Elsewhere(Id),
+    /// The height suffices for no way to its runway, but for one to this other runway; and what it suffices for all the same.
+    Elsewhere(Id, Shortcut),
 }
 
 /// A part of the plan that is gone to at once.
@@ -49,11 +49,11 @@ impl Executor {
         let stopped_since = self.flight.emergencies.takes_stopped_engine();
         let is_taken = match self.rest(&state, stopped_since) {
             Rest::Shortened(shortcut) => self.take(shortcut, out),
-            Rest::Blocked | Rest::Elsewhere(_) if stopped_since => {
+            Rest::Blocked | Rest::Elsewhere(..) if stopped_since => {
                 out.push(Output::Safe);
                 false
             }
-            Rest::Whole | Rest::Blocked | Rest::Elsewhere(_) => false,
+            Rest::Whole | Rest::Blocked | Rest::Elsewhere(..) => false,
         };
         if stopped_since && !is_taken {
             self.replan(out);
@@ -110,7 +110,7 @@ impl Executor {
                 let reason = "each glide to its runway that the height suffices for leads into the ground: the gateway's Safe mode decides";
                 Err(refusal("glide-into-terrain", reason))
             }
-            Some(Rest::Elsewhere(other)) if !named => {
+            Some(Rest::Elsewhere(other, _)) if !named => {
                 let reason = format!(
                     "its runway is not reached without the engine, but runway `{other}` is: the gateway's Safe mode decides"
                 );
@@ -123,9 +123,8 @@ impl Executor {
     /// The beginning of an emergency plan, or with the engine out the first part of it that the height suffices for: what is out of reach
     /// is not handed out.
     pub(super) fn begun_in_reach(&self, begin: Cursor, out: &mut Vec<Output>) -> Cursor {
-        let Some(Rest::Shortened(shortcut)) = begin.section.and_then(|section| self.rest_of(section)) else {
-            return begin;
-        };
+        let rest = begin.section.and_then(|section| self.rest_of(section));
+        let Some(Rest::Shortened(shortcut) | Rest::Elsewhere(_, shortcut)) = rest else { return begin };
         let Some(target) = self.setup.program.path(&shortcut.to) else { return begin };
         out.push(shortcut.told());
         begin.moved_to(&target, &self.world())
@@ -168,42 +167,38 @@ impl Executor {
         let arrival = |from: usize| self.arrival(state, ahead(from), runway).filter(|a| a.spare_m() >= 0.0);
         let clears = |from: usize| self.clears(state, ahead(from), runway);
         // on the final approach nothing can be left out but the circles before it
-        let only_lands = last == 0 && !circles;
-        if (only_lands && !begins) || (arrival(0).is_some() && (!begins || clears(0))) {
+        if (last == 0 && !circles) || (arrival(0).is_some() && (!begins || clears(0))) {
             return Some(Rest::Whole);
         }
         let enough =
             (1..last).filter_map(|from| Some((from, arrival(from)?))).find(|(from, _)| clears(*from));
         let chosen = halts.get(enough.map_or(last, |(from, _)| from))?;
-        let (arrival, from_other_end) = match enough {
-            Some((_, arrival)) => (Some(arrival), false),
-            None => {
-                let lands = GlideIn::of(&self.world(), state.wind(), glide_from(state), runway);
-                if lands.is_blocked() {
-                    return Some(Rest::Blocked);
-                }
-                if begins
-                    && !lands.gets_there()
-                    && let Some(other) = self.reached_instead(state, runway)
-                {
-                    return Some(Rest::Elsewhere(other));
-                }
-                if only_lands {
-                    return Some(Rest::Whole);
-                }
-                (lands.arrival, lands.from_other_end)
-            }
-        };
-        Some(Rest::Shortened(Shortcut { to: chosen.id.clone(), arrival, from_other_end }))
+        let to = chosen.id.clone();
+        if let Some((_, arrival)) = enough {
+            return Some(Rest::Shortened(Shortcut { to, arrival: Some(arrival), from_other_end: false }));
+        }
+        let lands = GlideIn::of(&self.world(), state.wind(), glide_from(state), runway);
+        if lands.is_blocked() {
+            return Some(Rest::Blocked);
+        }
+        let GlideIn { arrival, from_other_end, .. } = lands;
+        let is_reached = arrival.is_some_and(|arrival| arrival.height_m >= 0.0);
+        let shortcut = Shortcut { to, arrival, from_other_end };
+        let other = if begins && !is_reached { self.reached_instead(state, runway) } else { None };
+        Some(match other {
+            Some(other) => Rest::Elsewhere(other, shortcut),
+            None => Rest::Shortened(shortcut),
+        })
     }
 
-    /// Another runway of the plan to which the height suffices.
+    /// Another runway of the plan to which the height suffices, and which is long enough for Safe mode.
     fn reached_instead(&self, state: &AircraftState, than: &Runway) -> Option<Id> {
-        let others = self.setup.program.plan.runways.iter().filter(|runway| runway.id != than.id);
-        let is_reached = |runway: &&Runway| {
-            GlideIn::of(&self.world(), state.wind(), glide_from(state), runway).gets_there()
-        };
-        others.into_iter().find(is_reached).map(|runway| runway.id.clone())
+        let is_other =
+            |runway: &Runway| runway.id != than.id && runway.length_m >= self.setup.profile.min_runway_m;
+        let is_reached =
+            |runway: &Runway| GlideIn::of(&self.world(), state.wind(), glide_from(state), runway).lands();
+        let mut runways = self.setup.program.plan.runways.iter();
+        runways.find(|runway| is_other(runway) && is_reached(runway)).map(|runway| runway.id.clone())
     }
 
     /// A runway, from the end that the way ahead lands at.

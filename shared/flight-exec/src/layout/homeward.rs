@@ -108,6 +108,8 @@ pub struct GlideIn {
     pub arrival: Option<Arrival>,
     /// It is above the ground all the way.
     clears: bool,
+    /// It is in line with the runway at last.
+    is_in_line: bool,
 }
 
 impl GlideIn {
@@ -118,7 +120,11 @@ impl GlideIn {
         let other = named.other(world.profile, wind, |place| world.terrain.elevation_m(place));
         let ends: Vec<End> = [named].into_iter().chain(other).collect();
         let ways = WayIn::all((world.profile, wind), from, &ends, world.config.final_approach_m);
-        let clears = |way: &WayIn| clears_ground(world.terrain, &way.points);
+        let clears = |way: &WayIn| {
+            let lowest = way.lowest_end(runway.elevation_amsl_m);
+            let ways = [Some(way.points.as_slice()), lowest.as_ref().map(|leg| leg.as_slice())];
+            ways.into_iter().flatten().all(|points| clears_ground(world.terrain, points))
+        };
         let best = WayIn::best(&ways, clears);
         let way = best.or_else(|| Self::as_near_as_it_gets(&ways));
         let from_other_end = way.is_some_and(|way| way.end > 0);
@@ -128,6 +134,7 @@ impl GlideIn {
             final_m: way.and_then(|way| way.final_m),
             arrival: way.and_then(|way| way.arrival),
             clears: best.is_some(),
+            is_in_line: way.is_some_and(WayIn::is_in_line),
         }
     }
 
@@ -140,9 +147,9 @@ impl GlideIn {
         in_line.or_else(|| straight().find(lacks_less)).or(Some(named))
     }
 
-    /// It gets there, above the ground all the way.
-    pub fn gets_there(&self) -> bool {
-        self.clears
+    /// It gets there, above the ground all the way, and in line with the runway: Safe mode lands on no other.
+    pub fn lands(&self) -> bool {
+        self.clears && self.is_in_line
     }
 
     /// It would get there if no ground were in its way.

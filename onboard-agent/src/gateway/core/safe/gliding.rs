@@ -32,10 +32,10 @@ pub(super) struct Glide {
     pub final_m: Option<f64>,
     /// Time to the threshold without circles, seconds: these take away nothing but height that is too much.
     pub time_s: f64,
-    /// It comes there with the whole reserve.
-    pub keeps_reserve: bool,
+    /// Above the whole reserve there, metres.
+    pub spare_m: f64,
     /// It comes to the threshold with more height than it can lose.
-    is_too_high: bool,
+    pub is_too_high: bool,
 }
 
 /// The best glide from where the aircraft is to an end of a runway; `None`: it does not come there, in line with it.
@@ -81,13 +81,18 @@ impl Glide {
             gates.split_off(first)
         });
         let clears = s.terrain.is_none_or(|terrain| clears_ground(terrain, &way.points));
-        let gates = sides.into_iter().find(|gates| clears && is_over_ground(gates, s, |_| SPARE_M))?;
+        let is_clear = |gates: &Vec<Gate>| {
+            clears
+                && is_over_ground(gates, s, |_| SPARE_M)
+                && told.clears_final(gates.last(), [over, threshold], end, s)
+        };
+        let gates = sides.into_iter().find(is_clear)?;
         Some(Self {
             gates,
             end,
             final_m: way.final_m,
             time_s: threshold.time_s,
-            keeps_reserve: way.keeps_reserve(),
+            spare_m: way.spare_m(),
             is_too_high: told.is_too_high,
         })
     }
@@ -122,6 +127,20 @@ impl Told {
             begins_m: (has_m - f64::from(circles) * circle.height_m).min(most_m),
             is_too_high: lowest_m > elevation_m,
         }
+    }
+
+    /// From the last gate, or from where it is, it is led straight down to the threshold, however high it is: above the ground.
+    fn clears_final(
+        &self,
+        last: Option<&Gate>,
+        [over, threshold]: [&GlidePoint; 2],
+        end: End,
+        s: &Situation,
+    ) -> bool {
+        let altitude_amsl_m = last.map_or(over.altitude_amsl_m, |gate| gate.altitude_amsl_m);
+        let from = GlidePoint { altitude_amsl_m, ..*over };
+        let down = GlidePoint { altitude_amsl_m: end.elevation_amsl_m, ..*threshold };
+        s.terrain.is_none_or(|terrain| clears_ground(terrain, &[from, down]))
     }
 
     fn circled(&self, at: LatLon, course_deg: f64, right: bool, s: &Situation) -> Vec<Gate> {

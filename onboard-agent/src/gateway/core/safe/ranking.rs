@@ -30,7 +30,8 @@ const REVERSED_PENALTY_S: f64 = 40.0;
 const CLEAR_SHARE: f64 = 0.5;
 const MODEL_ERROR_M: f64 = 5.0;
 
-/// The best landing of those within reach. A glide that would come there without its whole reserve is one only if there is no other.
+/// The best landing of those within reach. A glide that would come there without its whole reserve is one only if there is no other, and then
+/// the one with most of it; the last is one that can't lose its height before the runway.
 pub fn choose(runways: &[SafeRunway], safe: &SafeParameters, s: &Situation) -> Option<Landing> {
     let usable = || runways.iter().filter(|runway| is_usable(runway, s.profile));
     let best = |ways: &mut dyn Iterator<Item = (Landing, f64)>| {
@@ -41,11 +42,14 @@ pub fn choose(runways: &[SafeRunway], safe: &SafeParameters, s: &Situation) -> O
         return best(&mut usable().flat_map(|runway| with_engine(runway, safe, s)));
     }
     let glides: Vec<_> = usable().flat_map(|runway| gliding(runway, s)).collect();
-    let ways = |reserve: bool| {
-        let keeps = glides.iter().filter(move |(_, glide)| glide.keeps_reserve || !reserve);
-        keeps.map(|(landing, glide)| (landing.clone(), glide.time_s))
+    let of_kind = |is_meant: fn(&Glide) -> bool| glides.iter().filter(move |(_, glide)| is_meant(glide));
+    let timed = |(landing, glide): &(Landing, Glide)| (landing.clone(), glide.time_s);
+    let with_reserve = best(&mut of_kind(|glide| glide.spare_m >= 0.0 && !glide.is_too_high).map(timed));
+    let most = || {
+        let without = of_kind(|glide| !glide.is_too_high);
+        without.min_by(|(_, a), (_, b)| b.spare_m.total_cmp(&a.spare_m)).map(|(landing, _)| landing.clone())
     };
-    best(&mut ways(true)).or_else(|| best(&mut ways(false)))
+    with_reserve.or_else(most).or_else(|| best(&mut glides.iter().map(timed)))
 }
 
 /// The glides to the ends of a runway.
@@ -233,6 +237,30 @@ mod tests {
             chosen(&runways, &Situation { terrain: Some(&lower), ..s }).as_deref(),
             Some("runway behind")
         );
+    }
+
+    /// High as it is it passes far above; but it is to lose that height in circles, and to come in as low as any.
+    #[test]
+    fn no_final_leads_through_a_hill_below_the_height_that_is_lost_before_it() {
+        let profile = Profile::default();
+        let near = [runway("near", 0.0, 3.0, 0.0, 1)];
+        let before = |hill_m: f64| Wall(HOME.lat_deg + (3000.0 - 617.0) / 111_195.0, 322.0 + hill_m);
+        let over = |hill: &Wall| {
+            let s = Situation { glides: true, altitude_amsl_m: 872.0, ..situation(&profile) };
+            chosen(&near, &Situation { terrain: Some(hill), ..s })
+        };
+        assert_eq!(over(&before(10.0)).as_deref(), Some("runway near"));
+        let way = over(&before(60.0));
+        assert!(way.as_deref() != Some("runway near"), "{way:?}");
+    }
+
+    /// It touched down beyond the far end, at 25 m/s; the other end has room.
+    #[test]
+    fn what_can_t_lose_its_height_before_a_runway_does_not_go_straight_in() {
+        let profile = Profile::default();
+        let s = Situation { glides: true, altitude_amsl_m: 322.0 + 160.0, ..situation(&profile) };
+        let way = chosen(&[runway("ahead", 0.0, 0.3, 0.0, 1)], &s).unwrap();
+        assert!(way.contains("from its other end"), "{way}");
     }
 
     /// Straight in on the one, past the other and round.
