@@ -1,7 +1,7 @@
 //! Areas, lines and circles that become patterns.
 
 use super::bands::{self, Band};
-use super::new_leg::{self, Aim, Side, choose_kind, choose_side, words};
+use super::new_leg::{self, Aim, NO_STAGE, Side, choose_kind, choose_side, words};
 use super::pen::{Figure, Mark, Pen};
 use super::trial::Trials;
 use super::{Canvas, Card, Tool, Touch};
@@ -104,9 +104,7 @@ impl Tool for DrawLeg {
 
     fn status(&self, scene: &Scene<'_>) -> Option<String> {
         Some(match (self.pen.len(), self.aim(scene)) {
-            (_, None) => {
-                format!("{}: make a new mission first, it has a stage to draw into.", self.choice.name())
-            }
+            (_, None) => format!("{}: {NO_STAGE}", self.choice.name()),
             (0, Some(at)) => {
                 format!(
                     "{} {}: {}. Esc ends it.",

@@ -83,6 +83,10 @@ pub fn aim(plan: &FlightPlan, selected: Option<&Selection>, side: &Side) -> Opti
     stage.map(|stage| Aim::Spot(Spot::EndOf(stage.id.clone())))
 }
 
+/// What to do where a leg can't be put anywhere.
+pub const NO_STAGE: &str =
+    "add a stage first, with the + of Main plan in the tree, or make a new mission (Ctrl+N).";
+
 /// Where a new leg goes that is drawn on this side of what is selected.
 pub fn aim_of(scene: &Scene<'_>, side: &Side) -> Option<Aim> {
     aim(scene.document.plan(), scene.view.selection.as_ref(), &meant(scene, side))

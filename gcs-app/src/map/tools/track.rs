@@ -1,7 +1,7 @@
 //! Track: legs from place to place, one for each click.
 
 use super::bands::{self, Band};
-use super::new_leg::{self, Aim, Side, choose_kind, choose_side, words};
+use super::new_leg::{self, Aim, NO_STAGE, Side, choose_kind, choose_side, words};
 use super::pen::{Mark, way};
 use super::snap::{self, snap};
 use super::trial::{self, Trial, Trials};
@@ -81,7 +81,7 @@ impl Tool for Track {
 
     fn status(&self, scene: &Scene<'_>) -> Option<String> {
         Some(match (self.drawn.is_empty(), self.aim(scene)) {
-            (_, None) => "Draw legs: make a new mission first, it has a stage to draw into.".into(),
+            (_, None) => format!("Draw legs: {NO_STAGE}"),
             (true, Some(aim)) => {
                 let place = words(&aim, scene.document.plan());
                 format!("Draw legs {place}: click where to fly. Esc ends it.")
