@@ -292,10 +292,11 @@ impl MapState {
     }
 }
 
-/// Where the pointer is over the map, or was pressed there.
+/// Where the pointer is over the map, or was pressed there; not over what the tool in use says.
 fn pointer(ui: &Ui, view: &View) -> Option<Pos2> {
     let at = ui.input(|i| i.pointer.press_origin().or(i.pointer.hover_pos()));
-    at.filter(|_| ui.rect_contains_pointer(view.rect))
+    let is_covered = |at: Pos2| tool_chip::shown(ui.ctx(), view.rect).is_some_and(|said| said.contains(at));
+    at.filter(|at| ui.rect_contains_pointer(view.rect) && !is_covered(*at))
 }
 
 /// The variables as they are in flight, if what is flown is this document.

@@ -7,7 +7,7 @@ use super::tools::Toolbox;
 use crate::panels::{Scene, start};
 use crate::theme;
 use egui::{
-    Context, FontId, Id, Label, Margin, Popup, PopupCloseBehavior, Rangef, Rect, Role, Ui, UiBuilder,
+    Context, FontId, Id, Label, Margin, Popup, PopupCloseBehavior, Rangef, Rect, Role, Sense, Ui, UiBuilder,
     WidgetInfo, pos2, text::LayoutJob, vec2,
 };
 
@@ -48,15 +48,20 @@ fn whole(ui: &mut Ui, tools: &mut Toolbox, status: String, columns: &[Rect], sce
     let card = if start::is_wanted(scene) && start::is_on(map) { start::WIDTH + 36.0 } else { 0.0 };
     let left = columns.iter().map(|column| column.right()).fold(map.left(), f32::max) + 4.0 + card;
     let room = Rect::from_min_max(pos2(left, map.top() + BESIDE), map.right_bottom() - vec2(BUTTONS, 0.0));
-    let mut chip = ui.new_child(UiBuilder::new().max_rect(room).id_salt("tool status"));
+    let mut chip = ui.new_child(opaque(room));
     theme::card(&chip).show(&mut chip, |ui| {
-        // a click on it goes to the map
-        ui.add(Label::new(status).selectable(false).wrap());
+        // above what is said, which takes one line or two: nothing moves under the pointer
         if tools.has_options() {
             ui.horizontal_wrapped(|ui| tools.options(ui, scene));
         }
+        ui.add(Label::new(status).selectable(false).wrap());
     });
     chip.min_rect()
+}
+
+/// What lies over the map takes clicks and drags: none goes to the map behind it.
+fn opaque(room: Rect) -> UiBuilder {
+    UiBuilder::new().max_rect(room).id_salt("tool status").sense(Sense::click_and_drag())
 }
 
 fn line(ui: &mut Ui, tools: &mut Toolbox, status: &str, columns: &[Rect], scene: &Scene<'_>) -> Rect {
@@ -73,7 +78,7 @@ fn line(ui: &mut Ui, tools: &mut Toolbox, status: &str, columns: &[Rect], scene:
     let height = |width: f32| ui.fonts_mut(|fonts| fonts.layout_job(letters(width - button))).size().y;
     let room = place(ui.ctx(), map, columns, tools.is_drawing(), &height);
     let letters = ui.fonts_mut(|fonts| fonts.layout_job(letters(room.width() - button)));
-    let mut chip = ui.new_child(UiBuilder::new().max_rect(room).id_salt("tool status"));
+    let mut chip = ui.new_child(opaque(room));
     theme::card(&chip).inner_margin(Margin::symmetric(8, 4)).show(&mut chip, |ui| {
         ui.set_width(ui.available_width());
         ui.horizontal(|ui| {

@@ -292,7 +292,7 @@ fn a_zone_is_selected_by_its_edge() {
 }
 
 #[test]
-fn a_click_on_what_covers_the_map_goes_through_or_is_explained() {
+fn a_click_on_what_covers_the_map_is_explained() {
     let (mut window, _) = super::flying::flying();
     window.steps(60 * 5);
     window.press(Key::T);
@@ -303,11 +303,54 @@ fn a_click_on_what_covers_the_map_goes_through_or_is_explained() {
     window.harness.hover_at(window.centre("Map"));
     window.steps(2);
     assert!(!window.shows("The map is covered"));
-    // what the tool itself says covers nothing
-    let legs = window.plan().all_legs().len();
-    let status = window.harness.get_by_label_contains("Draw legs at the end of").rect().center();
-    window.click_at(status);
-    assert_eq!(window.plan().all_legs().len(), legs + 1);
+}
+
+/// Who draws a plan by hand closes the card of the new mission first.
+#[test]
+fn a_tool_without_a_stage_to_draw_into_says_how_to_get_one() {
+    let mut window = Window::open(super::creating::EMPTY);
+    window.steps(3);
+    window.press(Key::Escape);
+    for key in [Key::T, Key::O] {
+        window.press(key);
+        assert!(
+            window.shows(": add a stage first, with the + of Main plan in the tree, or make a new mission"),
+            "{key:?}"
+        );
+    }
+    window.add_to("main plan", "Mission stage");
+    let at = window.centre("Map");
+    window.press(Key::T);
+    window.click_at(at);
+    assert_eq!(window.plan().all_legs().len(), 1);
+}
+
+/// Who chose a kind there planned a leg behind it, and the choices moved when that leg went into the ground.
+#[test]
+fn what_the_tool_says_takes_clicks_and_nothing_is_drawn_behind_it() {
+    let mut window = window();
+    window.click("TF side4");
+    window.press(Key::T);
+    let at = free(&window);
+    window.harness.hover_at(at);
+    window.steps(3);
+    assert!(window.paints("° · "), "the leg to the pointer");
+    let before = window.plan();
+    let status = window.harness.get_by_label_contains("Draw legs behind side4").rect();
+    let kind = window.harness.get_all_by_label_contains("Kind: ").next().unwrap().rect();
+    assert!(kind.bottom() <= status.top(), "more words move no choice");
+    for over in [status.center(), kind.center(), kind.left_bottom() + vec2(2.0, 2.0)] {
+        window.harness.hover_at(over);
+        window.steps(3);
+        assert!(!window.paints("° · "), "{over}");
+        window.click_at(over);
+        assert_eq!(window.plan(), before, "{over}");
+    }
+    window.press(Key::Escape);
+    window.drag(status.center(), vec2(0.0, 60.0));
+    window.harness.hover_at(at);
+    window.steps(3);
+    assert_eq!(free(&window), at, "the map stays");
 }
 
 /// A corner of a zone that is drawn to the centre line lies in the final; a leg there is on it.
