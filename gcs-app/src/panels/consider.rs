@@ -194,13 +194,6 @@ fn unknown_ground(height: Option<Height>) -> Option<&'static str> {
 fn facts(considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) -> Vec<String> {
     let (vehicle, units) = (scene.vehicle, scene.units());
     let next = foresight.next_leg.as_ref().map(|leg| format!("Flies next: {}", vehicle.name_of(leg)));
-    let named = foresight.left_out.iter().take(MOST_LEGS).map(|leg| vehicle.name_of(leg));
-    let named: Vec<String> = named.collect();
-    let left_out = match foresight.left_out.len().checked_sub(named.len()) {
-        _ if named.is_empty() => "Left out: nothing".to_owned(),
-        Some(more) if more > 0 => format!("Left out: {} and {more} more", named.join(", ")),
-        _ => format!("Left out: {}", named.join(", ")),
-    };
     let clearance = height(considered, foresight).map(|height| {
         let least = units.altitude().show(height.least_m);
         format!("Least height above the ground until the approach: {least}{}", height.by())
@@ -212,7 +205,31 @@ fn facts(considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) -> V
         foresight.battery_left * 100.0
     );
     let rounds = begun_anew(&considered.command, vehicle);
-    next.into_iter().chain(rounds).chain([left_out]).chain(clearance).chain([end]).collect()
+    next.into_iter().chain(rounds).chain(left_out(foresight, vehicle)).chain(clearance).chain([end]).collect()
+}
+
+/// What is not flown, by whose it is: legs of an emergency plan often have the names of those of the main plan.
+fn left_out(foresight: &Foresight, vehicle: &Vehicle) -> Vec<String> {
+    let emergency = |leg: &Id| vehicle.emergency_plan_of(leg).map(|plan| &plan.id);
+    let (main, others): (Vec<&Id>, Vec<&Id>) =
+        foresight.left_out.iter().partition(|leg| emergency(leg).is_none());
+    let of_main = match main.as_slice() {
+        [] => "Left out: nothing".to_owned(),
+        legs => format!("Left out: {}", named(legs, vehicle)),
+    };
+    let of_others = others.chunk_by(|a, b| emergency(a) == emergency(b)).filter_map(|legs| {
+        let plan = emergency(legs.first()?)?;
+        Some(format!("Left out of {}: {}", vehicle.name_of(plan), named(legs, vehicle)))
+    });
+    std::iter::once(of_main).chain(of_others).collect()
+}
+
+/// `side2, side3 and 5 more`.
+fn named(legs: &[&Id], vehicle: &Vehicle) -> String {
+    let names: Vec<String> = legs.iter().take(MOST_LEGS).map(|leg| vehicle.name_of(leg)).collect();
+    let more = legs.len() - names.len();
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("{}{more}", names.join(", "))
 }
 
 /// `Rounds over the fire begins its rounds anew: 1 of 3`: an emergency ends the loops in which it was raised, and a loop that is entered

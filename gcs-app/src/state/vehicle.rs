@@ -10,7 +10,7 @@ use crate::link::{
 };
 use aircraft::Autopilot;
 use flight_exec::{Event, Phase, ProposalReport, Status};
-use flight_plan::{Cause, FlightPlan, Id};
+use flight_plan::{Cause, EmergencyPlan, FlightPlan, Id};
 use geometry::LatLon;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -466,6 +466,13 @@ impl Vehicle {
     fn names(&self) -> Names<'_> {
         Names(self.aboard.as_ref().map(|aboard| aboard.plan.as_ref()))
     }
+    /// The emergency plan aboard that a leg or stage belongs to; `None`: it is one of the main plan.
+    pub fn emergency_plan_of(&self, id: &Id) -> Option<&EmergencyPlan> {
+        let plan = &self.aboard.as_ref()?.plan;
+        let stage = plan.leg(id).map(|context| &context.stage.id).or_else(|| Some(&plan.stage(id)?.id))?;
+        plan.emergency_plans.iter().find(|of| of.stages.iter().any(|own| own.id == *stage))
+    }
+
 
     /// The leg being flown.
     pub fn current_leg(&self) -> Option<&Id> {

@@ -72,7 +72,8 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     assert_eq!(call, Call::Foresee(Some(back)));
     let without_landing = Foresight { left_out: vec!["r-land".into()], ..foresight() };
     window.answer(ticket, Ok(Reply::Foresight(Box::new(without_landing))));
-    assert!(window.shows("Left out: Landing"), "not by its identifier");
+    assert!(window.shows("Left out of return: Landing"), "not by its identifier, nor as the main plan's");
+    assert!(window.shows("Left out: nothing"));
 }
 
 /// Only Safe mode said so.
