@@ -15,6 +15,8 @@ const MOST_CHANGES: usize = 200;
 /// So many legs are named when all are asked for, and without being asked for.
 const MOST_LEGS: usize = 200;
 const FEW_LEGS: usize = 3;
+/// What was told so long ago is of another place, seconds.
+const OLD_S: f64 = 10.0;
 /// What lies less far ahead is here, metres.
 const HERE_M: f64 = 1.0;
 
@@ -30,7 +32,8 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
     let p = theme::of(ui);
     ui.label(RichText::new("Push plan").strong().size(16.0));
     verdict(ui, scene, proposal, p);
-    if scene.analysis.hash_of(scene.document.version()).is_some_and(|hash| *hash != *report.hash) {
+    let is_edited = is_edited(scene, proposal);
+    if is_edited {
         let text = "⚠ The draft was edited since. What was checked is committed, without these edits.";
         ui.label(RichText::new(text).color(p.caution));
     }
@@ -41,7 +44,9 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
     ui.horizontal(|ui| buttons(ui, proposal, queue));
     ui.separator();
     if scene.path_aboard().is_some() {
-        ui.label(RichText::new("── on the map: this plan").color(p.accent));
+        let shown =
+            if is_edited { "── on the map: the edited draft" } else { "── on the map: this plan" };
+        ui.label(RichText::new(shown).color(p.accent));
         ui.label(RichText::new("╌╌ on the map: the plan aboard").color(p.contingency));
     }
     next(ui, proposal, scene, p);
@@ -62,6 +67,12 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
         }
         changes(ui, plan, &proposal.changes, p);
     });
+}
+
+/// The draft is not any more what was checked.
+fn is_edited(scene: &Scene<'_>, proposal: &Proposal) -> bool {
+    let hash = scene.analysis.hash_of(scene.document.version());
+    hash.is_some_and(|hash| *hash != *proposal.report.hash)
 }
 
 /// Each change in words: `leg patrol changed: count 2 → 3`.
@@ -164,8 +175,16 @@ fn next(ui: &mut Ui, proposal: &Proposal, scene: &Scene<'_>, p: &Palette) {
     };
     let leg = leg.map_or("–", |leg| scene.document.label(leg));
     let place = position.map_or_else(String::new, |at| format!(" at {}", units::position(at)));
+    let age_s = proposal.told.age_s(scene.now_s, scene.vehicle.clock_s(scene.now_s));
+    let is_old = age_s > OLD_S && scene.vehicle.is_airborne();
+    if is_old {
+        let text =
+            format!("⚠ Looked at {} ago, and the aircraft flew on: push again", units::duration(age_s));
+        ui.label(RichText::new(text).color(p.caution));
+    }
     ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new("The aircraft would fly next:").color(p.weak));
+        let next = if is_old { "It would have flown next:" } else { "The aircraft would fly next:" };
+        ui.label(RichText::new(next).color(p.weak));
         ui.label(RichText::new(format!("{leg}{place}{}", in_so_far(way, units))).strong().color(p.active));
     });
     // on the ground none is flown

@@ -21,7 +21,7 @@ pub use aged::Aged;
 pub use log::{Level, Line, Log};
 pub use losses::Losses;
 pub use names::Names;
-pub use outlook::{Considered, Outlook};
+pub use outlook::{Considered, Outlook, Told};
 pub use recent::RecentEvents;
 pub use requests::{LOOK_AHEAD, Outcome, READ_ABOARD, Request, Requests, START, Ticket};
 pub use strangers::Strangers;

@@ -29,20 +29,25 @@ pub struct Considered {
 
 /// When something was told.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Told {
+pub struct Told {
     /// Seconds of the window's clock.
-    window_s: f64,
+    pub window_s: f64,
     /// Seconds of the aircraft's clock: that of a simulation may run faster.
-    aircraft_s: Option<f64>,
+    pub aircraft_s: Option<f64>,
+}
+
+impl Told {
+    /// How long ago, by whichever clock is further, seconds. `aircraft_s`: the aircraft's clock, if it is known now.
+    pub fn age_s(self, now_s: f64, aircraft_s: Option<f64>) -> f64 {
+        let by_aircraft = aircraft_s.zip(self.aircraft_s).map_or(0.0, |(now_s, told_s)| now_s - told_s);
+        by_aircraft.max(now_s - self.window_s)
+    }
 }
 
 impl Considered {
-    /// How long ago what follows was told, by whichever clock is further, seconds; `None`: it was not. `aircraft_s`: the aircraft's
-    /// clock, if it is known now.
+    /// How long ago what follows was told, as [`Told::age_s`]; `None`: it was not.
     pub fn age_s(&self, now_s: f64, aircraft_s: Option<f64>) -> Option<f64> {
-        let told = self.told?;
-        let by_aircraft = aircraft_s.zip(told.aircraft_s).map_or(0.0, |(now_s, told_s)| now_s - told_s);
-        Some(by_aircraft.max(now_s - told.window_s))
+        self.told.map(|told| told.age_s(now_s, aircraft_s))
     }
 
     /// The aircraft flies another leg than when it was looked at.

@@ -3,7 +3,7 @@
 use super::watch::{GROUND_STATION, Sight, Watch};
 use super::{
     Aged, LOOK_AHEAD, Level, Log, Losses, Names, Outcome, Outlook, RecentEvents, Repeats, Requests, START,
-    Strangers, Ticket, Trail, log,
+    Strangers, Ticket, Told, Trail, log,
 };
 use crate::link::{
     LinkEvent, LinkId, LinkState, Loss, Numbered, PlainEvent, PlainValue, Reply, Rows, Telemetry,
@@ -149,6 +149,8 @@ pub struct Proposal {
     pub changes: Vec<flight_plan::Change>,
     /// The leg at which it will be entered, if one must be named.
     pub entry: Option<Id>,
+    /// When it was answered: the aircraft flies on since.
+    pub told: Told,
 }
 
 macro_rules! remember {
@@ -374,7 +376,8 @@ impl Vehicle {
             Ok(Reply::Proposal(report)) => {
                 let entry = report.entry_needed.then(|| report.next_leg.clone()).flatten();
                 let changes = std::mem::take(&mut self.put_forward);
-                self.proposal = Some(Proposal { report: *report, changes, entry });
+                let told = Told { window_s: now_s, aircraft_s: self.clock_s(now_s) };
+                self.proposal = Some(Proposal { report: *report, changes, entry, told });
             }
             Ok(Reply::Plan(aboard)) => self.aboard = aboard,
             // a command may lead elsewhere
@@ -463,9 +466,6 @@ impl Vehicle {
         self.names().of_branch(fork, branch)
     }
 
-    fn names(&self) -> Names<'_> {
-        Names(self.aboard.as_ref().map(|aboard| aboard.plan.as_ref()))
-    }
     /// The emergency plan aboard that a leg or stage belongs to; `None`: it is one of the main plan.
     pub fn emergency_plan_of(&self, id: &Id) -> Option<&EmergencyPlan> {
         let plan = &self.aboard.as_ref()?.plan;
@@ -473,6 +473,9 @@ impl Vehicle {
         plan.emergency_plans.iter().find(|of| of.stages.iter().any(|own| own.id == *stage))
     }
 
+    fn names(&self) -> Names<'_> {
+        Names(self.aboard.as_ref().map(|aboard| aboard.plan.as_ref()))
+    }
 
     /// The leg being flown.
     pub fn current_leg(&self) -> Option<&Id> {

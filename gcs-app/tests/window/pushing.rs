@@ -1,12 +1,12 @@
 //! What stands in the panel of a proposal, and where the button is.
 
-use super::flying::{connected, flying, report};
+use super::flying::{connected, flying, flying_its_plan, report};
 use super::vehicle::status;
 use super::{SQUARE, Window};
 use egui::Key;
 use egui_kittest::kittest::Queryable;
 use flight_exec::{Phase, ProposalReport};
-use gcs_app::link::{Reply, Telemetry};
+use gcs_app::link::{Call, Reply, Telemetry};
 use usal::contract::{Air, Stamped};
 
 #[test]
@@ -30,6 +30,30 @@ fn many_legs_are_told_by_the_first_and_the_last_until_all_are_asked_for() {
     window.click_at(at);
     window.steps(30);
     assert_eq!(names(&window), before + 1);
+}
+
+/// At 4 times the speed the card was of a place two tracks behind after half a minute.
+#[test]
+fn a_proposal_says_how_old_it_is_and_whose_path_is_on_the_map() {
+    let mut window = flying_its_plan();
+    window.click("TF side4");
+    window.press(Key::Delete);
+    window.until_analysed();
+    let hash = window.app().analysis().hash.clone();
+    window.click("Push");
+    while let Some((ticket, call)) = window.asked() {
+        if matches!(call, Call::Propose(_)) {
+            window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
+        }
+    }
+    assert!(window.shows("The aircraft would fly next:") && !window.shows("push again"));
+    assert!(window.shows("on the map: this plan"));
+    window.steps(60 * 11);
+    assert!(window.shows("ago, and the aircraft flew on: push again"));
+    assert!(window.shows("It would have flown next:") && !window.shows("The aircraft would fly next:"));
+    window.click("Undo");
+    window.until_analysed();
+    assert!(window.shows("on the map: the edited draft") && !window.shows("on the map: this plan"));
 }
 
 /// What is for programs is for who points at it.
