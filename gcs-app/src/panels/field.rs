@@ -82,6 +82,15 @@ pub fn focus_next(ctx: &Context) {
     ctx.data_mut(|d| d.insert_temp(focus_asked(), true));
 }
 
+/// This number gets the keyboard: what is typed takes its place.
+pub fn focus(number: &Response) {
+    number.request_focus();
+    let mut state = TextEditState::default();
+    let whole = CCursorRange::two(CCursor::new(0), CCursor::new(MOST_DIGITS));
+    state.cursor.set_char_range(Some(whole));
+    state.store(&number.ctx, number.id);
+}
+
 /// A number in a unit, stored in SI.
 pub fn number(ui: &mut Ui, name: &str, si: f64, unit: Unit, least_si: f64) -> Change<f64> {
     number_between(ui, name, si, unit, least_si..=f64::MAX)
@@ -104,7 +113,8 @@ pub fn number_to_enter(ui: &mut Ui, name: &str, si: f64, unit: Unit) -> (Change<
     (change, field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)))
 }
 
-fn numbered(
+/// The same with what it is drawn as.
+pub fn numbered(
     ui: &mut Ui,
     name: &str,
     si: f64,
@@ -127,12 +137,7 @@ fn numbered(
     let drag = if before.is_finite() { drag } else { drag.custom_formatter(|_, _| UNREADABLE.to_owned()) };
     let response = ui.add_sized([78.0, 24.0], drag);
     if ui.data_mut(|d| d.remove_temp::<bool>(focus_asked())).is_some() {
-        response.request_focus();
-        // what is typed takes its place
-        let mut state = TextEditState::default();
-        let whole = CCursorRange::two(CCursor::new(0), CCursor::new(MOST_DIGITS));
-        state.cursor.set_char_range(Some(whole));
-        state.store(ui.ctx(), response.id);
+        focus(&response);
     }
     named(&response, name, shown);
     typed.tell(ui, &response);

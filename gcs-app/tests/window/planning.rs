@@ -239,6 +239,11 @@ fn inherited_values_say_where_they_come_from_and_editing_begins_with_them() {
     let own = window.plan().leg(&"side3".into()).unwrap().leg.altitude.clone();
     assert_eq!(own, stage.altitude, "nothing jumps");
     window.until_analysed();
+    window.harness.event(egui::Event::Text("185".into()));
+    window.press(Key::Enter);
+    let own = window.plan().leg(&"side3".into()).unwrap().leg.altitude.clone().unwrap();
+    assert_eq!(own.metres, Value::Constant(185.0), "what is typed then is its number");
+    window.click("Undo");
     window.click("Undo");
     assert_eq!(window.plan(), before);
 }

@@ -337,17 +337,17 @@ pub fn inherited_number(
 ) -> field::Change<Value<f64>> {
     let weak = theme::of(ui).weak;
     let name = page.name(label);
-    // as its own number in its place, so that a drag goes on when it has become that
-    let changed = match value {
+    // as its own number in its place, so that a drag or the keyboard goes on when it has become that
+    let (changed, number) = match value {
         Value::Constant(si) => {
             ui.visuals_mut().override_text_color = Some(weak);
-            let changed = field::number(ui, &name, *si, unit, f64::MIN);
+            let (changed, number) = field::numbered(ui, &name, *si, unit, f64::MIN..=f64::MAX);
             ui.visuals_mut().override_text_color = None;
-            changed.map(Value::Constant)
+            (changed.map(Value::Constant), Some(number))
         }
         Value::Expression(formula) => {
             ui.add(egui::Label::new(RichText::new(formula.to_string()).color(weak)).truncate());
-            field::Change::None
+            (field::Change::None, None)
         }
     };
     ui.scope(|ui| {
@@ -355,7 +355,10 @@ pub fn inherited_number(
         ui.add(egui::Label::new(RichText::new(from).size(12.0).color(weak)).truncate());
     });
     match field::small_button(ui, "✏", &page.name(&format!("Own {}", label.to_lowercase()))) {
-        true => field::Change::Set(value.clone()),
+        true => {
+            number.iter().for_each(field::focus);
+            field::Change::Set(value.clone())
+        }
         false => changed,
     }
 }
