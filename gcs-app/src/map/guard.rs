@@ -1,4 +1,5 @@
 //! What can't be moved by hand now: everything where the map is locked, else what the aircraft has behind it.
+//! That is not raised either.
 
 use super::sketch::Handled;
 use crate::panels::Scene;
@@ -50,15 +51,19 @@ fn legs_to(plan: &FlightPlan, is_there: impl Fn(&Place) -> bool) -> Vec<Id> {
     there.map(|context| context.leg.id.clone()).collect()
 }
 
-/// The legs that the aircraft has flown and does not come back to by itself.
-fn behind<'a>(scene: &Scene<'a>) -> HashSet<&'a Id> {
+/// The stages and legs that the aircraft has flown and does not come back to by itself.
+pub fn behind<'a>(scene: &Scene<'a>) -> HashSet<&'a Id> {
     let plan = scene.document.plan();
     let Some(now) = current(scene) else { return HashSet::new() };
     let stages = plan.all_stages().filter(|(section, _)| *section == now.section);
     let before = stages.map(|(_, stage)| stage).take_while(|stage| stage.id != now.stage.id);
     let here = now.stage.legs.get(..first_ahead(&now)).unwrap_or_default();
     let mut found = HashSet::new();
-    before.flat_map(|stage| &stage.legs).chain(here).for_each(|leg| add_all(leg, &mut found));
+    for stage in before {
+        found.insert(&stage.id);
+        stage.legs.iter().for_each(|leg| add_all(leg, &mut found));
+    }
+    here.iter().for_each(|leg| add_all(leg, &mut found));
     found
 }
 

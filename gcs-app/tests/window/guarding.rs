@@ -33,6 +33,22 @@ fn locked_plan_is_not_dragged_by_accident() {
     assert!(moves(&mut window, "Fix C", vec2(30.0, -30.0)));
 }
 
+/// A plan of which flown legs were raised was refused when it was pushed.
+#[test]
+fn what_is_behind_the_aircraft_is_not_raised_with_the_others() {
+    let (mut window, _) = flying();
+    window.ask_for("raise or lower");
+    window.press(Key::Enter);
+    assert!(window.shows("stay as they are: they were flown."));
+    let of = |window: &Window, leg: &str| window.plan().leg(&leg.into()).unwrap().leg.altitude.clone();
+    let before = of(&window, "side1");
+    window.fill_in(egui::accesskit::Role::SpinButton, "Raise by", "50");
+    assert_eq!(of(&window, "side1"), before);
+    assert!(of(&window, "side2").is_some(), "ahead");
+    window.receive_position(true);
+    assert!(!window.shows("they were flown"), "on the ground again everything is ahead");
+}
+
 #[test]
 fn what_is_behind_the_aircraft_cannot_be_moved() {
     let (mut window, _) = flying();

@@ -47,8 +47,12 @@ fn raising_all_altitudes_is_found_and_reaches_take_off_and_emergency_plans() {
         assert_eq!(of_stage(&window, stage), raised, "{stage}");
     }
     assert!(window.shows("5 altitudes raised by 50 m"), "who is not told raises again");
+    assert!(!window.shows("in all"));
+    window.click("Raise them again");
+    assert!(window.shows("5 altitudes raised by 50 m again: 100 m higher in all"));
     window.click("Undo");
-    assert_eq!(window.plan(), before, "one step");
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step each");
     assert!(!window.shows("raised by"));
 }
 

@@ -3,6 +3,7 @@
 use super::together::whose;
 use crate::command::Queue;
 use crate::document::Document;
+use crate::map::guard;
 use crate::panels::{Scene, field};
 use crate::theme;
 use crate::units::Unit;
@@ -28,7 +29,8 @@ pub fn focus(ctx: &Context) {
 pub(super) fn show(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue) {
     let id = egui::Id::unique("raise legs by");
     let mut by_m = ui.data(|d| d.get_temp(id)).unwrap_or(USUAL_M);
-    let all: HashSet<&Id> = set.iter().collect();
+    let behind = guard::behind(scene);
+    let (flown, all): (Vec<&Id>, HashSet<&Id>) = split(set, &behind);
     let away = away_from_runways(scene.document.plan(), &all);
     let leaves = egui::Id::unique("leave take-off and approaches alone");
     let mut are_left = ui.data(|d| d.get_temp(leaves)).unwrap_or(true);
@@ -43,7 +45,9 @@ pub(super) fn show(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue
             field::Change::Moving(m) | field::Change::Set(m) => by_m = m,
             field::Change::None | field::Change::Ended => {}
         }
-        let button = ui.button("Raise them").on_hover_text("Less than nothing lowers them");
+        let is_again = Done::told(ui.ctx(), scene).is_some_and(|done| done.is_of(&set));
+        let button = if is_again { "Raise them again" } else { "Raise them" };
+        let button = ui.button(button).on_hover_text("Less than nothing lowers them");
         if button.clicked() || is_entered {
             raise(ui, scene, &set, by_m, queue);
         }
@@ -54,11 +58,32 @@ pub(super) fn show(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue
         ui.data_mut(|d| d.insert_temp(leaves, are_left));
     }
     let p = theme::of(ui);
-    let told = Done::told(ui.ctx(), scene).map(|text| (format!("✔ {text}"), p.good));
+    let told = Done::told(ui.ctx(), scene).map(|done| (format!("✔ {}", done.text), p.good));
     let stays = Raised::of(scene.document.plan(), &set).stays(scene.document).map(|text| (text, p.weak));
-    for (text, colour) in told.into_iter().chain(stays) {
+    let flown = flown_words(scene.document, &flown).map(|text| (text, p.weak));
+    for (text, colour) in told.into_iter().chain(flown).chain(stays) {
         ui.add(Label::new(RichText::new(text).size(12.0).color(colour)).wrap());
     }
+}
+
+/// What is flown already, and the others.
+fn split<'a>(set: &'a [Id], behind: &HashSet<&Id>) -> (Vec<&'a Id>, HashSet<&'a Id>) {
+    let (flown, ahead): (Vec<&Id>, Vec<&Id>) = set.iter().partition(|id| behind.contains(id));
+    (flown, ahead.into_iter().collect())
+}
+
+fn flown_words(document: &Document, flown: &[&Id]) -> Option<String> {
+    let stay =
+        if flown.len() == 1 { "stays as it is: it was flown" } else { "stay as they are: they were flown" };
+    (!flown.is_empty()).then(|| format!("{} {stay}.", some_names(document, flown)))
+}
+
+/// The first of them, and how many more.
+fn some_names(document: &Document, ids: &[&Id]) -> String {
+    let mut names: Vec<String> = ids.iter().take(NAMED).map(|id| whose(document, id)).collect();
+    let rest = ids.len() - names.len();
+    names.extend((rest > 0).then(|| format!("{rest} more")));
+    names.join(", ")
 }
 
 const LEAVE: &str = "Leave take-off and approaches alone";
@@ -73,8 +98,17 @@ fn away_from_runways<'a>(plan: &FlightPlan, set: &HashSet<&'a Id>) -> HashSet<&'
 fn raise(ui: &Ui, scene: &Scene<'_>, set: &HashSet<&Id>, by_m: f64, queue: &mut Queue) {
     let plan = scene.document.plan();
     let raised = Raised::of(plan, set);
-    let text = raised.done(plan, by_m, scene.units().altitude());
-    ui.data_mut(|d| d.insert_temp(Done::id(), Done { before: scene.document.version(), after: None, text }));
+    let unit = scene.units().altitude();
+    let last = Done::told(ui.ctx(), scene).filter(|done| done.is_of(set));
+    let mut text = raised.done(plan, by_m, unit);
+    let in_all_m = by_m + last.as_ref().map_or(0.0, |done| done.in_all_m);
+    if last.is_some() {
+        let how = if in_all_m < 0.0 { "lower" } else { "higher" };
+        text = format!("{text} again: {} {how} in all", unit.show(in_all_m.abs()));
+    }
+    let of = set.iter().map(|id| (*id).clone()).collect();
+    let done = Done { before: scene.document.version(), after: None, of, in_all_m, text };
+    ui.data_mut(|d| d.insert_temp(Done::id(), done));
     queue.edit(Edit::All(raised.edits(by_m)));
 }
 
@@ -84,6 +118,9 @@ struct Done {
     /// The document's version then, and with that edit, once it is made.
     before: u64,
     after: Option<u64>,
+    /// What was asked to be raised, and by how much since it was selected.
+    of: HashSet<Id>,
+    in_all_m: f64,
     text: String,
 }
 
@@ -92,15 +129,19 @@ impl Done {
         egui::Id::unique("what was raised last")
     }
 
+    fn is_of(&self, set: &HashSet<&Id>) -> bool {
+        self.of.len() == set.len() && set.iter().all(|id| self.of.contains(*id))
+    }
+
     /// It is told until something else is edited, or that is undone.
-    fn told(ctx: &Context, scene: &Scene<'_>) -> Option<String> {
+    fn told(ctx: &Context, scene: &Scene<'_>) -> Option<Self> {
         let (id, now) = (Self::id(), scene.document.version());
         let mut done: Self = ctx.data(|d| d.get_temp(id))?;
         if done.after.is_none() && done.before != now {
             done.after = Some(now);
             ctx.data_mut(|d| d.insert_temp(id, done.clone()));
         }
-        (done.after == Some(now)).then_some(done.text)
+        (done.after == Some(now)).then_some(done)
     }
 }
 
@@ -195,17 +236,14 @@ impl<'a> Raised<'a> {
 
     /// Which stay as they are, and why.
     fn stays(&self, document: &Document) -> Option<String> {
-        let mut names: Vec<String> = self.without.iter().take(NAMED).map(|id| whose(document, id)).collect();
-        let rest = self.without.len() - names.len();
-        names.extend((rest > 0).then(|| format!("{rest} more")));
         let mut sentences = Vec::new();
-        if !names.is_empty() {
+        if !self.without.is_empty() {
             let say = if self.without.len() == 1 {
                 "stays as it is: it says"
             } else {
                 "stay as they are: they say"
             };
-            sentences.push(format!("{} {say} no altitude.", names.join(", ")));
+            sentences.push(format!("{} {say} no altitude.", some_names(document, &self.without)));
         }
         if self.calls {
             sentences.push("Procedures stay as they are where they say altitudes of their own.".into());
