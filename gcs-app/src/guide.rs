@@ -196,13 +196,27 @@ impl Guide {
     pub fn new_place(&self, answer: &Answer) -> Option<LatLon> {
         match answer {
             Answer::Place(at) => Some(*at),
-            Answer::Form(form) if form.threshold != self.threshold => form.threshold,
             Answer::Form(form) => {
-                let middle = |extent: &Option<Extent>| extent.as_ref().map(Extent::centre);
-                middle(&form.extent).filter(|at| self.extent().map(|e| e.centre()) != Some(*at))
+                let middle = form.extent.as_ref().map(Extent::centre);
+                let is_new = |at: &LatLon| self.extent().map(|e| e.centre()) != Some(*at);
+                let threshold = form.threshold.filter(|_| form.threshold != self.threshold);
+                middle.filter(is_new).or(threshold)
             }
             _ => None,
         }
+    }
+
+    /// With a mission that was drawn before any place was said: the runway lies beside it.
+    pub fn begun_by(&self, template: Template, points: Vec<LatLon>) -> Self {
+        let mut begun = self.clone();
+        begun.choose(template);
+        let extent = Extent::Drawn(points.clone());
+        let centre = extent.centre();
+        let reach_m = points.iter().map(|at| centre.distance_m(*at)).fold(0.0, f64::max);
+        let half_way = centre.destination(begun.heading_deg - 90.0, reach_m + ASIDE_M);
+        begun.threshold = Some(half_way.destination(begun.heading_deg + 180.0, begun.length_m / 2.0));
+        (begun.extent, begun.drawing, begun.search) = (Some(extent), None, None);
+        begun
     }
 
     fn take_runway(&mut self, threshold: LatLon, end: LatLon) {

@@ -7,7 +7,7 @@ use crate::formats::{FileFormat, label};
 use crate::guide::{Answer, Guide, MissionFigure};
 use flight_plan::clipboard::{MAX_BYTES, Pasted};
 use flight_plan::create::{self, Approach, Drawn, LegChoice};
-use flight_plan::template::Extent;
+use flight_plan::template::{Extent, Template};
 use flight_plan::{
     Area, Edit, Fix, FlightPlan, Leg, LegKind, Pattern, Place, Scan, Spacing, Spot, Thing, Value, Zone,
     ZoneKind,
@@ -271,17 +271,28 @@ fn cut_holes(leg: &mut Leg, shape: &Shape) {
 
 /// Answers the guide to a new mission. The sentence says why that can't be.
 pub fn answer(features: &[Feature], guide: &Guide) -> Result<Answer, String> {
+    if guide.threshold.is_none() {
+        return begun(features, guide);
+    }
     let figure = MissionFigure::of(guide.template)
         .ok_or("This mission has nothing that is drawn: choose another one.")?;
-    if guide.threshold.is_none() {
-        return Err("Say where you fly first: click there, or type it into the card.".into());
-    }
-    let found = features.iter().find_map(|feature| match (figure, &feature.shape) {
+    let missing = || format!("There is no {} in what was copied, and the mission needs one.", figure.name());
+    Ok(Answer::Mission(Extent::Drawn(points(features, figure).ok_or_else(missing)?)))
+}
+
+/// Before anything else is answered, a drawing says what is flown and where.
+fn begun(features: &[Feature], guide: &Guide) -> Result<Answer, String> {
+    let templates = [guide.template, Template::Corridor, Template::Survey].into_iter();
+    let mut drawn = templates.filter_map(|of| Some((of, points(features, MissionFigure::of(of)?)?)));
+    let (template, points) = drawn.next().ok_or("There is no line and no area in what was copied.")?;
+    Ok(Answer::Form(Box::new(guide.begun_by(template, points))))
+}
+
+/// Of the first that is such a figure.
+fn points(features: &[Feature], figure: MissionFigure) -> Option<Vec<LatLon>> {
+    features.iter().find_map(|feature| match (figure, &feature.shape) {
         (MissionFigure::Line, Shape::Line(line)) => Some(line.iter().map(|vertex| vertex.position).collect()),
         (MissionFigure::Area, Shape::Area { outer, .. }) => Some(outer.clone()),
         _ => None,
-    });
-    let missing = || format!("There is no {} in what was copied, and the mission needs one.", figure.name());
-    let points: Vec<LatLon> = found.ok_or_else(missing)?;
-    Ok(Answer::Mission(Extent::Drawn(points)))
+    })
 }

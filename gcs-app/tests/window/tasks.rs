@@ -9,6 +9,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_exec::Command;
+use flight_plan::template::{Extent, Template};
 use flight_plan::{Cause, FlightPlan, Id, LegKind, Pattern, Spacing, compile};
 use gcs_app::assets;
 use gcs_app::link::{Call, Reply};
@@ -126,16 +127,28 @@ fn new_mission_along_a_pasted_kml_line() {
     let mut window = Window::open_with(EMPTY, SIZE, None);
     window.steps(3);
     window.paste(ROAD);
-    assert!(window.shows("Say where you fly first"));
+    let guide = window.app().view().guide.clone();
+    assert_eq!(guide.template, Template::Corridor, "a line is one");
+    assert!(guide.way_m().is_some_and(|way_m| way_m > 1500.0 && way_m < 10_000.0), "the runway is beside it");
+    window.click("Create");
+    let plan = window.plan();
+    let is_it = |kind: &LegKind| matches!(kind, LegKind::Pattern(Pattern::Corridor { route, .. }) if route.len() == 3);
+    assert!(plan.all_legs().iter().any(|context| is_it(&context.leg.kind)));
+    flies(&mut window);
+}
+
+/// Where a place was said before, the drawing is what that mission asks for.
+#[test]
+fn pasted_line_is_no_area_of_a_survey() {
+    let mut window = Window::open_with(EMPTY, SIZE, None);
+    window.steps(3);
     window.click("Among the example's hills");
     window.paste(ROAD);
     assert!(window.shows("There is no area in what was copied"), "a survey is of an area");
     window.click("Corridor");
     window.paste(ROAD);
-    window.click("Create");
-    let plan = window.plan();
-    let is_it = |kind: &LegKind| matches!(kind, LegKind::Pattern(Pattern::Corridor { route, .. }) if route.len() == 3);
-    assert!(plan.all_legs().iter().any(|context| is_it(&context.leg.kind)));
+    assert_eq!(window.app().view().guide.template, Template::Corridor);
+    assert!(matches!(&window.app().view().guide.extent, Some(Extent::Drawn(road)) if road.len() == 3));
 }
 
 #[test]
