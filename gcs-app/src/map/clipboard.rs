@@ -162,11 +162,13 @@ fn paste_drawing(drawing: Read, aim: Result<Aim, String>, canvas: &Canvas<'_>, q
     }
 }
 
-/// Where legs are pasted.
+/// Where legs are pasted: of several that are selected, behind the last.
 fn aim(canvas: &Canvas<'_>) -> Result<Aim, String> {
     let scene = canvas.scene;
-    let aim = new_leg::aim(scene.document.plan(), scene.view.selection.as_ref(), &Side::Behind);
-    aim.ok_or_else(|| "Make a new mission first (Ctrl+N): it has a stage to paste into.".into())
+    let last = scene.selected_legs().pop().map(Selection::Leg);
+    let selected = last.as_ref().or(scene.view.selection.as_ref());
+    let aim = new_leg::aim(scene.document.plan(), selected, &Side::Behind);
+    aim.ok_or_else(|| format!("To paste legs, {}", new_leg::NO_STAGE))
 }
 
 /// Coordinates become a waypoint where they say, or answer the guide; legs come to where the pointer is.

@@ -95,6 +95,19 @@ fn a_set_of_legs_is_copied_and_pasted_as_one() {
     assert_eq!(legs(&other).len(), 4, "one step");
 }
 
+/// They came between the first and the second.
+#[test]
+fn copies_of_several_legs_come_behind_the_last_of_them() {
+    let mut window = window();
+    window.click("TF side1");
+    for _ in 0..2 {
+        window.press_with(egui::Modifiers::SHIFT, egui::Key::ArrowDown);
+    }
+    let text = taken(&mut window, Event::Copy);
+    window.paste(&text);
+    assert_eq!(legs(&window), ["side1", "side2", "side3", "side5", "side6", "side7", "side4"]);
+}
+
 #[test]
 fn legs_fixes_and_zones_are_one_set() {
     let zone = r#"<zones><keepOut id="village" lat="36.3300" lon="-84.1900" radius="150"/></zones><mainPlan"#;
