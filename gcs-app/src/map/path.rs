@@ -35,6 +35,9 @@ type Look = (Color32, Color32);
 
 /// Screen points per metre from which single waypoints are drawn.
 const WAYPOINTS_FROM: f64 = 0.015;
+/// Of the stronger line, over a path and below its coverage, screen points.
+const ABOVE: f32 = 3.2;
+const BELOW: f32 = 9.0;
 /// About the width of a waypoint, screen points.
 const MARK: f32 = 7.0;
 /// The line of a path with no more points is worked out within a frame.
@@ -57,8 +60,15 @@ impl Layer {
         if forecast.points.is_empty() {
             return;
         }
-        match scene.analysis.coverage().filter(|_| scene.view.coverage && scene.out_of_date().is_none()) {
-            Some(known) => self.draw_covered(sheet, known),
+        let covered = scene.analysis.coverage();
+        let covered = covered.filter(|_| scene.view.coverage && scene.out_of_date().is_none());
+        let is_covered = covered.is_some();
+        match covered {
+            Some(known) => {
+                // what is selected lies below: who selects a leg there asks why it is red
+                self.draw_looked_at(sheet, BELOW);
+                self.draw_covered(sheet, known);
+            }
             None => self.draw_path(sheet),
         }
         let analysis = scene.analysis;
@@ -69,14 +79,17 @@ impl Layer {
             |made| *made == of,
             |wide| {
                 let (faulty, perhaps) = (scene.faulty(), scene.perhaps_faulty());
+                let stroke = |colour| Stroke::new(ABOVE, colour);
                 let mut shapes =
-                    highlight(wide, scene, (p.weak, p), |passage| perhaps.contains(&passage.leg));
-                shapes
-                    .extend(highlight(wide, scene, (p.warning, p), |passage| faulty.contains(&passage.leg)));
+                    highlight(wide, scene, (stroke(p.weak), p), |passage| perhaps.contains(&passage.leg));
+                let wanted = |passage: &Passage| faulty.contains(&passage.leg);
+                shapes.extend(highlight(wide, scene, (stroke(p.warning), p), wanted));
                 (of, shapes)
             },
         );
-        self.draw_looked_at(sheet);
+        if !is_covered {
+            self.draw_looked_at(sheet, ABOVE);
+        }
         if view.points_per_metre() > WAYPOINTS_FROM {
             let of = (analysis.forecast_version, p.accent);
             self.waypoints.draw(
@@ -146,21 +159,21 @@ impl Layer {
     }
 
     /// A stronger line along what is selected, or pointed out.
-    fn draw_looked_at(&mut self, sheet: &Sheet<'_>) {
+    fn draw_looked_at(&mut self, sheet: &Sheet<'_>, width: f32) {
         let Sheet { scene, p, .. } = *sheet;
         self.looked_at.draw(
             sheet.painter,
             sheet.view,
-            |made| made.is_still(scene, p),
+            |made| made.is_still(scene, p, width),
             |wide| {
-                let looked_at = LookedAt::of(scene, p);
+                let looked_at = LookedAt::of(scene, p, width);
                 let ids = looked_at.ids();
                 let wanted = |passage: &Passage| {
                     ids.contains(&passage.stage)
                         || scene.document.is_wanted(&passage.leg, |id| ids.contains(id))
                 };
-                let shapes =
-                    if ids.is_empty() { Vec::new() } else { highlight(wide, scene, (p.text, p), wanted) };
+                let look = (Stroke::new(width, p.text), p);
+                let shapes = if ids.is_empty() { Vec::new() } else { highlight(wide, scene, look, wanted) };
                 drop(ids);
                 (looked_at, shapes)
             },
@@ -178,25 +191,27 @@ fn line<'a>(view: &View, scene: &Scene<'a>) -> (Option<i32>, Option<&'a Line>) {
 struct LookedAt {
     forecast: u64,
     colour: Color32,
+    width: f32,
     selection: Option<Selection>,
     also: BTreeSet<Selection>,
     pointed: Option<Id>,
 }
 
 impl LookedAt {
-    fn of(scene: &Scene<'_>, p: &Palette) -> Self {
+    fn of(scene: &Scene<'_>, p: &Palette, width: f32) -> Self {
         Self {
             forecast: scene.analysis.forecast_version,
             colour: p.text,
+            width,
             selection: scene.view.selection.clone(),
             also: scene.view.also.clone(),
             pointed: scene.view.pointed.clone(),
         }
     }
 
-    fn is_still(&self, scene: &Scene<'_>, p: &Palette) -> bool {
+    fn is_still(&self, scene: &Scene<'_>, p: &Palette, width: f32) -> bool {
         let view = scene.view;
-        (self.forecast, self.colour) == (scene.analysis.forecast_version, p.text)
+        (self.forecast, self.colour, self.width) == (scene.analysis.forecast_version, p.text, width)
             && (&self.selection, &self.also, &self.pointed) == (&view.selection, &view.also, &view.pointed)
     }
 
@@ -223,7 +238,7 @@ fn draft(sheet: &Sheet<'_>) {
 fn highlight(
     view: &View,
     scene: &Scene<'_>,
-    (colour, p): (Color32, &Palette),
+    (stroke, p): (Stroke, &Palette),
     wanted: impl Fn(&Passage) -> bool,
 ) -> Vec<Shape> {
     let forecast = scene.forecast();
@@ -232,7 +247,7 @@ fn highlight(
         let line: Vec<Mercator> =
             forecast.part(passage).unwrap_or_default().iter().map(|q| q.position.into()).collect();
         let parts = polyline::visible_parts(&line, view);
-        polyline::shapes(&parts, Stroke::new(3.2, colour), Style::Solid, p.halo)
+        polyline::shapes(&parts, stroke, Style::Solid, p.halo)
     });
     shapes.collect()
 }

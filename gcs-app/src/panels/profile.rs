@@ -13,8 +13,7 @@ use crate::theme::{self, Palette};
 use crate::units;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
-    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
-    vec2,
+    Align2, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 use flight_exec::rehearse::GlidePoint;
 
@@ -335,10 +334,31 @@ fn draw_ground(painter: &Painter, axes: &Axes, seen: &[Point], p: &Palette) {
     painter.add(Shape::line(edge, Stroke::new(1.2, p.border)));
 }
 
+/// Of the stronger line along a leg, over the path and below its coverage, screen points.
+const ABOVE: f32 = 2.6;
+const BELOW: f32 = 8.0;
+
 fn draw_path(painter: &Painter, axes: &Axes, seen: &[Point], scene: &Scene<'_>, p: &Palette) {
     let forecast = scene.forecast();
-    match scene.analysis.coverage().filter(|_| scene.view.coverage && scene.out_of_date().is_none()) {
+    let highlighted = |leg: &flight_plan::Id, stroke: Stroke| {
+        let is_its = |passage: &&Passage| scene.document.is_wanted(&passage.leg, |id| id == leg);
+        for part in forecast.passages.iter().filter(is_its).filter_map(|passage| forecast.part(passage)) {
+            painter.add(Shape::line(part.iter().map(|q| axes.place(q)).collect(), stroke));
+        }
+    };
+    let looked_at = || {
+        let selected = match &scene.view.selection {
+            Some(crate::command::Selection::Leg(leg)) => Some(leg),
+            _ => None,
+        };
+        selected.into_iter().chain(&scene.view.pointed)
+    };
+    let covered = scene.analysis.coverage();
+    let covered = covered.filter(|_| scene.view.coverage && scene.out_of_date().is_none());
+    match covered {
         Some(known) => {
+            // what is selected lies below: who selects a leg there asks why it is red
+            looked_at().for_each(|leg| highlighted(leg, Stroke::new(BELOW, p.text)));
             // what is narrower than a column is not seen
             for (reach, part) in coverage::parts(seen, known) {
                 let path: Vec<Pos2> = part.iter().map(|point| axes.place(point)).collect();
@@ -352,19 +372,12 @@ fn draw_path(painter: &Painter, axes: &Axes, seen: &[Point], scene: &Scene<'_>, 
         }
     }
     draw_diversion(painter, axes, scene, p);
-    let highlighted = |leg: &flight_plan::Id, colour: Color32| {
-        let is_its = |passage: &&Passage| scene.document.is_wanted(&passage.leg, |id| id == leg);
-        for part in forecast.passages.iter().filter(is_its).filter_map(|passage| forecast.part(passage)) {
-            painter.add(Shape::line(part.iter().map(|q| axes.place(q)).collect(), Stroke::new(2.6, colour)));
-        }
-    };
-    scene.faulty().into_iter().for_each(|leg| highlighted(leg, p.warning));
-    if let Some(crate::command::Selection::Leg(leg)) = &scene.view.selection {
-        highlighted(leg, p.text);
+    scene.faulty().into_iter().for_each(|leg| highlighted(leg, Stroke::new(ABOVE, p.warning)));
+    if covered.is_none() {
+        looked_at().for_each(|leg| highlighted(leg, Stroke::new(ABOVE, p.text)));
     }
-    scene.view.pointed.iter().for_each(|leg| highlighted(leg, p.text));
     if let (Some(leg), true) = (scene.vehicle.current_leg(), scene.vehicle.is_airborne()) {
-        highlighted(leg, p.active);
+        highlighted(leg, Stroke::new(ABOVE, p.active));
     }
     if let Some(near) = flown::on_preview(scene) {
         flown::aircraft(painter, axes, near.time_s, scene, p);

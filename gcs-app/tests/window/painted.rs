@@ -198,6 +198,15 @@ impl Window {
         found.filter(|end| end.distance(at) < 14.0).count()
     }
 
+    /// So many lines of one colour are painted on what is called so before the first of another.
+    pub fn lines_below(&self, name: &str, lower: Color32, upper: Color32) -> usize {
+        let rect = self.harness.query_all_by_label_contains(name).next().unwrap().rect();
+        let shapes = self.harness.output().shapes.iter();
+        let inside = shapes.filter(|clipped| rect.expand(1.0).contains_rect(clipped.clip_rect));
+        let colours = inside.flat_map(|clipped| strokes(&clipped.shape));
+        colours.take_while(|found| *found != upper).filter(|found| *found == lower).count()
+    }
+
     fn lines_in(&self, rect: Rect, colour: Color32) -> usize {
         let shapes = self.harness.output().shapes.iter();
         let inside = shapes.filter(|clipped| rect.expand(1.0).contains_rect(clipped.clip_rect));

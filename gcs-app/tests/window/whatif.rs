@@ -262,6 +262,28 @@ fn the_coverage_tells_parts_that_are_reached_from_parts_that_are_not() {
     assert_ne!(look(Reach::Good).0.color, look(Reach::Out).0.color);
     assert_ne!(look(Reach::Good).1, look(Reach::Out).1);
     assert!(window.shows("not reached: ") && window.shows("How the worst alarm would end"));
+    // who selects a leg asks why it is red: what is selected lies below the colours
+    let colour = look(Reach::Good).0.color;
+    let below =
+        |window: &Window| ["Map", "Vertical profile"].map(|at| window.lines_below(at, p.text, colour));
+    let before = below(&window);
+    window.select_row(("TF To the gap", 0));
+    window.steps(3);
+    let after = below(&window);
+    assert!(before.iter().zip(after).all(|(before, after)| after > *before), "{before:?} {after:?}");
+}
+
+/// The warnings of the new world came in above the slider that was being dragged.
+#[test]
+fn what_is_found_in_another_world_stands_below_what_is_chosen() {
+    let mut window = opened(FIRE_WATCH);
+    let take = |window: &Window| window.harness.get_by_label("Take into the plan").rect();
+    let before = take(&window);
+    slide(&mut window, "Energy at start", 20.0);
+    window.until("the review", |app| app.analysis().what_if_problems().is_some());
+    let remark = window.harness.get_by_label_contains("are previewed, not reviewed").rect();
+    assert_eq!(take(&window), before);
+    assert!(remark.top() >= before.bottom(), "{remark}");
 }
 
 #[test]
