@@ -28,7 +28,6 @@ pub fn air(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     autopilot::show(ui, scene, &mut chosen);
     send(scene, chosen, queue);
     ui.horizontal(|ui| reset_button(ui, scene, queue));
-    problems(ui, scene);
 }
 
 fn send(scene: &Scene<'_>, chosen: WhatIf, queue: &mut Queue) {
@@ -142,6 +141,8 @@ pub fn choices(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
     send(scene, chosen, queue);
     take(ui, scene, queue);
+    // below all that is chosen: what comes in moves nothing under the hand
+    problems(ui, scene);
 }
 
 /// Which branch is taken at each fork of the main plan; false: there is none.
