@@ -1,6 +1,7 @@
 //! The words of other programs: who types one finds what it is called here. It is shown under the name that it has here.
 
 use super::fuzzy::{self, Score};
+use flight_plan::create::{LegChoice, Shape};
 
 /// Words that mean the same elsewhere, and what they mean here.
 struct Alias {
@@ -49,15 +50,29 @@ const TABLE: &[Alias] = &[
     alias(&["clear mission", "new mission"], &["new"], &[]),
     alias(&["step back", "revert", "take back"], &["undo"], &[]),
     alias(&["step forward", "repeat"], &["redo"], &[]),
+    alias(&["scale", "interface", "text size", "font size", "zoom the window"], &["larger", "smaller", "normal-size"], &[]),
     alias(&["jump to", "centre map", "home view"], &["fit"], &[]),
 ];
 
-/// How well the words of others for an action answer a query: only side by side, and less than its own words would.
+/// Tools that draw legs, and as what: whoever types the kind of a leg finds the tool for it.
+const DRAWN: [(&str, Shape); 4] = [
+    ("tool-track", Shape::Place),
+    ("tool-line", Shape::Line),
+    ("tool-area", Shape::Area),
+    ("tool-circle", Shape::Circle),
+];
+
+/// How well the words of others for an action, or the kinds of legs that it draws, answer a query: only side by side, and less than
+/// its own words would.
 pub fn score(query: &str, action: &str) -> Option<Score> {
     let is_it =
         |known: &&str| action.strip_prefix(*known).is_some_and(|of| of.is_empty() || of.starts_with(": "));
     let of = TABLE.iter().filter(|alias| alias.actions.iter().any(&is_it));
-    of.flat_map(|alias| alias.words).filter_map(|word| fuzzy::words(query, word)).max().map(Score::of_another)
+    let words = of.flat_map(|alias| alias.words).filter_map(|word| fuzzy::words(query, word));
+    let drawn = DRAWN.iter().filter(|(tool, _)| *tool == action);
+    let kinds = drawn.flat_map(|(_, shape)| LegChoice::drawn_as(*shape));
+    let kinds = kinds.filter_map(|kind| fuzzy::words(query, &kind.name()));
+    words.chain(kinds).max().map(Score::of_another)
 }
 
 /// What is sought, in lower case, is another word for rows with this tag.
@@ -93,6 +108,21 @@ mod tests {
                 assert!(there.contains(*action), "{:?}: there is no action {action}", alias.words);
             }
         }
+    }
+
+    #[test]
+    fn every_kind_of_leg_leads_to_the_tool_that_draws_it() {
+        let toolbox = Toolbox::default();
+        for (tool, shape) in DRAWN {
+            assert!(toolbox.cards().any(|(card, _)| tool == format!("tool-{}", card.id)), "{tool}");
+            for kind in LegChoice::drawn_as(shape) {
+                assert!(score(&kind.name(), tool).is_some(), "{kind:?}");
+            }
+        }
+        for word in ["figure", "sector", "spiral"] {
+            assert!(score(word, "tool-circle").is_some(), "{word}");
+        }
+        assert!(score("HM", "tool-track").is_some() && score("HM", "tool-area").is_none());
     }
 
     #[test]

@@ -102,6 +102,26 @@ fn a_command_to_the_aircraft_and_a_leg_of_the_plan_are_not_called_the_same() {
     assert!(window.shows("Add a holding here") && !window.shows("Hold here"));
 }
 
+/// Letters that were scattered in other names stood first, and the tool was not found.
+#[test]
+fn kinds_of_legs_and_the_size_of_the_window_are_found_by_their_words() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    for (words, kind) in [("figure", "Orbit"), ("sector", "Orbit"), ("HM", "TF"), ("creeping", "Scan")] {
+        window.ask_for(words);
+        window.press(Key::Enter);
+        assert!(window.shows(&format!("Kind: {kind}")), "{words}");
+        window.press(Key::V);
+    }
+    for words in ["scale", "interface"] {
+        window.ask_for(words);
+        assert!(window.shows("Size Larger"), "{words}");
+        window.press(Key::Enter);
+        assert!(window.app().view().scale.get() > 1.0, "{words}");
+        window.press_ctrl(Key::Num0);
+    }
+}
+
 #[test]
 fn what_is_not_possible_says_why_and_does_nothing() {
     let mut window = Window::open(SQUARE);
