@@ -171,11 +171,11 @@ fn fly(wanted: &Wanted, aim: &Aim, plan: &FlightPlan, ground: &Arc<dyn Terrain>)
     if wanted.is_diversion {
         tried.stages.iter_mut().for_each(|stage| stage.legs.retain(|other| other.id == leg.id));
     }
-    let program = match compile(tried, &profile, ground.as_ref()) {
+    let program = match compile(tried.clone(), &profile, ground.as_ref()) {
         Ok(program) => Arc::new(program),
         Err(problems) => {
             let fault = problems.iter().find(|problem| problem.is_error());
-            let fault = fault.map(|problem| plan.in_names(&problem.message));
+            let fault = fault.map(|problem| tried.in_names(&problem.message));
             return Trial { fault, ..Trial::default() };
         }
     };

@@ -137,6 +137,30 @@ fn things_get_names_of_their_own() {
     assert_eq!(plan.unique_id("number1"), Id::new("number4"), "a variable has that name");
 }
 
+/// A letter says that two runways lie side by side.
+#[test]
+fn a_runway_has_a_letter_beside_another_one_only() {
+    let mut plan = FlightPlan::default();
+    for (away_m, id) in [(0.0, "R08"), (400.0, "R08L"), (3000.0, "R08-1")] {
+        let threshold = HOME.destination(0.0, away_m);
+        let made = runway(&plan, threshold, threshold.destination(80.0, 600.0), 200.0);
+        assert_eq!(made.id.as_str(), id);
+        plan = Edit::Add(Box::new(Thing::Runway(made))).apply(&plan).unwrap();
+    }
+}
+
+/// What is said of a leg that is tried out names nothing that is not in the plan.
+#[test]
+fn what_leads_to_a_trial_has_a_name_for_people() {
+    let plan = made(Template::Survey);
+    let tried = plan.leg(&"scan".into()).unwrap().leg.clone();
+    let at = Approach { from: HOME, course_deg: Some(90.0) };
+    let trial = trial(&plan, at, (500.0, 200.0), &tried);
+    for id in trial.all_legs().iter().map(|of| &of.leg.id).chain(trial.stages.iter().map(|stage| &stage.id)) {
+        assert!(plan.leg(id).is_some() || trial.label(id) == "the way there", "{id}");
+    }
+}
+
 #[test]
 fn stages_are_added_in_the_order_of_a_flight_and_moved() {
     let mut plan = FlightPlan::default();

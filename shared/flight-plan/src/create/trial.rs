@@ -11,6 +11,9 @@ use std::sync::Arc;
 /// The path is flown so far before the leg begins, metres: it arrives on its course.
 pub const RUN_UP_M: f64 = 1000.0;
 
+/// What people call whatever leads to the leg.
+const WAY_THERE: &str = "the way there";
+
 /// A plan of nothing but a leg, for the path that arrives there at an altitude, in a flight from a home of that elevation; what is
 /// done on the leg is left out.
 pub fn trial(
@@ -32,7 +35,7 @@ pub fn trial(
     let to = |at: LatLon| PlanWaypoint { place: Place::Position(Value::Constant(at)), fly_over: false };
     let lead_in = |id: &str, kind: LegKind| Leg {
         id: plan.unique_id(id),
-        name: String::new(),
+        name: WAY_THERE.into(),
         altitude: None,
         speed_mps: None,
         kind,
@@ -51,7 +54,7 @@ pub fn trial(
     }
     let stage = Stage {
         id: plan.unique_id("trial"),
-        name: String::new(),
+        name: WAY_THERE.into(),
         kind: StageKind::Mission,
         emergency: EmergencyChoice::default(),
         runway: None,
