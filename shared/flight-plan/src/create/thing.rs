@@ -23,7 +23,7 @@ pub fn runway(plan: &FlightPlan, threshold: LatLon, end: LatLon, elevation_amsl_
     let heading_deg = normalise_360(way.bearing_start_deg.round());
     let last = plan.runways.iter().map(|runway| runway.priority).max().unwrap_or(0);
     Runway {
-        id: runway_id(plan, heading_deg),
+        id: runway_id(plan, threshold, heading_deg),
         threshold,
         elevation_amsl_m: elevation_amsl_m.round(),
         heading_deg,
@@ -33,12 +33,18 @@ pub fn runway(plan: &FlightPlan, threshold: LatLon, end: LatLon, elevation_amsl_
     }
 }
 
-/// As runways are called: `R` and a tenth of the heading, 01 to 36; with a letter where that is taken.
-fn runway_id(plan: &FlightPlan, heading_deg: f64) -> Id {
+/// Runways in one direction lie so far apart at most to be left and right of one another, metres.
+const PARALLEL_M: f64 = 2000.0;
+
+/// As runways are called: `R` and a tenth of the heading, 01 to 36; where that is taken, with a letter beside another one, else with a
+/// number.
+fn runway_id(plan: &FlightPlan, threshold: LatLon, heading_deg: f64) -> Id {
     let tenth = (heading_deg / 10.0).round().rem_euclid(36.0);
     let name = format!("R{:02}", if tenth < 1.0 { 36.0 } else { tenth });
-    let mut letters = ["", "L", "R", "C"].map(|letter| format!("{name}{letter}")).into_iter();
-    let free = letters.find(|name| plan.unique_id(name).as_str() == name);
+    let is_beside = |other: &Runway| other.threshold.distance_m(threshold) < PARALLEL_M;
+    let letters = if plan.runways.iter().any(is_beside) { &["", "L", "R", "C"][..] } else { &[""] };
+    let mut names = letters.iter().map(|letter| format!("{name}{letter}"));
+    let free = names.find(|name| plan.unique_id(name).as_str() == name);
     free.map_or_else(|| plan.fresh_id(&format!("{name}-")), |name| Id::new(&name))
 }
 
