@@ -373,6 +373,13 @@ fn a_zone_keeps_off_the_centre_line_that_legs_are_drawn_to() {
         window.paints("centre line of R05")
     };
     assert!(is_on_line(&mut window, Key::T));
+    let pointer = window.harness.ctx.pointer_hover_pos().unwrap();
+    window.click_at(pointer);
+    let leg = window.plan().leg(&"leg1".into()).unwrap().leg.clone();
+    let Some(Place::Position(flight_plan::Value::Constant(at))) = leg.place() else {
+        panic!("no place: {leg:?}")
+    };
+    assert_eq!(flight_plan::figures::place(*at), *at, "with no more digits than others");
     assert!(!is_on_line(&mut window, Key::Z));
 }
 

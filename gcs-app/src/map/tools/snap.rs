@@ -7,7 +7,7 @@ use crate::map::sketch::Handled;
 use crate::map::text;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Stroke, vec2};
-use flight_plan::{Place, Runway, Value};
+use flight_plan::{Place, Runway, Value, figures};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 
@@ -64,7 +64,7 @@ fn things<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> {
 
 fn runway_ends<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> {
     canvas.scene.document.plan().runways.iter().flat_map(|runway| {
-        let end = runway.threshold.destination(runway.heading_deg, runway.length_m);
+        let end = figures::place(runway.threshold.destination(runway.heading_deg, runway.length_m));
         [(runway.threshold, "threshold"), (end, "end")]
             .map(|(at, what)| Mark { on: Some(format!("{what} of {}", runway.id)), ..Mark::at(at) })
     })
@@ -93,7 +93,7 @@ fn line_of(runway: &Runway, at: LatLon) -> Option<Mark> {
     }
     let back_deg = if along_m < 0.0 { 180.0 } else { 0.0 };
     let on = runway.threshold.destination(runway.heading_deg + back_deg, along_m.abs());
-    Some(Mark { on: Some(format!("{CENTRE_LINE}{}", runway.id)), ..Mark::at(on) })
+    Some(Mark { on: Some(format!("{CENTRE_LINE}{}", runway.id)), ..Mark::at(figures::place(on)) })
 }
 
 /// A ring around what a click would take, and its name; along a line, the line.
