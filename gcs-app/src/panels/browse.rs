@@ -199,7 +199,10 @@ fn buttons(ui: &mut Ui, purpose: Purpose, wish: Wish, entered: bool, queue: &mut
     };
     if let Wish::Overwrite(path) = &wish {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        ui.colored_label(p.caution, format!("{name} is there already. What is in it would be lost."));
+        let text = format!(
+            "{name} is there already. What is in it would be lost: Enter does not do that, the button does."
+        );
+        ui.colored_label(p.caution, text);
     }
     ui.horizontal(|ui| {
         let button = ui.add_enabled(wish != Wish::Nothing, primary_button(text, p));

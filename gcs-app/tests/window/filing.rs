@@ -78,7 +78,7 @@ fn file_that_is_there_is_replaced_only_when_told_to() {
     window.press(egui::Key::Enter);
     until_listed(&mut window);
     name(&mut window, Path::new("old.xml"));
-    assert!(window.shows("What is in it would be lost"));
+    assert!(window.shows("What is in it would be lost: Enter does not do that, the button does"));
     window.press(egui::Key::Enter);
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
     window.click("Replace the file");
