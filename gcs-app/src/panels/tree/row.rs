@@ -67,6 +67,9 @@ pub(super) fn show(ui: &mut Ui, row: &Row, look: &Look<'_>, queue: &mut Queue) -
     let sense = Sense::CLICK | Sense::DRAG;
     let sense = if is_current { sense | Sense::FOCUSABLE } else { sense };
     let response = ui.interact(rect, id(&row.key), sense);
+    if response.gained_focus() {
+        response.scroll_to_me(None);
+    }
     let selected = match (row.as_branch(), look.scene.selected_branch()) {
         (None, None) => row.selection.as_ref().is_some_and(|s| look.scene.is_selected(s)),
         (own, branch) => own.is_some() && own == branch,
