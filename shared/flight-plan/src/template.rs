@@ -69,7 +69,7 @@ impl Template {
         match self {
             Self::Circuit => "Once around the runway",
             Self::Survey => "An area, scanned in parallel tracks",
-            Self::Corridor => "A strip along a line, flown up and down",
+            Self::Corridor => "A strip along a line, in parallel tracks",
             Self::Search => "An expanding square around a point",
             Self::Patrol => "Forth and back between points",
             Self::FireWatch => "A circle that moves with a fire, scanned and orbited",
