@@ -51,7 +51,7 @@ struct World {
     /// What it has sent and not cancelled, by its tokens.
     sent: BTreeMap<u64, Waypoint>,
     token: u64,
-    /// It sends some just now.
+    /// It sends some just now, and they are not ordered yet.
     feeds: bool,
     /// What the gateway has stored last.
     stored: Option<Snapshot>,
@@ -153,8 +153,9 @@ impl World {
         assert!(!steers || is_ours, "{order:?} in {:?}", self.core.gateway.state());
         let stops_engine = *order == Order::StandDown && !self.autopilot.shown_on_ground;
         assert!(!stops_engine, "{order:?} in the air, {:?}", self.core.gateway.state());
-        // of the plan nothing is left, but where its own waypoints are fed
-        if *order == Order::Forget || matches!(order, Order::Feed { .. }) && !self.feeds {
+        // of the plan nothing is left, but where its own waypoints are fed; Safe mode may replace those at once
+        let feeds = matches!(order, Order::Feed { .. });
+        if *order == Order::Forget || feeds && !std::mem::take(&mut self.feeds) {
             self.sent.clear();
         }
     }
@@ -402,6 +403,23 @@ fn config() -> ProptestConfig {
         failure_persistence: None,
         ..ProptestConfig::default()
     }
+}
+
+/// It is taken by a gateway that started anew, which finds nobody alive in the same moment and flies its own way home.
+#[test]
+fn what_is_sent_to_an_approach_of_which_nobody_is_in_charge_is_replaced_by_the_way_home() {
+    let mut world = World::in_nav();
+    world.alive = false;
+    world.ask(request(6, 0));
+    world.ask(request(7, 0));
+    world.ticks(7);
+    world.autopilot.reach();
+    world.restart_gateway();
+    world.ticks(6);
+    assert_eq!(world.state, GatewayState::Approach);
+    world.feed(None, 1);
+    assert_eq!(world.state, GatewayState::SafeReturn);
+    assert!(world.sent.is_empty() && world.has_what_was_sent(), "{:?}", world.autopilot);
 }
 
 proptest! {
