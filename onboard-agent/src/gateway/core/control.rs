@@ -91,11 +91,14 @@ impl Control {
 
     /// Changes what is wanted.
     pub fn set_intent(&mut self, intent: Intent, mode: Option<Mode>) {
+        if mode_of(intent) != self.wanted_mode() {
+            // otherwise it is still the same that is not done
+            self.disobeys_since = None;
+        }
         self.intent = intent;
         self.mode_before = mode;
         self.confirmed = false;
         self.confirmed_at = None;
-        self.disobeys_since = None;
         self.launch.put_off_since = None;
         self.climb_out.asked = None;
         self.retry_at = None;

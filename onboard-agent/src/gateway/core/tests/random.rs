@@ -422,6 +422,31 @@ fn what_is_sent_to_an_approach_of_which_nobody_is_in_charge_is_replaced_by_the_w
     assert!(world.sent.is_empty() && world.has_what_was_sent(), "{:?}", world.autopilot);
 }
 
+/// It holds in Safe mode, and then does nothing of what it is told; on the way home the engine stops and runs, and a way is chosen each
+/// time. The alarm began anew with each.
+#[test]
+fn that_it_disobeys_is_not_told_later_for_a_way_that_is_chosen_anew() {
+    let mut world = World::in_nav();
+    world.alive = false;
+    world.ask(request(6, 0));
+    let until = |world: &mut World, state| {
+        while world.state != state {
+            world.ticks(1);
+            assert!(world.core.now < Time::from_secs(120), "{:?}", world.state);
+        }
+    };
+    until(&mut world, GatewayState::SafeHold);
+    world.ticks(20);
+    world.autopilot.fate = Fate::Failed;
+    until(&mut world, GatewayState::SafeReturn);
+    for _ in 0..3 {
+        world.autopilot.engine_runs = !world.autopilot.engine_runs;
+        world.ticks(13);
+    }
+    assert_eq!(world.state, GatewayState::SafeReturn);
+    assert!(world.core.raised("autopilot-disobeys"));
+}
+
 proptest! {
     #![proptest_config(config())]
     /// What happens, how, and so many ticks until the next.
