@@ -139,6 +139,7 @@ impl Hub {
             instance: None,
             accepted: true,
             reason,
+            waits: false,
             current,
             last,
             highest,

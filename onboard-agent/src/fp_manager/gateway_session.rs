@@ -224,11 +224,13 @@ impl GatewaySession {
         self.gateway = answer.instance.as_deref().and_then(|instance| instance.parse().ok());
         self.heard = Some(now);
         if !answer.accepted {
+            // the gateway's state says who has the aircraft meanwhile
+            if answer.waits && self.controlled && self.joined_at.is_some() {
+                return Err(None);
+            }
             let new = self.last_reason != answer.reason;
             self.last_reason.clone_from(&answer.reason);
-            // who flew for it before waits for the aircraft, and its state says who has that
-            let waits = self.controlled && self.joined_at.is_some();
-            return Err((new && !waits).then_some(answer.reason));
+            return Err(new.then_some(answer.reason));
         }
         tracing::info!(highest = answer.highest.0, "joined the gateway");
         self.last_reason.clear();
@@ -486,6 +488,23 @@ mod tests {
         assert!(why.starts_with(reason), "{why}");
     }
 
+    /// That a pilot flies is known of the gateway's state; that something is wrong with who asks is not.
+    #[test]
+    fn of_a_join_that_is_refused_only_what_can_be_mended_is_told() {
+        let mut session = GatewaySession::default();
+        let now = Duration::from_secs;
+        session.joined(now(0), answer(None)).unwrap();
+        session.state(now(9), GatewayState::Manual);
+        let mut refused = |reason: &str, waits| {
+            let answer =
+                JoinAnswer { accepted: false, waits, reason: reason.into(), ..answer(None).unwrap() };
+            session.joined(now(10), Some(answer)).unwrap_err()
+        };
+        assert_eq!(refused("The pilot flies.", true), None);
+        assert_eq!(refused("Restore that plan.", false).as_deref(), Some("Restore that plan."));
+        assert_eq!(refused("Restore that plan.", false), None, "once");
+    }
+
     /// "Try again when there is a position": it comes when it comes.
     #[test]
     fn runways_that_are_refused_are_asked_for_until_they_are_taken() {
@@ -508,6 +527,7 @@ mod tests {
             instance: instance.map(Into::into),
             accepted: true,
             reason: String::new(),
+            waits: false,
             current: None,
             last: None,
             highest: usal::contract::Token(0),

@@ -119,6 +119,9 @@ pub struct JoinAnswer {
     pub accepted: bool,
     /// Why not.
     pub reason: String,
+    /// Not yet, and nothing is wrong with who asks: a pilot, or the gateway itself, has the aircraft.
+    #[serde(default)]
+    pub waits: bool,
     /// The waypoint steered to now, if it is one of the FP Manager's.
     pub current: Option<Token>,
     /// The last waypoint in the buffer, if any.

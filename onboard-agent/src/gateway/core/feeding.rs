@@ -33,7 +33,7 @@ impl Gateway {
         }
         if let Err(reason) = self.may_join(&join) {
             self.fp_manager.asked_to_join(now);
-            return self.join_answer(false, reason);
+            return JoinAnswer { waits: self.has_no_place(), ..self.join_answer(false, reason) };
         }
         self.fp_manager.joined(now, join.plan, from);
         if self.state == GatewayState::Stop && join.last_token < self.highest {
@@ -100,12 +100,23 @@ impl Gateway {
         Ok(())
     }
 
+    /// Nobody can join, whoever it is: a pilot has the aircraft, or Safe mode until it is told otherwise.
+    fn has_no_place(&self) -> bool {
+        use GatewayState::{Manual, SafeApproach, SafeHold, SafeLand, SafeReturn, Terminate};
+        match self.state {
+            Manual | SafeApproach | SafeLand | Terminate => true,
+            SafeHold | SafeReturn => self.control.safe_until_command,
+            _ => false,
+        }
+    }
+
     fn join_answer(&self, accepted: bool, reason: String) -> JoinAnswer {
         let own = |t: Token| (t.0 > 0).then_some(t);
         JoinAnswer {
             instance: None,
             accepted,
             reason,
+            waits: false,
             current: self.buffer.current().and_then(|w| own(w.token)),
             last: self.buffer.last().and_then(|w| own(w.token)),
             highest: self.highest,

@@ -100,6 +100,7 @@ impl Gateway {
             instance: None,
             accepted,
             reason: if accepted { String::new() } else { "it does not know the flight".into() },
+            waits: taken,
             current: self.buffer.front().map(|w| w.token),
             last: self.buffer.back().map(|w| w.token),
             highest: self.highest,
