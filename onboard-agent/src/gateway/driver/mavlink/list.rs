@@ -55,6 +55,8 @@ pub trait Feeding: std::fmt::Debug + Send + Sync {
     fn is_astray(&self, seq: u16) -> bool;
     /// Make the autopilot steer to the chain again.
     fn bring_back(&mut self);
+    /// A landing may be so steep, degrees, where the autopilot tells that: of what is fed from now on.
+    fn limit_landing(&mut self, _steepest_deg: Option<f64>) {}
     /// The aircraft is here now. For a strategy to which it matters when a list changes.
     fn moved(&mut self, _fix: &Fix) {}
     /// The next change, if one is due and none is in flight. `may_install`: the aircraft is not
@@ -130,10 +132,12 @@ impl List {
         }
     }
 
-    /// It is known how this autopilot's list is kept, and how steep a landing it takes, degrees: from then on it is, by what was told first.
+    /// It is known how this autopilot's list is kept, and how steep a landing it takes, degrees: from then on it is, by what was told last.
     pub fn keep(&mut self, window: fn(Chain, Option<f64>) -> Box<dyn Feeding>, landing_deg: Option<f64>) {
         let early = &mut self.early;
-        self.window.get_or_insert_with(|| window(std::mem::take(early), landing_deg));
+        self.window
+            .get_or_insert_with(|| window(std::mem::take(early), landing_deg))
+            .limit_landing(landing_deg);
     }
 
     /// Leave a loiter for the waypoint after it.

@@ -36,6 +36,7 @@ impl Default for Steepest {
 impl Steepest {
     /// As it is set, if it tells that.
     pub(super) fn told(degrees: Option<f64>) -> Self {
+        let degrees = degrees.filter(|degrees| degrees.is_finite());
         degrees.map_or_else(Self::default, |degrees| Self(degrees.clamp(LEAST_DEG, MOST_DEG)))
     }
 

@@ -84,6 +84,10 @@ impl Feeding for Window {
         self.end = self.end.min(self.chain.end());
     }
 
+    fn limit_landing(&mut self, steepest_deg: Option<f64>) {
+        self.steepest = Steepest::told(steepest_deg);
+    }
+
     fn leave(&mut self, serial: Serial) {
         if self.chain.active().is_some_and(|f| f.serial == serial) {
             self.chain.leave_active();

@@ -213,6 +213,17 @@ fn a_landing_that_px4_takes_has_nothing_before_it_but_what_was_fed() {
     assert_eq!((land.kind, before.position), (ItemKind::Land, steep_place(6)));
 }
 
+/// Somebody sets it lower before the flight: what is fed from then on is as PX4 takes it.
+#[test]
+fn a_limit_that_is_set_anew_counts_for_what_is_fed_next() {
+    let mut window = Window::new(Chain::default(), Some(9.0));
+    window.limit_landing(Some(3.0));
+    assert_is_taken_at(3.0, &Rig::in_window(window, steep(), steep_place).autopilot.list);
+    let mut window = Window::new(Chain::default(), Some(9.0));
+    window.limit_landing(Some(f64::NAN));
+    assert_is_taken_at(5.0, &Rig::in_window(window, steep(), steep_place).autopilot.list);
+}
+
 /// It is come to at 8°: from 45° that it takes to 1°, wherever it was set, and by a gateway that starts anew on the way.
 #[test]
 fn a_landing_is_as_steep_as_px4_is_set_to_take_it() {
