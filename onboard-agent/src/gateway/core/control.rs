@@ -220,7 +220,9 @@ impl Gateway {
             return;
         }
         if self.telemetry.armed {
-            self.control.launch.is_armed();
+            if self.control.launch.is_armed() {
+                self.forget_engine(out);
+            }
         } else if !self.telemetry.flies_disarmed(now) {
             if flies && self.state == GatewayState::Stop {
                 self.arm(now, out);

@@ -39,9 +39,10 @@ pub struct Launch {
 }
 
 impl Launch {
-    /// It is seen to be armed.
-    pub fn is_armed(&mut self) {
-        (self.was_armed, self.arm) = (true, None);
+    /// It is seen to be armed; true: for a take-off, and it was not before.
+    pub fn is_armed(&mut self) -> bool {
+        self.arm = None;
+        !std::mem::replace(&mut self.was_armed, true) && self.since.is_some()
     }
 
     /// It does not arm yet; true: it has had its time to.
@@ -57,14 +58,12 @@ impl Gateway {
         let Launch { arm, stand_down, .. } = self.control.launch;
         self.control.launch = Launch { since: Some(self.now), arm, stand_down, ..Launch::default() };
         self.control.set_intent(Intent::Fly, self.telemetry.mode);
-        // only the take-off shows that it runs, one that is thrown not before it is in the air; and there one that is still dead is noticed
-        // at once
-        self.forget_engine(out);
         out.push(Output::Save);
     }
 
-    /// On the ground: what was known of it before is not known of it now.
-    fn forget_engine(&mut self, out: &mut Vec<Output>) {
+    /// On the ground: what was known of it before is not known of it now. Only a take-off shows that it runs, one that is thrown not before it
+    /// is in the air; and there one that is still dead is noticed at once.
+    pub(super) fn forget_engine(&mut self, out: &mut Vec<Output>) {
         let mut events = vec![];
         self.alarms.forget_engine(&mut events);
         out.extend(events.into_iter().map(Output::Event));
