@@ -13,7 +13,7 @@ use gcs_app::assets;
 use gcs_app::demo::components::{Components, Setup, VEHICLE};
 use gcs_app::link::Links;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 use tokio::runtime::Runtime;
 use usal::contract::{Branching, Cause, FpManagerEvent, PlanEvent};
@@ -24,6 +24,8 @@ use usal::{Config, EventSubscriber, Occurrence, Participant, Session, Start};
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Longer than this nothing is waited for, simulated seconds.
 const LIMIT_S: f64 = 600.0;
+/// What the window shows is never older, simulated seconds: a machine that is busy elsewhere would have it look at the past.
+const BEHIND_S: f64 = 1.0;
 /// Ticks of the simulated clock between two frames.
 const TICKS_A_FRAME: usize = 10;
 
@@ -80,6 +82,7 @@ impl Field {
             self.listen();
             if count % TICKS_A_FRAME == 0 {
                 self.window.wait();
+                self.keep_up(tick.time_s);
                 if is_so(&self.window, &self.heard) {
                     self.clock.acknowledge(tick);
                     return self.window.steps(2);
@@ -97,6 +100,23 @@ impl Field {
 
     fn until_leg(&mut self, plan: Branching, leg: &str) {
         self.until(leg, |_, heard| entered(heard).last() == Some(&(plan.clone(), leg.to_owned())));
+    }
+
+    /// Draws until the window has heard where the aircraft was just now, if it ever heard that.
+    fn keep_up(&mut self, now_s: f64) {
+        let deadline = Instant::now() + PATIENCE;
+        let is_behind = |window: &Window| {
+            window
+                .app()
+                .vehicle()
+                .position
+                .as_ref()
+                .is_some_and(|position| position.time_s < now_s - BEHIND_S)
+        };
+        while is_behind(&self.window) {
+            assert!(Instant::now() < deadline, "the window hears nothing");
+            self.window.wait();
+        }
     }
 
     fn listen(&mut self) {
@@ -224,6 +244,8 @@ fn an_emergency_is_flown_and_the_way_back_is_taken() {
     };
     assert!(field.heard.contains(&started), "{:#?}", field.heard);
     field.until_shown("EMERGENCY: flying return");
+    // where it was raised comes as an event, beside the status that the banner comes of
+    field.until_shown("Return to the main plan at side2");
     field.window.click("Return to the main plan at side2");
     // what would follow is looked at first
     field.until_shown("Flies next: side");
