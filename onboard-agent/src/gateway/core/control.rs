@@ -220,9 +220,7 @@ impl Gateway {
             return;
         }
         if self.telemetry.armed {
-            if self.control.launch.is_armed() {
-                self.forget_engine(out);
-            }
+            self.control.launch.is_armed();
         } else if !self.telemetry.flies_disarmed(now) {
             if flies && self.state == GatewayState::Stop {
                 self.arm(now, out);

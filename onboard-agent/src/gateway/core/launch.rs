@@ -39,10 +39,10 @@ pub struct Launch {
 }
 
 impl Launch {
-    /// It is seen to be armed; true: for a take-off, and it was not before.
+    /// It is seen to be armed; true: it was not before.
     pub fn is_armed(&mut self) -> bool {
         self.arm = None;
-        !std::mem::replace(&mut self.was_armed, true) && self.since.is_some()
+        !std::mem::replace(&mut self.was_armed, true)
     }
 
     /// It does not arm yet; true: it has had its time to.
@@ -76,6 +76,10 @@ impl Gateway {
         self.stand_down_once_heard(now, out);
         self.disarm_late(now, out);
         let Some(since) = self.control.launch.since else { return };
+        // some are told to be armed when they roll already
+        if self.telemetry.armed && self.control.launch.is_armed() {
+            self.forget_engine(out);
+        }
         let on_ground = matches!(self.state, GatewayState::Stop | GatewayState::Off);
         if !on_ground || self.control.intent != Intent::Fly {
             self.control.launch.since = None;
