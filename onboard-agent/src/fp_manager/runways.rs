@@ -3,14 +3,9 @@
 use flight_plan::{FlightPlan, Runway};
 use usal::contract::SafeRunway;
 
-/// More are not stored by the gateway.
-const MOST: usize = 32;
-
 /// The best runways of a plan, best first.
 pub fn safe_runways(plan: &FlightPlan) -> Vec<SafeRunway> {
-    let mut runways: Vec<&Runway> = plan.runways.iter().collect();
-    runways.sort_by_key(|runway| runway.priority);
-    runways.into_iter().take(MOST).map(safe_runway).collect()
+    flight_exec::safe_runways(plan).into_iter().map(safe_runway).collect()
 }
 
 fn safe_runway(runway: &Runway) -> SafeRunway {

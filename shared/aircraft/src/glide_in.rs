@@ -15,6 +15,9 @@ const FINALS: [f64; 3] = [1.0, 0.5, 0.3];
 pub const ALIGNED_DEG: f64 = 30.0;
 /// The other end of a runway, of which only the place is known, may be so much higher or lower by the elevation model, metres.
 const LEVEL_M: f64 = 8.0;
+/// A runway that begins so near to another one's end, metres, and leads back by its heading to so many degrees, is the same one.
+const SAME_PLACE_M: f64 = 60.0;
+const SAME_HEADING_DEG: f64 = 10.0;
 
 /// Heights that differ by less are as good as each other, metres.
 const EVEN_M: f64 = 3.0;
@@ -29,19 +32,38 @@ pub struct End {
 }
 
 impl End {
-    /// The other end, if a glide may land there and it is not known to lie higher or lower. `ground_m`: what is known of the ground at a
-    /// place, metres AMSL.
+    /// The other end, if a glide may land there, with what is known of it ([`End::opposite`]).
     pub fn other(
         &self,
         profile: &Profile,
         wind: Wind,
+        named: impl IntoIterator<Item = End>,
+        ground_m: impl Fn(LatLon) -> Option<f64>,
+    ) -> Option<Self> {
+        let other = self.opposite(named, ground_m)?;
+        may_land_unnamed(profile, wind, other.strip.heading_deg).then_some(other)
+    }
+
+    /// The other end: as high as the end among the `named` ones that lies there; if none does, as the ground, and if that is not known, as
+    /// this one. `None`: by the ground alone it lies higher or lower. `ground_m`: what is known of the ground at a place, metres AMSL.
+    pub fn opposite(
+        &self,
+        named: impl IntoIterator<Item = End>,
         ground_m: impl Fn(LatLon) -> Option<f64>,
     ) -> Option<Self> {
         let strip = self.strip.from_other_end();
-        let is_level = |ground_m: f64| (ground_m - self.elevation_amsl_m).abs() <= LEVEL_M;
-        let fits = may_land_unnamed(profile, wind, strip.heading_deg)
-            && ground_m(strip.threshold).is_none_or(is_level);
-        fits.then_some(Self { strip, ..*self })
+        let at = |elevation_amsl_m| Self { strip, elevation_amsl_m };
+        if let Some(end) = named.into_iter().find(|end| end.begins_with(strip)) {
+            return Some(at(end.elevation_amsl_m));
+        }
+        let elevation_m = ground_m(strip.threshold).unwrap_or(self.elevation_amsl_m);
+        ((elevation_m - self.elevation_amsl_m).abs() <= LEVEL_M).then(|| at(elevation_m))
+    }
+
+    /// It lies where a strip begins, and leads along it.
+    fn begins_with(&self, strip: Strip) -> bool {
+        let off_deg = normalise_180(self.strip.heading_deg - strip.heading_deg);
+        distance_m(self.strip.threshold, strip.threshold) <= SAME_PLACE_M && off_deg.abs() <= SAME_HEADING_DEG
     }
 
     /// Where a final approach of a length begins.
@@ -217,7 +239,7 @@ mod tests {
 
     #[test]
     fn a_way_that_leads_through_the_ground_is_none_and_the_named_end_comes_first() {
-        let other = named().other(&Profile::default(), Wind::CALM, |_| None).unwrap();
+        let other = named().other(&Profile::default(), Wind::CALM, [], |_| None).unwrap();
         let ways = ways(90.0, 1000.0, 400.0, &[named(), other]);
         let best = |clears: fn(&WayIn) -> bool| WayIn::best(&ways, clears).map(|way| (way.end, way.final_m));
         assert_eq!(best(|_| true), Some((0, Some(700.0))));
@@ -244,13 +266,35 @@ mod tests {
     #[test]
     fn the_other_end_is_one_where_it_is_level_and_without_much_tailwind() {
         let other = |wind: Wind, ground_m: Option<f64>| {
-            named().other(&Profile::default(), wind, |_| ground_m).map(|end| end.strip)
+            named().other(&Profile::default(), wind, [], |_| ground_m).map(|end| end.strip)
         };
         let strip = other(Wind::CALM, Some(7.0)).unwrap();
         assert!((strip.heading_deg - 180.0).abs() < 1e-9);
         assert!(strip.threshold.distance_m(THRESHOLD.destination(0.0, 600.0)) < 0.1);
         assert!(other(Wind::CALM, None).is_some() && other(Wind::CALM, Some(9.0)).is_none());
         assert!(other(Wind::from_direction(0.0, 4.0), None).is_none());
+    }
+
+    /// It was landed on 33 m above its ground: at the height of the end that the plan names.
+    #[test]
+    fn the_other_end_is_as_high_as_the_runway_that_is_drawn_there_else_as_the_ground() {
+        let back = named().strip.from_other_end();
+        let drawn = |beside_m: f64, off_deg: f64| {
+            let threshold = back.threshold.destination(90.0, beside_m);
+            let strip = Strip { threshold, heading_deg: back.heading_deg + off_deg, ..back };
+            End { strip, elevation_amsl_m: -33.0 }
+        };
+        let elevation_m = |other: End, ground_m: Option<f64>| {
+            let of = |ends: [End; 2]| named().opposite(ends, |_| ground_m).map(|end| end.elevation_amsl_m);
+            of([named(), other])
+        };
+        assert_eq!(elevation_m(drawn(0.0, 0.0), Some(-30.0)), Some(-33.0));
+        assert_eq!(elevation_m(drawn(20.0, 5.0), None), Some(-33.0), "by its place to a few metres");
+        for another in [drawn(0.0, 90.0), drawn(300.0, 0.0)] {
+            assert_eq!(elevation_m(another, Some(4.0)), Some(4.0), "its ground");
+            assert_eq!(elevation_m(another, None), Some(0.0), "nothing else is known");
+            assert_eq!(elevation_m(another, Some(-30.0)), None, "by the ground alone it is not level");
+        }
     }
 
     #[test]

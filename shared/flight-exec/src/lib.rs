@@ -23,7 +23,8 @@ pub mod value;
 
 pub use api::*;
 pub use executor::{Executor, RestoreError, Snapshot};
-pub use layout::above_ground::clears_ground;
+pub use layout::above_ground::{clears_ground, clears_way_in};
+pub use layout::homeward::safe_runways;
 pub use rehearse::{Preview, PreviewError, preview};
 pub use review::{
     Conditions, Margins, compile_and_review, compile_and_review_ahead, foresee, leave_zones_out,

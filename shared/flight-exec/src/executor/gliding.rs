@@ -7,7 +7,7 @@ use super::Executor;
 use crate::api::{Action, AircraftState, Event, Output, Refusal};
 use crate::flight::refusal;
 use crate::layout::cursor::Cursor;
-use crate::layout::homeward::{self, GlideIn, Halt, halts, is_clear};
+use crate::layout::homeward::{self, GlideIn, Halt, halts, is_clear, safe_runways};
 use crate::layout::touch_down::TouchDown;
 use aircraft::glide::GlideStart;
 use aircraft::glide_in::Arrival;
@@ -191,14 +191,13 @@ impl Executor {
         })
     }
 
-    /// Another runway of the plan to which the height suffices, and which is long enough for Safe mode.
+    /// Another runway of the plan that Safe mode would land on.
     fn reached_instead(&self, state: &AircraftState, than: &Runway) -> Option<Id> {
-        let is_other =
-            |runway: &Runway| runway.id != than.id && runway.length_m >= self.setup.profile.min_runway_m;
         let is_reached =
             |runway: &Runway| GlideIn::of(&self.world(), state.wind(), glide_from(state), runway).lands();
-        let mut runways = self.setup.program.plan.runways.iter();
-        runways.find(|runway| is_other(runway) && is_reached(runway)).map(|runway| runway.id.clone())
+        let mut others =
+            safe_runways(&self.setup.program.plan).into_iter().filter(|runway| runway.id != than.id);
+        others.find(|runway| is_reached(runway)).map(|runway| runway.id.clone())
     }
 
     /// A runway, from the end that the way ahead lands at.
@@ -206,7 +205,9 @@ impl Executor {
         let lands = self.flight.horizon.back().map(|last| last.waypoint.action);
         let off_deg = |heading_deg| normalise_180(heading_deg - runway.heading_deg).abs();
         match lands {
-            Some(Action::Land { heading_deg }) if off_deg(heading_deg) > 90.0 => runway.from_other_end(),
+            Some(Action::Land { heading_deg }) if off_deg(heading_deg) > 90.0 => {
+                homeward::from_other_end(&self.world(), runway)
+            }
             _ => runway.clone(),
         }
     }

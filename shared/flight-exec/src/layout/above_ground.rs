@@ -1,6 +1,7 @@
 //! Whether a glide leads above the ground: there is nothing to pull up with.
 
 use aircraft::glide::GlidePoint;
+use aircraft::glide_in::WayIn;
 use geometry::near::distance_m;
 use terrain::Terrain;
 
@@ -13,6 +14,14 @@ const NEAR_M: f64 = 200.0;
 /// As close together the ground is looked at, metres, and no oftener than so on one leg.
 const SPACING_M: f64 = 45.0;
 const MAX_SAMPLES: f64 = 2000.0;
+
+/// A way in to a threshold, which is so high, metres AMSL, is above the ground as high as it glides, and as low as its end may be told.
+/// Emergency plans and Safe mode ask this alike: by such a way a runway is reached.
+pub fn clears_way_in(terrain: &dyn Terrain, way: &WayIn, elevation_amsl_m: f64) -> bool {
+    let lowest = way.lowest_end(elevation_amsl_m);
+    let ways = [Some(way.points.as_slice()), lowest.as_ref().map(|leg| leg.as_slice())];
+    ways.into_iter().flatten().all(|points| clears_ground(terrain, points))
+}
 
 /// It is above all ground that is known under its points, and between them.
 pub fn clears_ground(terrain: &dyn Terrain, points: &[GlidePoint]) -> bool {

@@ -1,15 +1,26 @@
 //! The glide home with the engine out: where the rest of an emergency plan leads, and the height with which a glide arrives.
 
-use super::above_ground::clears_ground;
+use super::above_ground::{clears_ground, clears_way_in};
 use super::world::World;
 use aircraft::Wind;
 use aircraft::glide::{GlidePoint, GlideStart, glide};
 use aircraft::glide_in::{Arrival, End, WayIn};
-use flight_plan::{Id, Runway, Stage, StageKind};
+use flight_plan::{FlightPlan, Id, Runway, Stage, StageKind};
 use geometry::LatLon;
 
 /// Most legs on the way home that are looked at.
 const MAX_HALTS: usize = 200;
+
+/// More runways are not stored for Safe mode.
+const MOST_RUNWAYS: usize = 32;
+
+/// The runways of a plan that Safe mode is to know, the best first.
+pub fn safe_runways(plan: &FlightPlan) -> Vec<&Runway> {
+    let mut runways: Vec<&Runway> = plan.runways.iter().collect();
+    runways.sort_by_key(|runway| runway.priority);
+    runways.truncate(MOST_RUNWAYS);
+    runways
+}
 
 /// A part of an emergency plan that can be gone to: a leg of a stage, or a landing.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,6 +63,21 @@ fn of_stage(world: &World, stage: &Stage, first: usize) -> Vec<Halt> {
 /// The end of a runway that is named.
 pub fn end_of(runway: &Runway) -> End {
     End { strip: runway.strip(), elevation_amsl_m: runway.elevation_amsl_m }
+}
+
+/// A runway of the plan from its other end, as high as it is known to be there.
+pub fn from_other_end(world: &World, runway: &Runway) -> Runway {
+    let other = end_of(runway).opposite(ends(world), |place| world.terrain.elevation_m(place));
+    at_other_end(runway, other.map_or(runway.elevation_amsl_m, |end| end.elevation_amsl_m))
+}
+
+fn at_other_end(runway: &Runway, elevation_amsl_m: f64) -> Runway {
+    Runway { elevation_amsl_m, ..runway.from_other_end() }
+}
+
+/// The ends of runways that the plan names.
+fn ends<'a>(world: &World<'a>) -> impl Iterator<Item = End> + use<'a> {
+    world.program.plan.runways.iter().map(end_of)
 }
 
 /// The altitude that a glide straight from a place to the runway needs there, with its reserve, metres AMSL. `None`: the wind does not let
@@ -106,10 +132,8 @@ pub struct GlideIn {
     pub final_m: Option<f64>,
     /// `None`: the wind does not let it get there.
     pub arrival: Option<Arrival>,
-    /// It is above the ground all the way.
-    clears: bool,
-    /// It is in line with the runway at last.
-    is_in_line: bool,
+    /// It gets there, above the ground all the way.
+    lands: bool,
 }
 
 impl GlideIn {
@@ -117,24 +141,19 @@ impl GlideIn {
     /// none: straight to the end that is named, or to the other one if less is lacking there.
     pub fn of(world: &World, wind: Wind, from: GlideStart, runway: &Runway) -> Self {
         let named = end_of(runway);
-        let other = named.other(world.profile, wind, |place| world.terrain.elevation_m(place));
+        let other = named.other(world.profile, wind, ends(world), |place| world.terrain.elevation_m(place));
         let ends: Vec<End> = [named].into_iter().chain(other).collect();
         let ways = WayIn::all((world.profile, wind), from, &ends, world.config.final_approach_m);
-        let clears = |way: &WayIn| {
-            let lowest = way.lowest_end(runway.elevation_amsl_m);
-            let ways = [Some(way.points.as_slice()), lowest.as_ref().map(|leg| leg.as_slice())];
-            ways.into_iter().flatten().all(|points| clears_ground(world.terrain, points))
-        };
-        let best = WayIn::best(&ways, clears);
+        let elevation_m = |way: &WayIn| ends.get(way.end).map_or(f64::NAN, |end| end.elevation_amsl_m);
+        let best = WayIn::best(&ways, |way| clears_way_in(world.terrain, way, elevation_m(way)));
         let way = best.or_else(|| Self::as_near_as_it_gets(&ways));
-        let from_other_end = way.is_some_and(|way| way.end > 0);
+        let reversed = way.filter(|way| way.end > 0);
         Self {
-            runway: if from_other_end { runway.from_other_end() } else { runway.clone() },
-            from_other_end,
+            runway: reversed.map_or_else(|| runway.clone(), |way| at_other_end(runway, elevation_m(way))),
+            from_other_end: reversed.is_some(),
             final_m: way.and_then(|way| way.final_m),
             arrival: way.and_then(|way| way.arrival),
-            clears: best.is_some(),
-            is_in_line: way.is_some_and(WayIn::is_in_line),
+            lands: best.is_some(),
         }
     }
 
@@ -147,13 +166,13 @@ impl GlideIn {
         in_line.or_else(|| straight().find(lacks_less)).or(Some(named))
     }
 
-    /// It gets there, above the ground all the way, and in line with the runway: Safe mode lands on no other.
+    /// It gets there, above the ground all the way: Safe mode lands there, too.
     pub fn lands(&self) -> bool {
-        self.clears && self.is_in_line
+        self.lands
     }
 
     /// It would get there if no ground were in its way.
     pub fn is_blocked(&self) -> bool {
-        self.arrival.is_some_and(|arrival| arrival.height_m >= 0.0) && !self.clears
+        self.arrival.is_some_and(|arrival| arrival.height_m >= 0.0) && !self.lands
     }
 }

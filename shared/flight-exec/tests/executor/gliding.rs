@@ -294,9 +294,13 @@ fn a_hill_before_the_end_that_the_plan_names_is_passed_beside_to_the_other_end()
     assert!(matches!(land, Some(Action::Land { heading_deg }) if heading_deg == 270.0), "{land:?}");
 }
 
-/// Near a runway `R2`, so high above it, metres, and 6 km from that of the emergency plan. What is answered to the emergency, if it names
-/// the plan or not.
-fn near_another_runway(height_m: f64, plan: Option<&str>) -> Result<(), String> {
+/// Near a runway `R2`, by bearing and distance from its threshold, and so high above it, metres; 6 km from the runway of the emergency plan.
+/// What is answered to the emergency, if it names the plan or not.
+fn near_another_runway(
+    (bearing_deg, metres): (f64, f64),
+    height_m: f64,
+    plan: Option<&str>,
+) -> Result<(), String> {
     let near = HOME.destination(90.0, 6000.0);
     let (lat, lon) = (near.lat_deg, near.lon_deg);
     let other = format!(
@@ -304,7 +308,8 @@ fn near_another_runway(height_m: f64, plan: Option<&str>) -> Result<(), String> 
     );
     let mut rig = Rig::flying(&holding_first().replace("</runways>", &other));
     rig.fly_to("b");
-    (rig.position, rig.altitude_amsl_m) = (near.destination(270.0, 900.0), Some(GROUND_M + height_m));
+    rig.position = near.destination(bearing_deg, metres);
+    rig.altitude_amsl_m = Some(GROUND_M + height_m);
     rig.engine_out = true;
     rig.report();
     let emergency = Command::Emergency { cause: Cause::Engine, plan: plan.map(Into::into) };
@@ -317,10 +322,13 @@ fn near_another_runway(height_m: f64, plan: Option<&str>) -> Result<(), String> 
 /// It flew away from the one beside it, and came down 0.6 km before the one that was named.
 #[test]
 fn a_glide_that_reaches_another_runway_only_is_left_to_safe_mode() {
-    assert_eq!(near_another_runway(180.0, None), Err("another-runway-reached".into()));
-    assert_eq!(near_another_runway(180.0, Some("back")), Ok(()), "who names the plan wants it");
-    assert_eq!(near_another_runway(1000.0, None), Ok(()), "both are reached");
-    assert_eq!(near_another_runway(20.0, None), Ok(()), "none is");
+    let before = (270.0, 900.0);
+    let left = Err("another-runway-reached".into());
+    assert_eq!(near_another_runway(before, 180.0, None), left);
+    assert_eq!(near_another_runway(before, 180.0, Some("back")), Ok(()), "who names the plan wants it");
+    assert_eq!(near_another_runway(before, 1000.0, None), Ok(()), "both are reached");
+    assert_eq!(near_another_runway(before, 20.0, None), Ok(()), "none is");
+    assert_eq!(near_another_runway((0.0, 800.0), 130.0, None), left, "by no way but one across it");
 }
 
 /// Where the ways in differ by their reserve only: 500 m behind the runway's other end, on its line, 120 m high. Straight back keeps all of

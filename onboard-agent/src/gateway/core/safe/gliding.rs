@@ -4,13 +4,16 @@
 //! each place the altitude that the glide has there: led down sooner it would lack that height before the runway. What the rest of the way
 //! can't lose is lost in circles where the final approach begins, and what is left of it on the way there. With more height than that, and
 //! no room for a circle, it touches down farther along the runway.
+//!
+//! By which ways a runway is reached at all is asked as the executor asks it ([`clears_way_in`]), which leaves its glide to Safe mode for
+//! the sake of such a way: none of them is dropped here. One in which the ground leaves no room to lose height is flown as it glides.
 
 use super::Situation;
 use super::gates::{Circles, Gate, is_over_ground};
 use super::way::TOUCHDOWN;
 use aircraft::glide::{Circle, GlidePoint, GlideStart, reserve_m};
 use aircraft::glide_in::{End, FINAL_M, WayIn};
-use flight_exec::clears_ground;
+use flight_exec::{clears_ground, clears_way_in};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 
@@ -21,33 +24,39 @@ const STEEP: f64 = 0.7;
 /// It may be landed on from these places on, as shares of a runway's length, if there is room to stop.
 const FROM: [f64; 3] = [0.0, 0.25, 0.5];
 
-/// A glide that comes to a runway, and above the ground on the way.
+/// A glide that comes to a runway, above the ground on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Glide {
     /// From where the final approach begins, with its circles; none: straight to the landing.
     pub gates: Vec<Gate>,
     /// What is landed on: the runway from some place on.
     pub end: End,
-    /// Length of the final approach, metres; `None`: it is on it.
+    /// Length of the final approach, metres; `None`: straight from where it is.
     pub final_m: Option<f64>,
+    /// In line with the runway at last.
+    pub is_in_line: bool,
     /// Time to the threshold without circles, seconds: these take away nothing but height that is too much.
     pub time_s: f64,
     /// Above the whole reserve there, metres.
     pub spare_m: f64,
-    /// It comes to the threshold with more height than it can lose.
+    /// It comes to the threshold with more height than it can lose, or than the ground leaves it room to lose.
     pub is_too_high: bool,
 }
 
-/// The best glide from where the aircraft is to an end of a runway; `None`: it does not come there, in line with it.
-pub(super) fn glide_in(end: End, s: &Situation) -> Option<Glide> {
+/// The best glides from where the aircraft is to an end of a runway, if it comes there: in line with it, and straight across it.
+pub(super) fn glides_in(end: End, s: &Situation) -> [Option<Glide>; 2] {
     let ends = from_there_on(end, s);
     let start =
         GlideStart { position: s.position, altitude_amsl_m: s.altitude_amsl_m, course_deg: s.track_deg };
-    let mut ways = WayIn::all((s.profile, s.wind()), start, &ends, FINAL_M);
-    ways.retain(WayIn::is_in_line);
+    let ways = WayIn::all((s.profile, s.wind()), start, &ends, FINAL_M);
+    let (in_line, across): (Vec<_>, Vec<_>) = ways.into_iter().partition(WayIn::is_in_line);
+    [in_line, across].map(|ways| best(&ways, &ends, s))
+}
+
+fn best(ways: &[WayIn], ends: &[End], s: &Situation) -> Option<Glide> {
     let glide = |way: &WayIn| Glide::of(way, *ends.get(way.end)?, s);
-    let best = WayIn::best(&ways, |way| glide(way).is_some_and(|glide| !glide.is_too_high));
-    glide(best.or_else(|| WayIn::best(&ways, |way| glide(way).is_some()))?)
+    let best = WayIn::best(ways, |way| glide(way).is_some_and(|glide| !glide.is_too_high));
+    glide(best.or_else(|| WayIn::best(ways, |way| glide(way).is_some()))?)
 }
 
 /// The whole runway, and what is left of it from farther on.
@@ -68,32 +77,33 @@ impl Glide {
             (Some(_), [.., gate, threshold]) => (gate, threshold),
             _ => return None,
         };
-        let told = Told::of(end.elevation_amsl_m, s, [over, threshold]);
+        if s.terrain.is_some_and(|terrain| !clears_way_in(terrain, way, end.elevation_amsl_m)) {
+            return None;
+        }
         let (place, course_deg) = match way.final_m {
             Some(metres) => (end.final_begins_at(metres), end.strip.heading_deg),
             None => (s.position, s.track_deg),
         };
         let right = normalise_180(course_deg - s.position.bearing_deg(place)) >= 0.0;
-        let sides = [right, !right].map(|right| {
-            let mut gates = told.circled(place, course_deg, right, s);
-            // it is there
-            let first = usize::from(way.final_m.is_none());
-            gates.split_off(first)
-        });
-        let clears = s.terrain.is_none_or(|terrain| clears_ground(terrain, &way.points));
+        // it is there
+        let first = usize::from(way.final_m.is_none());
+        let gates = |told: &Told, right: bool| told.circled(place, course_deg, right, s).split_off(first);
+        let told = Told::of(end.elevation_amsl_m, s, [over, threshold]);
         let is_clear = |gates: &Vec<Gate>| {
-            clears
-                && is_over_ground(gates, s, |_| SPARE_M)
+            is_over_ground(gates, s, |_| SPARE_M)
                 && told.clears_final(gates.last(), [over, threshold], end, s)
         };
-        let gates = sides.into_iter().find(is_clear)?;
+        let circled = [right, !right].into_iter().map(|right| gates(&told, right)).find(is_clear);
+        let is_too_high = told.is_too_high || circled.is_none();
+        let gates = circled.unwrap_or_else(|| gates(&Told::as_it_glides(over), right));
         Some(Self {
             gates,
             end,
             final_m: way.final_m,
+            is_in_line: way.is_in_line(),
             time_s: threshold.time_s,
             spare_m: way.spare_m(),
-            is_too_high: told.is_too_high,
+            is_too_high,
         })
     }
 }
@@ -129,6 +139,12 @@ impl Told {
         }
     }
 
+    /// What the glide has there, and nothing of it is lost before.
+    fn as_it_glides(over: &GlidePoint) -> Self {
+        let has_m = over.altitude_amsl_m;
+        Self { circles: 0, has_m, begins_m: has_m, is_too_high: true }
+    }
+
     /// From the last gate, or from where it is, it is led straight down to the threshold, however high it is: above the ground.
     fn clears_final(
         &self,
@@ -151,11 +167,12 @@ impl Told {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{runway, situation};
+    use super::super::tests::{HOME, Wall, runway, situation};
     use super::super::{choose, path};
     use super::*;
     use aircraft::autopilot::{Action as Does, Guidance, Target};
     use aircraft::{Aircraft, Profile, Strip, Wind};
+    use terrain::Terrain;
     use usal::contract::{Action, Air, SafeParameters, Waypoint};
 
     const LENGTH_M: f64 = 600.0;
@@ -241,7 +258,8 @@ mod tests {
         let s = Situation { glides: true, altitude_amsl_m: 1522.0, ..situation(&profile) };
         let runway = runway("it", 0.0, 4.0, 0.0, 1);
         let strip = Strip { threshold: runway.threshold, heading_deg: 0.0, length_m: LENGTH_M };
-        let glide = glide_in(End { strip, elevation_amsl_m: 322.0 }, &s).unwrap();
+        let [glide, _] = glides_in(End { strip, elevation_amsl_m: 322.0 }, &s);
+        let glide = glide.unwrap();
         let has_m = 1522.0 - s.position.distance_m(glide.gates[0].position) / profile.glide_ratio;
         assert!((glide.gates[0].altitude_amsl_m - has_m).abs() < 5.0, "{glide:?}");
         assert!(glide.gates.iter().filter(|gate| gate.on_arc).count() > 16, "{glide:?}");
@@ -250,5 +268,42 @@ mod tests {
         assert!((needed_m..1.5 * needed_m).contains(&(last.altitude_amsl_m - 322.0)), "{glide:?}");
         let turned = glide.gates.windows(2).all(|pair| pair[0].altitude_amsl_m > pair[1].altitude_amsl_m);
         assert!(turned, "nothing is level: {glide:?}");
+    }
+
+    /// Where the executor says that a runway is reached, and leaves its glide to Safe mode, Safe mode lands on it: also over ground that
+    /// leaves no room for circles.
+    #[test]
+    fn safe_mode_takes_each_runway_that_the_executor_calls_reached() {
+        let profile = Profile::default();
+        let it = runway("it", 0.0, 1.5, 60.0, 1);
+        let strip = Strip { threshold: it.threshold, heading_deg: 60.0, length_m: LENGTH_M };
+        let named = End { strip, elevation_amsl_m: it.elevation_amsl_m };
+        let mut found = [0, 0];
+        for wall in [330.0, 345.0, 380.0].map(|m| Wall(HOME.lat_deg + 0.01, m)) {
+            let other = named.other(&profile, Wind::CALM, [], |place| wall.elevation_m(place));
+            let ends: Vec<End> = [named].into_iter().chain(other).collect();
+            for (height_m, track_deg) in
+                (1..60).flat_map(|i| [0.0, 60.0, 140.0].map(|deg| (6.0 * f64::from(i), deg)))
+            {
+                let s = Situation {
+                    glides: true,
+                    altitude_amsl_m: 322.0 + height_m,
+                    track_deg,
+                    terrain: Some(&wall),
+                    ..situation(&profile)
+                };
+                let from = GlideStart {
+                    position: s.position,
+                    altitude_amsl_m: s.altitude_amsl_m,
+                    course_deg: track_deg,
+                };
+                let ways = WayIn::all((&profile, Wind::CALM), from, &ends, FINAL_M);
+                let reached = WayIn::best(&ways, |way| clears_way_in(&wall, way, 322.0)).is_some();
+                let chosen = choose(std::slice::from_ref(&it), &SafeParameters::default(), &s);
+                assert!(chosen.is_some() || !reached, "{} m, {height_m} m, {track_deg}°", wall.1);
+                found[usize::from(reached)] += 1;
+            }
+        }
+        assert!(found.into_iter().all(|n| n > 30), "{found:?}");
     }
 }

@@ -69,6 +69,8 @@ pub enum Approach {
     Short,
     /// Gliding, from where it is: that is on the final approach.
     Straight,
+    /// Gliding, from where it is across the runway: the height suffices for no way in line with it.
+    Across,
 }
 
 impl std::fmt::Display for Landing {
@@ -82,6 +84,7 @@ impl std::fmt::Display for Landing {
             Approach::Whole => Ok(()),
             Approach::Short => f.write_str(" by a short final"),
             Approach::Straight => f.write_str(", straight in"),
+            Approach::Across => f.write_str(", straight across it"),
         }
     }
 }

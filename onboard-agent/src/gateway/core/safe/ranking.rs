@@ -5,7 +5,7 @@
 //! cost is the time for the way; a lower priority, a tailwind on landing, a short runway and the other end of
 //! one make it worse.
 
-use super::gliding::{Glide, glide_in};
+use super::gliding::{Glide, glides_in};
 use super::ground::along;
 use super::powered::powered;
 use super::way::gates;
@@ -31,51 +31,63 @@ const CLEAR_SHARE: f64 = 0.5;
 const MODEL_ERROR_M: f64 = 5.0;
 
 /// The best landing of those within reach. A glide that would come there without its whole reserve is one only if there is no other, and then
-/// the one with most of it; the last is one that can't lose its height before the runway.
+/// the one with most of it; then one that can't lose its height before the runway; the last is one across a runway.
 pub fn choose(runways: &[SafeRunway], safe: &SafeParameters, s: &Situation) -> Option<Landing> {
     let usable = || runways.iter().filter(|runway| is_usable(runway, s.profile));
-    let best = |ways: &mut dyn Iterator<Item = (Landing, f64)>| {
-        let ranked = ways.map(|(landing, time_s)| (cost_s(&landing, time_s, s), landing));
-        ranked.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, landing)| landing)
-    };
     if !s.glides {
-        return best(&mut usable().flat_map(|runway| with_engine(runway, safe, s)));
+        return best(usable().flat_map(|runway| with_engine(runway, runways, safe, s)), s);
     }
-    let glides: Vec<_> = usable().flat_map(|runway| gliding(runway, s)).collect();
+    let glides: Vec<_> = usable().flat_map(|runway| gliding(runway, runways, s)).collect();
+    let (in_line, across): (Vec<_>, Vec<_>) = glides.into_iter().partition(|(_, glide)| glide.is_in_line);
+    best_glide(&in_line, s).or_else(|| best_glide(&across, s))
+}
+
+fn best(ways: impl Iterator<Item = (Landing, f64)>, s: &Situation) -> Option<Landing> {
+    let ranked = ways.map(|(landing, time_s)| (cost_s(&landing, time_s, s), landing));
+    ranked.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, landing)| landing)
+}
+
+fn best_glide(glides: &[(Landing, Glide)], s: &Situation) -> Option<Landing> {
     let of_kind = |is_meant: fn(&Glide) -> bool| glides.iter().filter(move |(_, glide)| is_meant(glide));
     let timed = |(landing, glide): &(Landing, Glide)| (landing.clone(), glide.time_s);
-    let with_reserve = best(&mut of_kind(|glide| glide.spare_m >= 0.0 && !glide.is_too_high).map(timed));
+    let with_reserve = best(of_kind(|glide| glide.spare_m >= 0.0 && !glide.is_too_high).map(timed), s);
     let most = || {
         let without = of_kind(|glide| !glide.is_too_high);
         without.min_by(|(_, a), (_, b)| b.spare_m.total_cmp(&a.spare_m)).map(|(landing, _)| landing.clone())
     };
-    with_reserve.or_else(most).or_else(|| best(&mut glides.iter().map(timed)))
+    with_reserve.or_else(most).or_else(|| best(glides.iter().map(timed), s))
 }
 
-/// The glides to the ends of a runway.
-fn gliding(runway: &SafeRunway, s: &Situation) -> impl Iterator<Item = (Landing, Glide)> {
-    let named = End { strip: strip(runway), elevation_amsl_m: runway.elevation_amsl_m };
-    let other = named.other(s.profile, s.wind(), |place| s.terrain?.elevation_m(place));
+/// The glides to the ends of a runway, of all that are known.
+fn gliding(runway: &SafeRunway, all: &[SafeRunway], s: &Situation) -> impl Iterator<Item = (Landing, Glide)> {
+    let named = end_of(runway);
+    let other =
+        named.other(s.profile, s.wind(), all.iter().map(end_of), |place| s.terrain?.elevation_m(place));
     let ends = [(Some(named), false), (other, true)].into_iter();
-    ends.filter_map(move |(end, reversed)| {
-        let glide = glide_in(end?, s)?;
+    let glides = ends.flat_map(|(end, reversed)| {
+        let glides = end.map_or([None, None], |end| glides_in(end, s));
+        glides.into_iter().flatten().map(move |glide| (glide, reversed))
+    });
+    glides.map(|(glide, reversed)| {
         let approach = match glide.final_m {
             Some(metres) if metres >= FINAL_M => Approach::Whole,
             Some(_) => Approach::Short,
-            None => Approach::Straight,
+            None if glide.is_in_line => Approach::Straight,
+            None => Approach::Across,
         };
         let gates = glide.gates.clone();
-        Some((Landing { runway: landed_on(runway, glide.end.strip), reversed, approach, gates }, glide))
+        (Landing { runway: landed_on(runway, glide.end), reversed, approach, gates }, glide)
     })
 }
 
 /// The ways to the ends of a runway that the energy lasts for.
 fn with_engine(
     runway: &SafeRunway,
+    all: &[SafeRunway],
     safe: &SafeParameters,
     s: &Situation,
 ) -> impl Iterator<Item = (Landing, f64)> {
-    let ends = [Some((runway.clone(), false)), other_end(runway, safe, s)].into_iter().flatten();
+    let ends = [Some((runway.clone(), false)), other_end(runway, all, safe, s)].into_iter().flatten();
     ends.filter_map(move |(runway, reversed)| {
         let way = powered(&runway, safe, s)?;
         let lasts = way.energy_j < USABLE * s.battery * s.profile.energy_j;
@@ -99,23 +111,32 @@ fn tailwind_mps(s: &Situation, direction_deg: f64) -> f64 {
     s.wind().vector().dot(geometry::Vec2::from_bearing_rad(direction_deg.to_radians()))
 }
 
-fn strip(runway: &SafeRunway) -> Strip {
-    Strip { threshold: runway.threshold, heading_deg: runway.heading_deg, length_m: runway.length_m }
+/// The end that is named.
+fn end_of(runway: &SafeRunway) -> End {
+    let &SafeRunway { threshold, heading_deg, length_m, elevation_amsl_m, .. } = runway;
+    End { strip: Strip { threshold, heading_deg, length_m }, elevation_amsl_m }
 }
 
 /// A runway, as it is landed on.
-fn landed_on(runway: &SafeRunway, Strip { threshold, heading_deg, length_m }: Strip) -> SafeRunway {
-    SafeRunway { threshold, heading_deg, length_m, ..runway.clone() }
+fn landed_on(runway: &SafeRunway, End { strip, elevation_amsl_m }: End) -> SafeRunway {
+    let Strip { threshold, heading_deg, length_m } = strip;
+    SafeRunway { threshold, heading_deg, length_m, elevation_amsl_m, ..runway.clone() }
 }
 
 /// With the engine: the same runway from its other end, where the wind is better there and the ground before it is known to be low.
-fn other_end(runway: &SafeRunway, safe: &SafeParameters, s: &Situation) -> Option<(SafeRunway, bool)> {
+fn other_end(
+    runway: &SafeRunway,
+    all: &[SafeRunway],
+    safe: &SafeParameters,
+    s: &Situation,
+) -> Option<(SafeRunway, bool)> {
     if tailwind_mps(s, runway.heading_deg) <= 0.0 {
         return None;
     }
-    let reversed = landed_on(runway, strip(runway).from_other_end());
-    let [initial, last] = gates(&reversed, safe);
     let terrain = s.terrain?;
+    let other = end_of(runway).opposite(all.iter().map(end_of), |place| terrain.elevation_m(place))?;
+    let reversed = landed_on(runway, other);
+    let [initial, last] = gates(&reversed, safe);
     let is_low = |place: LatLon, height_m: f64| {
         let ground_m = terrain.elevation_m(place);
         ground_m.is_some_and(|m| m < reversed.elevation_amsl_m + CLEAR_SHARE * height_m + MODEL_ERROR_M)
@@ -261,6 +282,43 @@ mod tests {
         let s = Situation { glides: true, altitude_amsl_m: 322.0 + 160.0, ..situation(&profile) };
         let way = chosen(&[runway("ahead", 0.0, 0.3, 0.0, 1)], &s).unwrap();
         assert!(way.contains("from its other end"), "{way}");
+    }
+
+    /// It glided to a runway that it did not reach, or returned by the autopilot's own means, with a runway beside it.
+    #[test]
+    fn a_runway_that_only_a_way_across_it_reaches_comes_after_all_others_and_before_none() {
+        let profile = Profile::default();
+        // straight it takes 103 m of height, by the shortest final 130 m
+        let beside = runway("beside", 90.0, 1.0, 0.0, 1);
+        let ahead = runway("ahead", 80.0, 1.0, 80.0, 9);
+        let s = Situation {
+            glides: true,
+            track_deg: 90.0,
+            altitude_amsl_m: 322.0 + 110.0,
+            ..situation(&profile)
+        };
+        let across = "runway beside, straight across it";
+        assert_eq!(chosen(std::slice::from_ref(&beside), &s).as_deref(), Some(across));
+        assert_eq!(chosen(&[beside.clone(), ahead], &s).as_deref(), Some("runway ahead"));
+        let low = Situation { altitude_amsl_m: 322.0 + 60.0, ..s };
+        assert_eq!(chosen(&[beside], &low), None);
+    }
+
+    /// It touched down 33 m above the ground: at the height of the end that is named.
+    #[test]
+    fn the_other_end_is_landed_on_at_its_own_height_where_that_is_known() {
+        let profile = Profile::default();
+        let south = runway("south", 180.0, 2.0, 0.0, 1);
+        let back = end_of(&south).strip.from_other_end();
+        let north = SafeRunway {
+            id: "north".into(),
+            ..landed_on(&south, End { strip: back, elevation_amsl_m: 289.0 })
+        };
+        let s = Situation { glides: true, track_deg: 180.0, ..situation(&profile) };
+        let landing =
+            choose(&[SafeRunway { priority: 9, ..north }, south], &SafeParameters::default(), &s).unwrap();
+        assert_eq!(landing.to_string(), "runway south from its other end");
+        assert_eq!(landing.runway.elevation_amsl_m, 289.0);
     }
 
     /// Straight in on the one, past the other and round.
