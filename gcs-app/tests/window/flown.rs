@@ -4,7 +4,7 @@
 //! They are together here, and not beside the other system tests, because the demo has them together already, and because only
 //! this test has the window's hands.
 
-use super::{SQUARE, Window};
+use super::{PATIENCE, SQUARE, Window};
 use egui::accesskit::Role;
 use egui::vec2;
 use egui_kittest::kittest::Queryable;
@@ -13,15 +13,13 @@ use gcs_app::assets;
 use gcs_app::demo::components::{Components, Setup, VEHICLE};
 use gcs_app::link::Links;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use tempfile::TempDir;
 use tokio::runtime::Runtime;
 use usal::contract::{Branching, Cause, FpManagerEvent, PlanEvent};
 use usal::topics::fp_manager;
 use usal::{Config, EventSubscriber, Occurrence, Participant, Session, Start};
 
-/// Wall-clock time in which the simulated clock must go on.
-const PATIENCE: Duration = Duration::from_secs(60);
 /// Longer than this nothing is waited for, simulated seconds.
 const LIMIT_S: f64 = 600.0;
 /// What the window shows is never older, simulated seconds: a machine that is busy elsewhere would have it look at the past.

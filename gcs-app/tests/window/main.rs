@@ -81,6 +81,9 @@ use std::time::{Duration, Instant};
 
 const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
 
+/// A machine that is busy elsewhere may take so long for what the window waits for.
+const PATIENCE: Duration = Duration::from_secs(60);
+
 /// A window with its far end.
 struct Window {
     harness: Harness<'static, App>,
@@ -159,7 +162,7 @@ impl Window {
     /// So many frames, and those until what was begun in the background by then is there.
     fn steps(&mut self, steps: usize) {
         self.harness.run_steps(steps);
-        let deadline = Instant::now() + Duration::from_secs(20);
+        let deadline = Instant::now() + PATIENCE;
         while self.app().is_busy() {
             assert!(Instant::now() < deadline, "something in the background does not end");
             self.wait();
@@ -172,7 +175,7 @@ impl Window {
 
     /// Draws until something is so; the workers behind the window take their time, its clock stands still meanwhile.
     fn until(&mut self, what: &str, condition: impl Fn(&App) -> bool) {
-        let deadline = Instant::now() + Duration::from_secs(20);
+        let deadline = Instant::now() + PATIENCE;
         while !condition(self.app()) {
             assert!(Instant::now() < deadline, "waited in vain: {what}");
             self.wait();

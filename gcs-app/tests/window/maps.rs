@@ -2,14 +2,14 @@
 
 use super::dock::Memory;
 use super::reach::Missing as Dropped;
-use super::{SQUARE, Window};
+use super::{PATIENCE, SQUARE, Window};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, vec2};
 use egui_kittest::kittest::Queryable;
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 fn window() -> Window {
     let mut window = Window::open(SQUARE);
@@ -166,7 +166,7 @@ fn ground(window: &mut Window) -> ([u8; 4], usize) {
 
 /// Draws until the ground looks so.
 fn until_ground(window: &mut Window, what: &str, is_so: impl Fn([u8; 4], usize) -> bool) {
-    let deadline = Instant::now() + Duration::from_secs(20);
+    let deadline = Instant::now() + PATIENCE;
     loop {
         window.steps(10);
         let (colour, share) = ground(window);
