@@ -7,7 +7,6 @@ use crate::link::{BACKLOG, Call};
 use crate::panels::problems;
 use crate::state::{LOOK_AHEAD, READ_ABOARD, VehicleName};
 use flight_plan::{Id, transform};
-use std::sync::Arc;
 
 impl App {
     /// Takes in all that has come since the last frame, and asks for what is wanted next.
@@ -89,8 +88,7 @@ impl App {
 
     /// Shows a path in the place of the one that was found out, until the plan or its world changes.
     pub fn show_path(&mut self, forecast: Forecast) {
-        // no worker counts so far
-        (self.analysis.forecast, self.analysis.forecast_version) = (Arc::new(forecast), u64::MAX);
+        self.analysis = self.worker.put_path(forecast);
     }
 
     /// In a plan that was opened or imported with errors, what the gravest one is of, once that is known.

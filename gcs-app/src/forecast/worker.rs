@@ -6,7 +6,7 @@
 
 use super::bench::Bench;
 use super::reviewer::Reviewer;
-use super::{Alarm, Coverage, Flown, Shared};
+use super::{Alarm, Coverage, Flown, Forecast, Shared};
 use aircraft::Autopilot;
 use flight_exec::rehearse::{Diversion, WhatIf};
 use flight_exec::review::put_remedies;
@@ -237,6 +237,14 @@ impl Worker {
             self.known.clone()
         })
     }
+
+    /// Puts a path in the place of the one that was found out. What else is found out of this version leaves it there.
+    pub fn put_path(&mut self, path: Forecast) -> Analysis {
+        // no thread counts so far
+        (self.known.forecast, self.known.forecast_version) = (Arc::new(path), u64::MAX);
+        self.known.found = next_found();
+        self.known.clone()
+    }
 }
 
 fn next_found() -> u64 {
@@ -302,5 +310,22 @@ mod tests {
         assert_eq!(unsettled(&known), [""; 0], "the newer review did not find it");
         known.take(of_version(5, Vec::new()));
         assert_eq!(unsettled(&known), ["below-terrain"]);
+    }
+    #[test]
+    fn a_path_that_was_put_there_stays_until_the_plan_is_another() {
+        let (questions, _inbox) = channel();
+        let (outbox, answers) = channel();
+        let mut worker = Worker { questions, answers, asked: None, known: Analysis::default() };
+        let answer = |worker: &mut Worker, found| {
+            outbox.send(found).unwrap();
+            worker.answer().unwrap()
+        };
+        answer(&mut worker, of_version(1, Vec::new()));
+        let path = Forecast { stops: 3, ..Forecast::default() };
+        assert_eq!(*worker.put_path(path.clone()).forecast, path);
+        for found in [Found::Hash(1, "of it".into()), Found::Problems(1, Vec::new()), Found::Everything(1)] {
+            assert_eq!(*answer(&mut worker, found).forecast, path);
+        }
+        assert_ne!(*answer(&mut worker, of_version(2, Vec::new())).forecast, path);
     }
 }
