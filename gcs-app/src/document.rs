@@ -1,6 +1,7 @@
 //! The plan being edited: immutable states, undo and redo over all of them, and its file.
 
 pub(crate) mod changed;
+mod extent;
 mod names;
 
 use crate::command::Selection;
@@ -24,6 +25,7 @@ pub struct Document {
     /// Not everything in its file could be read.
     is_partial: bool,
     names: Names,
+    is_large: bool,
     version: u64,
     /// Edits so far, without steps back and forth.
     edits: u64,
@@ -62,6 +64,7 @@ impl Document {
             is_partial: reading_problems.iter().any(Problem::is_error),
             reading_problems,
             names: Names::default(),
+            is_large: false,
             version: 0,
             edits: 0,
             id: 0,
@@ -171,6 +174,10 @@ impl Document {
     /// About what it and its history hold, bytes.
     pub fn bytes(&self) -> usize {
         self.history.bytes() + self.text.as_ref().map_or(0, |text| text.len())
+    }
+    /// It has so many parts that what is worked out of it takes longer than a frame has.
+    pub fn is_large(&self) -> bool {
+        self.is_large
     }
     /// There is a step to take back.
     pub fn can_undo(&self) -> bool {
@@ -325,6 +332,7 @@ impl Document {
             self.reading_problems.clear();
         }
         self.names.refresh(self.history.plan());
+        self.is_large = extent::is_large(self.history.plan());
         // versions are never used twice, not even by another document of this run
         self.version = next_version();
     }

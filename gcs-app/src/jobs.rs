@@ -178,6 +178,12 @@ impl<T: Send + 'static> Task<T> {
     }
 }
 
+/// Frees on another thread what is so large that freeing it takes longer than a frame has.
+pub fn discard(what: impl Send + 'static) {
+    let started = std::thread::Builder::new().name("discard".into()).spawn(move || drop(what));
+    started.inspect_err(|error| tracing::warn!(%error, "no thread to free memory on")).ok();
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -15,6 +15,7 @@ pub mod command;
 pub mod connections;
 pub mod coordinates;
 pub mod demo;
+pub mod derived;
 mod desktop;
 pub mod dock;
 pub mod document;

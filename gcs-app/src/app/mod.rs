@@ -221,7 +221,7 @@ impl App {
 
     /// Something that was asked for is being done in the background, and a frame will bring it soon.
     pub fn is_busy(&self) -> bool {
-        self.map.is_busy() || !self.pushes.is_empty()
+        self.map.is_busy() || !self.pushes.is_empty() || self.panels.iter().any(|panel| panel.is_busy())
     }
 
     /// The path of the plan aboard the vehicle that is shown, if it was asked for and is known.

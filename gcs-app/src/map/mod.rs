@@ -38,6 +38,7 @@ pub mod view;
 pub mod zones;
 
 use crate::command::{Clip, Queue, ViewCommand};
+use crate::derived::{Derived, Source};
 use crate::layers::Opened;
 use crate::panels::{Scene, field, start};
 use egui::{DragPanButtons, Pos2, Ui};
@@ -87,8 +88,8 @@ pub struct MapState {
     /// Drawings on the clipboard that are being read.
     pastes: clipboard::Pastes,
     items: items::Items,
-    sketch: Sketch,
-    sketched: Option<(u64, Option<PlanVariables>)>,
+    /// With the variables as they are aboard.
+    sketch: Derived<Option<PlanVariables>, Sketch>,
     /// The forecast that its ways begin by.
     ways_of: Option<u64>,
 }
@@ -153,7 +154,7 @@ impl MapState {
 
     /// It waits for the result of work on another thread.
     pub fn is_busy(&self) -> bool {
-        self.tools.is_busy() || self.pastes.is_reading() || self.path.is_busy()
+        self.tools.is_busy() || self.pastes.is_reading() || self.path.is_busy() || self.sketch.is_busy()
     }
 
     /// Puts a tool to use.
@@ -195,7 +196,8 @@ impl MapState {
     pub fn show(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         self.sketch(scene);
         self.begin_ways(scene);
-        if self.fit {
+        // a large plan has no places yet
+        if self.fit && !self.sketch.is_busy() {
             self.fit_now(ui.available_size());
         }
         if let Some(corners) = self.fit_to.take() {
@@ -226,7 +228,8 @@ impl MapState {
         if follows && memory.detached().is_some() {
             queue.view(ViewCommand::Follow(false));
         }
-        if let Some(wanted) = self.reveal.take().filter(|_| !scene.view.follow)
+        let is_busy = self.sketch.is_busy();
+        if let Some(wanted) = self.reveal.take_if(|_| !is_busy).filter(|_| !scene.view.follow)
             && self.come_to(&wanted, &shown.inner, scene, &mut memory)
         {
             ui.ctx().request_repaint();
@@ -238,28 +241,30 @@ impl MapState {
 
     /// Places the plan anew, when it or the variables aboard have changed.
     fn sketch(&mut self, scene: &Scene<'_>) {
-        let version = scene.document.version();
-        let live = live_variables(scene);
-        if self.sketched.as_ref().is_some_and(|(v, variables)| *v == version && variables.as_ref() == live) {
-            return;
+        let live = live_variables(scene).cloned();
+        let source = Source::new(scene.document, live.clone());
+        let is_another = self.sketch.refresh(source, scene.layers.wake(), move |plan, former| {
+            let mut variables = Variables::initial(plan);
+            for v in live.into_iter().flat_map(|live| live.variables) {
+                // a value the document's variable does not take belongs to another version of it
+                let _ = variables.set(plan, &v.name.convert(), v.value.convert());
+            }
+            Sketch::new(plan, &variables, former)
+        });
+        if is_another {
+            self.items = items::Items::default();
+            self.ways_of = None;
         }
-        let plan = scene.document.plan();
-        let mut variables = Variables::initial(plan);
-        for v in live.map(|l| l.variables.as_slice()).unwrap_or_default() {
-            // a value the document's variable does not take belongs to another version of it
-            let _ = variables.set(plan, &v.name.clone().convert(), v.value.clone().convert());
-        }
-        self.sketch = Sketch::new(plan, &variables, &self.sketch);
-        self.items = items::Items::default();
-        self.sketched = Some((version, live.cloned()));
-        self.ways_of = None;
     }
 
     /// By the forecast of the plan as it is sketched.
     fn begin_ways(&mut self, scene: &Scene<'_>) {
         let of = Some(scene.analysis.forecast_version);
-        if self.ways_of != of && scene.analysis.version == scene.document.version() {
-            self.sketch.begin_ways(scene.forecast());
+        if self.ways_of != of
+            && scene.analysis.version == scene.document.version()
+            && let Some(sketch) = self.sketch.get_mut()
+        {
+            sketch.begin_ways(scene.forecast());
             self.ways_of = of;
         }
     }

@@ -117,6 +117,11 @@ pub trait Panel: std::fmt::Debug {
         true
     }
 
+    /// It waits for the result of work on another thread.
+    fn is_busy(&self) -> bool {
+        false
+    }
+
     /// What in it gets the keyboard when that comes to the panel; `None`: the panel as a whole.
     fn keyboard(&self) -> Option<egui::Id> {
         None

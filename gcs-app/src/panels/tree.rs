@@ -14,6 +14,7 @@ mod search;
 
 use super::{Panel, PanelId, Place, Scene};
 use crate::command::{Queue, Selection, ViewCommand};
+use crate::derived::{Derived, Source};
 use drag::{Asking, Drag, STEP, View};
 use egui::{EventFilter, Rect, ScrollArea, Ui, pos2, vec2};
 use flight_exec::Phase;
@@ -26,15 +27,13 @@ use rows::{Row, rows};
 pub use rows::{leg_tag, title};
 pub use search::focus as focus_search;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 /// The tree; its rows are worked out again only when the plan or what is folded changes.
 #[derive(Debug, Default)]
 pub struct Tree {
-    rows: Vec<Row>,
-    /// Of this version of the plan; `None`: they have to be made anew, whatever it is.
-    version: Option<u64>,
-    plan: Arc<FlightPlan>,
+    /// In so many ways they were looked at.
+    rows: Derived<u64, Vec<Row>>,
+    looks: u64,
     folded: BTreeSet<String>,
     /// What is searched for, as it was typed.
     sought: String,
@@ -82,13 +81,16 @@ impl Panel for Tree {
     fn place(&self) -> Place {
         Place::Left { height: 570.0 }
     }
+    fn is_busy(&self) -> bool {
+        self.rows.is_busy()
+    }
     fn keyboard(&self) -> Option<egui::Id> {
         (!self.rows.is_empty()).then(|| row::id(&self.cursor.key))
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let typed = search::field(ui, &mut self.sought);
         if typed.changed {
-            self.version = None;
+            self.looks += 1;
         }
         self.refresh(ui, scene, queue);
         search::outcome(ui, &self.sought, typed.entered, &self.rows, queue);
@@ -128,27 +130,20 @@ impl Panel for Tree {
 impl Tree {
     /// Works the rows out again, if they may have changed.
     fn refresh(&mut self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        if self.version == Some(scene.document.version()) {
+        if self.rows.is_of(&Source::new(scene.document, self.looks)) {
             return;
         }
-        let plan = scene.document.plan();
-        let is_same = self.version.is_some() && alike::have_same_rows(&self.plan, plan);
-        self.plan = plan.clone();
-        if is_same {
-            (self.version, self.stays) = (Some(scene.document.version()), false);
-            return;
-        }
-        let had_focus = self.has_focus(ui);
-        let rows = self.rows_of(plan);
-        let before = std::mem::replace(&mut self.rows, rows);
         // what legs were made into stands far away from them
-        self.stays = match &scene.view.selection {
-            Some(selected @ Selection::Procedure(_)) => {
-                before.iter().all(|row| row.selection.as_ref() != Some(selected))
-            }
+        let stays = match &scene.view.selection {
+            Some(selected @ Selection::Procedure(_)) => self.index_of(selected).is_none(),
             _ => false,
         };
-        self.version = Some(scene.document.version());
+        let had_focus = self.has_focus(ui);
+        let is_another = self.work_out(scene);
+        self.stays = stays && is_another;
+        if !is_another {
+            return;
+        }
         let index = match self.rows.iter().position(|row| row.key == self.cursor.key) {
             Some(index) => index,
             None => self.cursor.index.min(self.rows.len().saturating_sub(1)),
@@ -160,28 +155,36 @@ impl Tree {
         }
     }
 
-    /// All rows but the folded ones, or those that match what is searched for.
-    fn rows_of(&self, plan: &FlightPlan) -> Vec<Row> {
-        match self.sought.trim() {
-            "" => rows(plan, &self.folded),
-            sought => search::matching(rows(plan, &BTreeSet::new()), sought),
+    /// All rows but the folded ones, or those that match what is searched for. True: they are others now.
+    fn work_out(&mut self, scene: &Scene<'_>) -> bool {
+        let source = Source::new(scene.document, self.looks);
+        if self.rows.keep_for(&source, alike::have_same_rows) {
+            return false;
         }
+        let (folded, sought) = (self.folded.clone(), self.sought.trim().to_owned());
+        self.rows.refresh(source, scene.layers.wake(), move |plan, _| match sought.as_str() {
+            "" => rows(plan, &folded),
+            sought => search::matching(rows(plan, &BTreeSet::new()), sought),
+        })
     }
 
     /// Shows what was selected elsewhere, unfolding what hides it.
     fn follow(&mut self, ui: &Ui, scene: &Scene<'_>) {
-        if self.selected == scene.view.selection {
+        if self.selected == scene.view.selection || self.rows.is_busy() {
             return;
         }
-        self.selected.clone_from(&scene.view.selection);
-        if self.selected.is_none() {
-            return;
+        let selected = scene.view.selection.clone();
+        let mut found = selected.as_ref().and_then(|selected| self.index_of(selected));
+        if let Some(selected) = selected.as_ref().filter(|_| found.is_none())
+            && self.unfold(selected, scene.document.plan())
+        {
+            self.work_out(scene);
+            if self.rows.is_busy() {
+                return;
+            }
+            found = self.index_of(selected);
         }
-        let is_it = |row: &Row, selected: &Option<Selection>| row.selection == *selected;
-        let found = self.rows.iter().position(|row| is_it(row, &self.selected)).or_else(|| {
-            self.unfold(scene.document.plan());
-            self.rows.iter().position(|row| is_it(row, &self.selected))
-        });
+        self.selected = selected;
         if let Some(index) = found {
             let had_focus = self.has_focus(ui);
             self.put_cursor(index);
@@ -195,13 +198,23 @@ impl Tree {
         }
     }
 
-    /// Unfolds everything around what is selected.
-    fn unfold(&mut self, plan: &FlightPlan) {
+    fn index_of(&self, selected: &Selection) -> Option<usize> {
+        self.rows.iter().position(|row| row.selection.as_ref() == Some(selected))
+    }
+
+    /// Unfolds everything around what is selected. True: something was folded.
+    fn unfold(&mut self, selected: &Selection, plan: &FlightPlan) -> bool {
+        if self.folded.is_empty() {
+            return false;
+        }
         let all = rows(plan, &BTreeSet::new());
-        let Some(index) = all.iter().position(|row| row.selection == self.selected) else { return };
-        let around = std::iter::successors(keyboard::parent(&all, index), |at| keyboard::parent(&all, *at));
-        around.filter_map(|at| all.get(at)).for_each(|row| self.folded.retain(|key| *key != row.key));
-        self.rows = self.rows_of(plan);
+        let index = all.iter().position(|row| row.selection.as_ref() == Some(selected));
+        let parent = |index: &usize| keyboard::parent(&all, *index);
+        let around = std::iter::successors(index.as_ref().and_then(parent), parent);
+        let is_unfolded =
+            around.filter_map(|at| all.get(at)).fold(false, |is, row| self.folded.remove(&row.key) || is);
+        self.looks += u64::from(is_unfolded);
+        is_unfolded
     }
 
     /// Scrolls to a row that is out of view.
@@ -298,7 +311,7 @@ impl Tree {
         if !self.folded.remove(&key) {
             self.folded.insert(key);
         }
-        self.version = None;
+        self.looks += 1;
     }
 
     /// Draws a row, and the field for its name where that is being typed.

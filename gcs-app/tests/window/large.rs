@@ -1,5 +1,7 @@
 //! A large plan: a frame draws and names what can be seen and grabbed of it, and no more.
 
+use super::filing::window_on;
+use super::interchange::drop_file;
 use super::{SQUARE, Window};
 use egui::vec2;
 use egui_kittest::kittest::Queryable;
@@ -46,4 +48,26 @@ fn of_many_problems_those_near_the_view_are_drawn() {
     assert!(window.errors().len() >= LEGS, "{}", window.errors().len());
     let rows = named(&window, "Problem: ");
     assert!((10..60).contains(&rows), "{rows}");
+}
+
+/// In no frame it waits for a very large plan to be looked through, and the one before is not taken for it meanwhile.
+#[test]
+fn of_a_very_large_plan_map_and_tree_come_when_they_are_ready() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("large.xml");
+    let leg = |i: usize| format!(r#"<TF id="w{i}" lat="{:.4}" lon="-84.2"/>"#, 36.31 + 1e-4 * i as f64);
+    std::fs::write(&path, SQUARE.replacen(SIDE, &(0..25_000).map(leg).collect::<String>(), 1)).unwrap();
+    let mut window = window_on(&folder.path().join("square.xml"), SQUARE);
+    window.until_analysed();
+    assert!(window.shows("TF side2") && window.shows("Fix A"));
+    let before = window.app().document().id();
+    drop_file(&mut window, &path);
+    while window.app().document().id() == before {
+        window.wait();
+    }
+    assert!(window.app().is_busy() && !window.shows("TF side2") && !window.shows("Fix A"));
+    window.steps(1);
+    assert!(window.shows("TF w0") && window.shows("Waypoint w"));
+    window.press_ctrl(egui::Key::Z);
+    assert!(window.shows("TF side2") && window.shows("Fix A") && !window.shows("Waypoint w"));
 }
