@@ -21,7 +21,7 @@ pub use coverage::Coverage;
 pub use left_out::LeftOut;
 pub use line::Line;
 pub use outline::{Heights, Outline, Places};
-pub use told::{Clearance, clearance, told};
+pub use told::{Clearance, clearance, told, until_touch_down};
 pub use underway::Underway;
 pub use worker::{Analysis, Question, Worker};
 

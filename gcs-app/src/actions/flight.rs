@@ -4,7 +4,7 @@ use super::table::Asked;
 use super::{Action, Group, Kind};
 use crate::command::{Command, FlyCommand, LinkCommand};
 use crate::connections::{self, Connection};
-use crate::panels::{Scene, decision, emergency as banner, flight as panel, leading, link, push};
+use crate::panels::{Scene, decision, emergency as banner, flight as panel, in_force, leading, link, push};
 use flight_exec::{Command as PlanCommand, Phase};
 use flight_plan::{Cause, Id};
 use std::borrow::Cow;
@@ -117,6 +117,7 @@ pub(super) fn rewind(scene: &Scene<'_>) -> Asked {
 }
 
 pub(super) fn skip(scene: &Scene<'_>) -> Asked {
+    led_by_plan(scene)?;
     flying(scene, PlanCommand::SkipLeg)?;
     if leading::is_last_landing(scene) {
         return Err("The landing is the last leg of the flight: there is nothing to skip to");
@@ -156,8 +157,15 @@ fn flying(scene: &Scene<'_>, command: PlanCommand) -> Asked {
     if is_flying(scene) { plan(command) } else { Err(NOT_FLYING) }
 }
 
+/// What the plan would do next is not what Safe mode does.
+fn led_by_plan(scene: &Scene<'_>) -> Result<(), &'static str> {
+    let why_not = "Safe mode leads the aircraft: the plan's commands reach it once Safe mode is left";
+    if banner::is_safe_mode(scene) { Err(why_not) } else { Ok(()) }
+}
+
 /// A glide has no height for circles: the executor refuses them.
 pub(super) fn hold(scene: &Scene<'_>) -> Asked {
+    led_by_plan(scene)?;
     let command = flying(scene, PlanCommand::Hold)?;
     if scene.vehicle.is_engine_out() && banner::is_flown(scene) {
         return Err("Without an engine it would sink while it holds, and lack that height before the runway");
@@ -195,6 +203,7 @@ const NO_ALTERNATE: &str =
 /// The alternate of this name, or else the one in force.
 pub fn emergency(scene: &Scene<'_>, plan: Option<Id>) -> Asked {
     linked(scene)?;
+    let plan = plan.or_else(|| in_force::without_engine(scene));
     if panel::is_on_ground(scene) {
         return Err(panel::ON_GROUND);
     }

@@ -181,7 +181,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Flight, "return-to-main", "Return to the main plan…", &[], flight::return_to_main),
     hold("emergency", "Emergency: fly the alternate in force", |s| flight::emergency(s, None)),
     hold("abort", "Abort: Safe mode flies home", |s| flight::in_the_air(s, PlanCommand::AbortToSafe)),
-    entry(Group::Flight, "leave-safe", "Leave Safe mode", &[], flight::leave_safe),
+    hold("leave-safe", "Leave Safe mode", flight::leave_safe),
 
     choice(Group::Help, "help", "Help about what is selected", |s| Kind::Switch(s.view.help.is_some()), help).with_keys(&[plain(Key::F1)]),
     entry(Group::Help, "tour", "Tour of the window", &[], |_| view(ViewCommand::Tour(Some(0)))),

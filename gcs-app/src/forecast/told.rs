@@ -9,6 +9,8 @@ use terrain::Terrain;
 const EVERY_M: f64 = 50.0;
 /// But not more often than this on the whole path.
 const MOST_POINTS: f64 = 4000.0;
+/// Higher above the end of its roll-out an aircraft still flies, metres.
+const LEVEL_M: f64 = 0.5;
 /// Nobody descends to a runway from farther out, metres.
 const FINAL_M: f64 = 4000.0;
 
@@ -50,6 +52,18 @@ pub fn told(path: &[PathPoint], terrain: &dyn Terrain) -> Forecast {
     }));
     points.iter_mut().for_each(|point| point.ground_amsl_m = terrain.elevation_m(point.position));
     Forecast { points, ..Forecast::default() }
+}
+
+/// A path that ends on the ground, without its roll-out: who waits for a landing looks at the touch-down.
+pub fn until_touch_down(mut path: Forecast) -> Forecast {
+    let end_m = path.points.last().map_or(0.0, |end| end.altitude_amsl_m);
+    let rolls = |point: &&Point| (point.altitude_amsl_m - end_m).abs() < LEVEL_M;
+    let rolling = path.points.iter().rev().take_while(rolls).count();
+    // one that is level all along tells nothing of it
+    if rolling < path.points.len() {
+        path.points.truncate(path.points.len() + 1 - rolling);
+    }
+    path
 }
 
 /// The least height above the ground on a path.
@@ -130,6 +144,23 @@ mod tests {
         steep.remove(1);
         let steep = clearance(&told(&steep, &Flat(300.0)), true).unwrap();
         assert!((90.0..110.0).contains(&steep.least_m), "{steep:?}");
+    }
+
+    #[test]
+    fn landing_ends_where_it_touches_down_and_not_where_it_stands() {
+        let end = path()[2];
+        let rolled =
+            |s, m| PathPoint { time_s: end.time_s + s, position: end.position.destination(0.0, m), ..end };
+        let with_roll_out: Vec<_> =
+            path().into_iter().chain([rolled(20.0, 200.0), rolled(36.0, 250.0)]).collect();
+        let duration_s = |path: &[PathPoint]| until_touch_down(told(path, &Flat(300.0))).duration_s();
+        assert_eq!((duration_s(&with_roll_out), duration_s(&path())), (320.0, 320.0));
+        assert_eq!(
+            duration_s(&with_roll_out[3..]),
+            356.0,
+            "it stands already, or nothing is known of a descent"
+        );
+        assert_eq!(duration_s(&[]), 0.0);
     }
 
     #[test]

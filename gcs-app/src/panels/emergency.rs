@@ -1,7 +1,8 @@
 //! An emergency plan that is being flown: what, why, where to, and the way back to the main plan.
 
-use super::{Scene, answer, field, flight, other_end};
+use super::{Scene, answer, field, flight, in_force, other_end, profile};
 use crate::command::Queue;
+use crate::state::is_safe;
 use crate::theme;
 use crate::units;
 use egui::{Align, Button, Color32, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, Ui};
@@ -22,11 +23,13 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         return;
     }
     let p = theme::of(ui);
-    let fill = if flown.is_some() { p.warning } else { p.panel };
+    let said =
+        flown.map(|flown| sentence(scene, flown)).or_else(|| Some(format!("⛔ {}", safe_mode(scene, "")?)));
+    let fill = if said.is_some() { p.warning } else { p.panel };
     let frame = Frame::new().fill(fill).inner_margin(Margin::symmetric(10, 0));
     Panel::top("emergency").exact_size(STRIP).frame(frame).show(ui, |ui| {
-        let (text, colour) = match flown {
-            Some(flown) => (RichText::new(sentence(scene, flown)).strong(), on(fill)),
+        let (text, colour) = match said {
+            Some(said) => (RichText::new(said).strong(), on(fill)),
             None => match led_otherwise(scene) {
                 Some(how) => (RichText::new(format!("⚠ {how}")), p.caution),
                 None => {
@@ -48,30 +51,45 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     });
 }
 
-/// As [`led_otherwise`], where it is the gateway's Safe mode in the air: it flies its own way, which nobody tells.
+/// The gateway's Safe mode leads it in the air: it flies its own way, which nobody tells.
+pub fn is_safe_mode(scene: &Scene<'_>) -> bool {
+    let state = scene.vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
+    state.is_some_and(is_safe) && scene.vehicle.is_airborne()
+}
+
+/// As [`led_otherwise`], where that is Safe mode in the air.
 pub fn led_by_safe_mode(scene: &Scene<'_>) -> Option<String> {
-    use GatewayState::{SafeApproach, SafeHold, SafeLand, SafeReturn};
-    let state = scene.vehicle.gateway.as_ref()?.value.state;
-    let is_safe = matches!(state, SafeApproach | SafeHold | SafeLand | SafeReturn);
-    led_otherwise(scene).filter(|_| is_safe && scene.vehicle.is_airborne())
+    led_otherwise(scene).filter(|_| is_safe_mode(scene))
 }
 
 /// `not in command: the pilot switched to FBWA`: the plan does not lead the aircraft, though it is in force.
 pub fn led_otherwise(scene: &Scene<'_>) -> Option<String> {
-    use GatewayState::{Directed, Hold, Manual, SafeApproach, SafeHold, SafeLand, SafeReturn};
+    use GatewayState::{Directed, Hold, Manual};
     let gateway = &scene.vehicle.gateway.as_ref()?.value;
-    let is_led_otherwise = match gateway.state {
-        Directed | Manual | SafeApproach | SafeHold | SafeLand | SafeReturn => true,
-        Hold => scene.vehicle.phase() != Phase::Holding,
-        _ => false,
-    };
-    let who = match gateway.state {
-        Manual => "not in command",
-        SafeApproach | SafeHold | SafeLand | SafeReturn => "Safe mode",
-        Directed => "directed",
-        _ => "held",
-    };
-    is_led_otherwise.then(|| format!("{who}: {}", gateway.cause))
+    let cause = &gateway.cause;
+    match gateway.state {
+        Manual => Some(format!("not in command: {cause}")),
+        Directed => Some(format!("directed: {cause}")),
+        Hold => (scene.vehicle.phase() != Phase::Holding).then(|| format!("held: {cause}")),
+        state if is_safe(state) => Some(match &scene.vehicle.watch.safe_mode {
+            // where it goes was said before
+            Some(whereto) if whereto != cause => format!("Safe mode: {whereto}, {cause}"),
+            _ => format!("Safe mode: {cause}"),
+        }),
+        _ => None,
+    }
+}
+
+/// `Safe mode: gliding to runway R05, straight in, touches down in 1:10, because the engine failed`, or for this cause.
+fn safe_mode(scene: &Scene<'_>, cause: &str) -> Option<String> {
+    let how = led_by_safe_mode(scene)?;
+    let engine = scene.vehicle.is_engine_out().then(|| format!(", because {}", because(Cause::Engine)));
+    let state = scene.vehicle.gateway.as_ref()?.value.state;
+    // what is left in the autopilot's list is its way to the ground
+    let left = scene.vehicle.navigation.as_ref().filter(|left| !left.is_expired(scene.now_s));
+    let left = left.filter(|left| left.value.end_of_plan && state != GatewayState::SafeHold);
+    let down = left.map(|left| format!(", touches down in {}", units::duration(left.value.buffer_s)));
+    Some(format!("{how}{}{}", down.unwrap_or_default(), engine.as_deref().unwrap_or(cause)))
 }
 
 /// `Flying Departure ▸ Climb in the hold · in an emergency: Return home`.
@@ -91,7 +109,8 @@ fn as_planned(scene: &Scene<'_>) -> String {
     );
     let answer = status.and_then(|status| status.emergency_in_force.as_ref());
     let answer = answer.map(|plan| format!(" · in an emergency: {}", vehicle.name_of(plan)));
-    format!("{does}{}", answer.unwrap_or_default())
+    let engine = in_force::of_engine(scene).map(|plan| format!(" · engine: {}", vehicle.name_of(&plan)));
+    format!("{does}{}{}", answer.unwrap_or_default(), engine.unwrap_or_default())
 }
 
 /// What can be read on a warning's colour.
@@ -99,7 +118,7 @@ fn on(fill: Color32) -> Color32 {
     if fill.intensity() > 0.5 { Color32::BLACK } else { Color32::WHITE }
 }
 
-/// `EMERGENCY: flying Return home, lands in 6:20, to runway 27, because the link was lost`; while something else than that plan leads the
+/// `EMERGENCY: flying Return home, touches down in 6:20, to runway 27, because the link was lost`; while something else than that plan leads the
 /// aircraft, what does; once it is down, where it lies. In a
 /// narrow window the end is cut.
 fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
@@ -109,6 +128,9 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     let cause = raised.map_or_else(String::new, |raised| format!(", because {}", because(raised.cause)));
     if has_come_down(scene) {
         return format!("⛔ EMERGENCY: {name}, ended {}{cause}", where_it_ended(scene, plan));
+    }
+    if let Some(how) = safe_mode(scene, &cause) {
+        return format!("⛔ EMERGENCY: {how}");
     }
     if let Some(how) = led_otherwise(scene) {
         return format!("⛔ EMERGENCY: {how}{cause}");
@@ -121,9 +143,8 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     }
     let runway = plan
         .map_or_else(String::new, |plan| format!(", to runway {}{}", plan.runway, from_where(scene, plan)));
-    let clock_s = scene.vehicle.clock_s(scene.now_s);
-    let lands = clock_s.and_then(|aircraft_s| scene.vehicle.outlook.lands_in_s(aircraft_s));
-    let lands = lands.map_or_else(String::new, |s| format!(", lands in {}", units::duration(s)));
+    let lands = profile::lands_in_s(scene);
+    let lands = lands.map_or_else(String::new, |s| format!(", touches down in {}", units::duration(s)));
     format!("⛔ EMERGENCY: flying {name}{lands}{runway}{cause}")
 }
 
@@ -191,8 +212,26 @@ fn main_legs(plan: &FlightPlan) -> Vec<&Id> {
     legs.map(|context| &context.leg.id).collect()
 }
 
+/// Why the way back is the last thing to do.
+const NO_ENGINE: &str =
+    "⚠ Without its engine it comes down on the way of the main plan. Hold to see what would follow";
+
+/// The way back while the engine is out: nobody presses it in a hurry.
+fn way_back_without_engine(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    let Some(leg) = way_back_to(scene) else { return };
+    let colour = on(theme::of(ui).warning);
+    let held = ui.scope(|ui| field::hold_button(ui, "⚠ Main plan, no engine", colour, 0.0));
+    held.response.on_hover_text(NO_ENGINE);
+    if held.inner {
+        queue.consider(Command::ReturnToMain { leg });
+    }
+}
+
 /// Which leg, then the command: it goes on where the emergency was raised unless another leg is chosen.
 fn way_back(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    if scene.vehicle.is_engine_out() {
+        return way_back_without_engine(ui, scene, queue);
+    }
     let Some(aboard) = &scene.vehicle.aboard else { return };
     let main = main_legs(&aboard.plan);
     let id = ui.make_persistent_id("way back");

@@ -1,4 +1,4 @@
-//! How a flight ended that did not end as its plan has it: by an emergency plan, or far from where the plan lands.
+//! How a flight ended that did not end as its plan has it: by Safe mode, by an emergency plan, or far from where the plan lands.
 
 use super::{Scene, emergency};
 use flight_exec::Phase;
@@ -12,6 +12,12 @@ pub fn otherwise(scene: &Scene<'_>) -> Option<String> {
         return None;
     }
     let plan = vehicle.aboard.as_ref().map(|aboard| aboard.plan.as_ref());
+    if vehicle.watch.safe_mode.is_some() {
+        // it chooses the runway itself
+        let runway = plan.zip(vehicle.ended_at).and_then(|(plan, at)| Some((nearest(plan, at)?, at)));
+        let landed = runway.map_or_else(String::new, |(runway, at)| landed(scene, runway, at));
+        return Some(format!("The plan was not flown to its end: Safe mode took over{landed}"));
+    }
     if let Some(flown) = &vehicle.ended_in {
         let home = plan.and_then(|plan| plan.runway(&emergency::plan_named(plan, flown)?.runway));
         let landed =
@@ -22,6 +28,11 @@ pub fn otherwise(scene: &Scene<'_>) -> Option<String> {
     let (end, stands) = (destination(plan?)?, vehicle.ended_at?);
     let off = scene.units().distance().show(end.strip().beside_m(stands));
     (!end.strip().is_landed_on(stands)).then(|| format!("Landed {off} from {}, where the plan ends", end.id))
+}
+
+fn nearest(plan: &FlightPlan, at: LatLon) -> Option<&Runway> {
+    let beside_m = |runway: &&Runway| runway.strip().beside_m(at);
+    plan.runways.iter().min_by(|a, b| beside_m(a).total_cmp(&beside_m(b)))
 }
 
 fn landed(scene: &Scene<'_>, runway: &Runway, stands: LatLon) -> String {

@@ -1,7 +1,8 @@
 //! The flight: what the vehicle does now, every value with its age, and the strip of commands.
 
 use super::{
-    Panel, PanelId, Place, Scene, age_as_heard, age_of, alarms, emergency, ended, field, pfd, value_with_age,
+    Panel, PanelId, Place, Scene, age_as_heard, age_of, alarms, emergency, ended, field, in_force, leading,
+    pfd, profile, value_with_age,
 };
 use crate::actions::{flight as actions, written};
 use crate::command::{Command, Queue};
@@ -104,6 +105,8 @@ fn leg(ui: &mut Ui, scene: &Scene<'_>) {
     let name = |id| scene.vehicle.name_of(id);
     let place = status.as_ref().and_then(|s| s.value.place.as_ref());
     let leg = place.map_or_else(|| "–".to_owned(), |p| format!("{} ▸ {}", name(&p.stage), name(&p.leg)));
+    // where the plan would go on is not where it goes
+    let leg = if emergency::is_safe_mode(scene) { "none: Safe mode leads".to_owned() } else { leg };
     value_with_age(ui, "Leg", &leg, age_as_heard(status, scene));
 }
 
@@ -121,13 +124,20 @@ fn alternate(ui: &mut Ui, scene: &Scene<'_>) {
     if let Some(alternate) = status.as_ref().and_then(|s| s.value.emergency_in_force.as_ref()) {
         value_with_age(ui, "Alternate", &scene.vehicle.name_of(alternate), age_of(status, scene.now_s));
     }
+    if let Some(plan) = in_force::of_engine(scene) {
+        value_with_age(ui, "If engine", &scene.vehicle.name_of(&plan), age_of(status, scene.now_s));
+    }
 }
 
 fn next(ui: &mut Ui, scene: &Scene<'_>) {
     let navigation = &scene.vehicle.navigation;
     let next = navigation.as_ref().map(|n| {
         let far = scene.units().distance().show(n.value.distance_m);
-        format!("{far} · {}", units::duration(n.value.eta_s))
+        // the turn to the runway is still before it
+        match profile::lands_in_s(scene).filter(|_| leading::is_last_landing(scene)) {
+            Some(down_s) => format!("{far} · down in {}", units::duration(down_s)),
+            None => format!("{far} · {}", units::duration(n.value.eta_s)),
+        }
     });
     value_with_age(ui, "Next", &next.unwrap_or_default(), age_as_heard(navigation, scene));
 }
@@ -255,8 +265,7 @@ pub fn commands(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
     let state = scene.vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
     if matches!(state, Some(GatewayState::SafeHold | GatewayState::SafeReturn)) {
-        let leave = (Button::new("Leave Safe mode"), "The plan may lead the aircraft again");
-        pressed(ui, scene, "leave-safe", leave, queue);
+        held(ui, scene, "leave-safe", ("Leave Safe mode", p.caution, 0.0), queue);
     }
 }
 
@@ -406,8 +415,10 @@ fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let id = ui.make_persistent_id("emergency plan");
     let mut chosen: Option<Id> = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     let in_force = scene.vehicle.status.as_ref().and_then(|s| s.value.emergency_in_force.clone());
+    let of_engine = in_force::without_engine(scene);
     let name = chosen
         .as_ref()
+        .or(of_engine.as_ref())
         .or(in_force.as_ref())
         .map_or_else(|| "the alternate in force".to_owned(), |id| scene.vehicle.name_of(id));
     let plans = scene.vehicle.aboard.as_ref().map(|a| a.plan.emergency_plans.as_slice()).unwrap_or_default();

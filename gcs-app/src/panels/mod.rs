@@ -16,6 +16,7 @@ pub mod ended;
 pub mod field;
 pub mod flight;
 pub mod help;
+pub mod in_force;
 pub mod in_place;
 pub mod inspector;
 pub mod interchange;

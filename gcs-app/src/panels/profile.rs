@@ -3,7 +3,7 @@
 mod flown;
 mod levels;
 
-pub use flown::is_elsewhere;
+pub use flown::{is_elsewhere, lands_in_s};
 
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{PreviewCommand, Queue, ViewCommand};

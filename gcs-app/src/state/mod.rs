@@ -29,6 +29,6 @@ pub use toasts::Toasts;
 pub use trail::Trail;
 pub use vehicle::{ActivePlan, LINK_CAUTION_S, LINK_WARNING_S, Proposal, Raised, Vehicle, VehicleName};
 pub use vehicles::Vehicles;
-pub use watch::GROUND_STATION;
+pub use watch::{GROUND_STATION, is_safe};
 
 use repeats::Repeats;

@@ -89,13 +89,12 @@ impl Outlook {
         self.considered.as_ref()
     }
 
-    /// Seconds of the flight until it has landed; `aircraft_s` is the aircraft's clock.
-    pub fn lands_in_s(&self, aircraft_s: f64) -> Option<f64> {
-        let way = self.way.as_ref().filter(|way| way.foresight.landed)?;
-        Some((way.told_s + way.foresight.time_s - aircraft_s).max(0.0))
+    /// The way that it said it flies ends on the ground.
+    pub fn lands(&self) -> bool {
+        self.way.as_ref().is_some_and(|way| way.foresight.landed)
     }
 
-    /// The way that the vehicle said it flies, over this window's ground, and when it said so, seconds of the aircraft's clock.
+    /// The way that the vehicle said it flies, until it touches down, over this window's ground, and when it said so, seconds of the aircraft's clock.
     pub fn way(&self) -> Option<(&Forecast, f64)> {
         let way = self.way.as_ref()?;
         Some((way.over_ground.as_ref()?, way.told_s))
@@ -118,7 +117,9 @@ impl Outlook {
         if let Some(way) = &mut self.way
             && way.over_ground.is_none()
         {
-            way.over_ground = Some(forecast::told(&way.foresight.path, terrain));
+            let path = forecast::told(&way.foresight.path, terrain);
+            way.over_ground =
+                Some(if way.foresight.landed { forecast::until_touch_down(path) } else { path });
         }
     }
 

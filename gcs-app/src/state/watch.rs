@@ -29,8 +29,8 @@ pub struct Sight<'a> {
     pub position: Option<Position>,
     /// What the plan has next, likewise.
     pub ahead: Option<&'a Ahead>,
-    /// What the gateway does.
-    pub state: Option<GatewayState>,
+    /// What the gateway does, and why.
+    pub state: Option<(GatewayState, &'a str)>,
 }
 
 /// The watch over one aircraft.
@@ -38,6 +38,8 @@ pub struct Sight<'a> {
 pub struct Watch {
     /// Height above the ground, where both are known, metres.
     pub agl_m: Option<f64>,
+    /// Where Safe mode leads it, in its gateway's words, or led it before it came down; `None`: something else led it last.
+    pub safe_mode: Option<String>,
     altitude: Suspicion,
     ground: Suspicion,
     /// The waypoint steered to, its altitude, and the altitude it was steered to from.
@@ -87,15 +89,19 @@ impl Watch {
         if let Some(position) = &position {
             self.agl_m = above(position);
         }
-        if position.is_none() || sight.state.is_none() {
+        if let Some((state, cause)) = sight.state {
+            self.follow_safe_mode(state, cause);
+        }
+        let state = sight.state.map(|(state, _)| state);
+        if position.is_none() || state.is_none() {
             self.altitude.unknown(now_s);
             self.ground.unknown(now_s);
             return;
         }
-        let enroute = position.filter(|p| !p.on_ground && sight.state.is_some_and(is_enroute));
+        let enroute = position.filter(|p| !p.on_ground && state.is_some_and(is_enroute));
         // what lies ahead in the plan is flown in this state alone
-        let ahead = sight.ahead.filter(|_| sight.state == Some(GatewayState::Nav));
-        if enroute.is_some() && ahead.is_none() && sight.state == Some(GatewayState::Nav) {
+        let ahead = sight.ahead.filter(|_| state == Some(GatewayState::Nav));
+        if enroute.is_some() && ahead.is_none() && state == Some(GatewayState::Nav) {
             self.altitude.unknown(now_s);
         } else {
             let off = enroute.and_then(|p| self.off_altitude(&p, ahead?));
@@ -103,6 +109,16 @@ impl Watch {
         }
         let near = enroute.and_then(|p| self.near_ground(&p, ahead, terrain));
         self.ground.follow(near, PATIENCE_S.1, now_s);
+    }
+
+    /// It says where it goes before it approaches: then it says how far it is, and nothing of that once it stands.
+    fn follow_safe_mode(&mut self, state: GatewayState, cause: &str) {
+        use GatewayState::{Off, SafeApproach, SafeLand, Stop};
+        match state {
+            Off | Stop => {}
+            SafeApproach | SafeLand if self.safe_mode.is_some() => {}
+            state => self.safe_mode = is_safe(state).then(|| cause.to_owned()),
+        }
     }
 
     /// The alarms that are raised.
@@ -150,6 +166,12 @@ impl Watch {
             "Only {height_m:.0} m above the ground in {in_s:.0} s. Climb, go to another leg, or be ready to take over."
         ))
     }
+}
+
+/// The gateway's own way home leads the aircraft.
+pub fn is_safe(state: GatewayState) -> bool {
+    use GatewayState::{SafeApproach, SafeHold, SafeLand, SafeReturn};
+    matches!(state, SafeApproach | SafeHold | SafeLand | SafeReturn)
 }
 
 /// The gateway flies the plan's waypoints, away from runways, or brings the aircraft home.
@@ -246,9 +268,28 @@ mod tests {
         now_s: f64,
         state: GatewayState,
     ) -> Vec<String> {
-        let sight = Sight { position: Some(position(altitude_m)), ahead: Some(ahead), state: Some(state) };
+        let sight =
+            Sight { position: Some(position(altitude_m)), ahead: Some(ahead), state: Some((state, "")) };
         watch.look(sight, terrain, now_s);
         watch.alarms().map(|alarm| alarm.id).collect()
+    }
+
+    #[test]
+    fn safe_mode_is_remembered_with_where_it_goes_until_something_else_leads() {
+        use GatewayState::{Nav, SafeApproach, SafeHold, SafeReturn, Stop, TakeOff};
+        let mut watch = Watch::default();
+        for (state, cause, expected) in [
+            (Nav, "flying waypoints", None),
+            (SafeHold, "asked for", Some("asked for")),
+            (SafeReturn, "to runway R05", Some("to runway R05")),
+            (SafeApproach, "the landing comes next", Some("to runway R05")),
+            (Stop, "landed and disarmed", Some("to runway R05")),
+            (TakeOff, "taking off", None),
+            (SafeApproach, "the landing comes next", Some("the landing comes next")),
+        ] {
+            watch.look(Sight { position: None, ahead: None, state: Some((state, cause)) }, &Hill, 0.0);
+            assert_eq!(watch.safe_mode.as_deref(), expected, "{state:?}");
+        }
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! An emergency plan that is being flown.
 
 use super::considering::foresight;
-use super::flying::{connected, flying, flying_its_plan};
-use super::vehicle::{gateway_status, place, position, status};
+use super::flying::{connected, fly_its_plan, flying, flying_its_plan, navigation};
+use super::vehicle::{engine_out, gateway_status, place, position, status};
 use super::{SQUARE, Window};
 use egui_kittest::kittest::Queryable;
 use flight_exec::{Branching, Command, Event, Foresight, PathPoint, Phase};
@@ -11,7 +11,7 @@ use gcs_app::link::{Call, LinkEvent, Numbered, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Ticket};
 use geometry::LatLon;
 use std::sync::Arc;
-use usal::contract::{GatewayState, GatewayStatus, Position, Stamped};
+use usal::contract::{GatewayState, GatewayStatus, Navigation, Position, Stamped};
 
 const START: &str = "Start and take off with the plan aboard (hold)";
 
@@ -59,13 +59,11 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     }
     assert!(window.shows("Arrival ▸ r1"), "the stage has no name, but a kind");
     assert!(window.shows("Emergency: flying return (hold)") && !window.shows("Emergency: fly return"));
-    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
-    assert!(window.shows("lands in 6:20"));
-    // by the aircraft's clock, that of a simulation may run faster
-    window.receive(position(101.0, 500.0, false));
-    assert!(window.shows("lands in 4:40"));
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(gliding()))));
+    window.steps(20);
+    assert!(window.shows("touches down in 5:00"));
     window.steps(60 * 3);
-    assert!(window.shows("EMERGENCY: flying") && !window.shows("lands in"), "it is no longer heard");
+    assert!(window.shows("EMERGENCY: flying") && !window.shows("touches down"), "it is no longer heard");
     window.click("Return to the main plan at side3");
     let back = Command::ReturnToMain { leg: "side3".into() };
     let (ticket, call) = window.asked().unwrap();
@@ -74,6 +72,38 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     window.answer(ticket, Ok(Reply::Foresight(Box::new(without_landing))));
     assert!(window.shows("Left out of return: Landing"), "not by its identifier, nor as the main plan's");
     assert!(window.shows("Left out: nothing"));
+}
+
+/// Five minutes down to the runway, then it rolls out.
+fn gliding() -> Foresight {
+    let point = |i: i32| PathPoint {
+        time_s: 20.0 * f64::from(i),
+        position: THRESHOLD.destination(90.0, 400.0 * f64::from(i)),
+        altitude_amsl_m: 349.0 + 10.0 * f64::from((15 - i).max(0)),
+    };
+    Foresight { path: (0..20).map(point).collect(), ..foresight() }
+}
+
+/// The banner said 1:42 and counted by a clock, the profile 1:06, and it touched down after 1:08.
+#[test]
+fn banner_profile_and_panel_say_the_same_touch_down_by_where_the_aircraft_is() {
+    let (mut window, ticket) = raised();
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(gliding()))));
+    window.steps(20);
+    for (time_s, along_m, left) in [(61.0, 2000.0, "3:20"), (181.0, 4000.0, "1:40"), (221.0, 4000.0, "1:40")]
+    {
+        let Telemetry::Position(mut here) = position(time_s, 500.0, false) else { unreachable!() };
+        here.value.position = THRESHOLD.destination(90.0, along_m);
+        here.value.track_deg = 90.0;
+        window.receive(Telemetry::Position(here));
+        window.steps(20);
+        assert!(window.shows(&format!("touches down in {left}")), "{left}");
+        assert!(window.shows(&format!("as it is flown: {} in {left}", km(6000.0 - along_m))), "{left}");
+    }
+}
+
+fn km(metres: f64) -> String {
+    format!("{:.1} km", metres / 1000.0)
 }
 
 /// Only Safe mode said so.
@@ -98,9 +128,10 @@ fn banner_says_that_a_landing_is_from_the_runways_other_end() {
 #[test]
 fn banner_says_who_leads_the_aircraft_and_no_time_of_another_flight() {
     let (mut window, ticket) = raised();
-    window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    window.answer(ticket, Ok(Reply::Foresight(Box::new(gliding()))));
+    window.steps(20);
     assert!(
-        window.shows("EMERGENCY: flying return, lands in 6:20"),
+        window.shows("EMERGENCY: flying return, touches down in 5:00"),
         "the glide is foreseen without the engine"
     );
     for (state, cause, said) in [
@@ -110,7 +141,7 @@ fn banner_says_who_leads_the_aircraft_and_no_time_of_another_flight() {
         let value = GatewayStatus { cause: cause.into(), ..gateway_status(state) };
         window.receive(Telemetry::Gateway(Stamped { time_s: 4.0, validity_s: 2.0, value }.into()));
         assert!(
-            window.shows(said) && !window.shows("EMERGENCY: flying") && !window.shows("lands in"),
+            window.shows(said) && !window.shows("EMERGENCY: flying") && !window.shows("touches down"),
             "{said}"
         );
         let button = ["Emergency: fly the", "Emergency: flying"].map(|label| window.shows(label));
@@ -211,7 +242,7 @@ fn what_came_down_beside_the_runway_is_said_to_be_on_the_ground_and_offers_nothi
     window.stand_at(THRESHOLD.destination(142.0, 2500.0));
     window.receive_gateway_state(GatewayState::Stop);
     assert!(window.shows("ended on the ground, 2.5 km from runway R05"));
-    assert!(!window.shows("lands in") && !window.shows("Return to the main plan"));
+    assert!(!window.shows("touches down") && !window.shows("Return to the main plan"));
     for out in ["⏸ Hold", "▶ Resume", "⏭ Skip leg", START, "Emergency: flying return (hold)"] {
         assert!(!window.is_enabled(out), "{out}");
     }
@@ -269,6 +300,111 @@ fn flight_that_did_not_end_as_planned_says_how_it_ended() {
         window.receive(Telemetry::Position(Stamped { time_s: 200.0, validity_s: 2.0, value: carried }));
         assert!(window.shows(&text), "it is told wherever the aircraft is carried: {text}");
     }
+}
+
+/// Only the departure was flown, and the bar said that the plan was.
+#[test]
+fn flight_that_safe_mode_brought_down_was_not_flown_to_its_end() {
+    let mut window = flying_its_plan();
+    let mut value = status(Phase::Flying);
+    value.plan = window.app().vehicle().active_hash();
+    window.receive_status(value.clone());
+    for state in [GatewayState::SafeReturn, GatewayState::SafeLand, GatewayState::Stop] {
+        window.receive_gateway_state(state);
+        window.steps(20);
+    }
+    window.stand_at(THRESHOLD.destination(52.0, 300.0));
+    value.phase = Phase::Finished;
+    window.receive_status(value.clone());
+    assert!(window.shows("The plan was not flown to its end: Safe mode took over, landed on R05"));
+    assert!(window.shows("not flown to its end") && !window.shows("◆ flown"));
+    value.phase = Phase::Flying;
+    window.receive_status(value.clone());
+    window.receive_gateway_state(GatewayState::TakeOff);
+    window.steps(20);
+    window.receive_gateway_state(GatewayState::Stop);
+    value.phase = Phase::Finished;
+    window.receive_status(value);
+    assert!(window.shows("The plan was flown"), "that of the next flight is its own");
+}
+
+/// The cause, the runway and the time were in the agent's log only, and a click left Safe mode in the glide.
+#[test]
+fn safe_mode_in_the_air_is_red_and_says_why_whereto_and_when_and_is_left_by_a_hold() {
+    let p = gcs_app::theme::palette(true);
+    let (mut window, _) = flying();
+    let says = |window: &mut Window, state, cause: &str| {
+        let alarms = vec![engine_out()];
+        let value = GatewayStatus { cause: cause.into(), alarms, ..gateway_status(state) };
+        window.receive(Telemetry::Gateway(Stamped { time_s: 4.0, validity_s: 2.0, value }.into()));
+        window.receive_position(false);
+        let value = Navigation { buffer_s: 70.0, end_of_plan: true, ..navigation(200.0) };
+        window.receive(Telemetry::Navigation(Stamped { time_s: 4.0, validity_s: 2.0, value }));
+        window.steps(20);
+    };
+    says(&mut window, GatewayState::SafeReturn, "gliding to runway R05, straight in");
+    let whole =
+        "⛔ Safe mode: gliding to runway R05, straight in, touches down in 1:10, because the engine failed";
+    assert!(window.shows(whole) && window.shows("none: Safe mode leads"));
+    let banner = window.harness.get_by_label(whole).rect();
+    assert_eq!(window.fill_around(banner), Some(p.warning), "as an emergency plan that is flown");
+    for button in ["⏸ Hold", "⏭ Skip leg"] {
+        assert!(!window.is_enabled(button), "{button} would do nothing");
+    }
+    window.leave_open();
+    window.press_for(window.centre("Leave Safe mode (hold)"), 5);
+    assert!(window.asked().is_none(), "not by a click");
+    window.hold("Leave Safe mode (hold)", 90);
+    assert!(matches!(window.asked(), Some((_, Call::Gateway(usal::contract::GatewayRequest::Recover)))));
+    says(&mut window, GatewayState::SafeLand, "steering to the touch-down");
+    assert!(window.shows("⛔ Safe mode: gliding to runway R05, straight in, steering to the touch-down"));
+}
+
+/// It was the largest button of the banner, all through the glide.
+#[test]
+fn way_back_without_an_engine_is_small_held_and_warns() {
+    let (mut window, landing) = raised();
+    window.answer(landing, Err("it is not known".into()));
+    window.leave_open();
+    window.receive_gateway(vec![engine_out()]);
+    let name = "⚠ Main plan, no engine (hold)";
+    assert!(!window.shows("Return to the main plan at") && window.shows(name));
+    window.harness.hover_at(window.centre(name));
+    window.steps(60);
+    assert!(window.shows("Without its engine it comes down on the way of the main plan"));
+    window.press_for(window.centre(name), 5);
+    window.leave_open();
+    assert!(!window.shows("Looking ahead"), "not by a click");
+    window.hold(name, 90);
+    assert!(window.shows("Looking ahead"));
+    let wanted = Call::Foresee(Some(Command::ReturnToMain { leg: "side3".into() }));
+    assert!(std::iter::from_fn(|| window.asked()).any(|(_, call)| call == wanted));
+}
+
+/// The bar said the one for any other cause, also while the engine was out.
+#[test]
+fn emergency_plan_of_the_engine_is_named_beside_the_one_for_other_causes() {
+    let field = r#"<emergencyPlan id="field" name="To the field" runway="R05">
+        <stage id="f-arrival" type="arrival"><DF id="f1" fix="C" altitude="150" altitudeReference="home"/></stage>
+        <stage id="f-land" type="land" runway="R05"/></emergencyPlan></emergencyPlans>"#;
+    let named = r#"<emergency cause="engine" plan="field"/><TF id="side1""#;
+    let text = SQUARE.replacen(r#"<TF id="side1""#, named, 1).replace("</emergencyPlans>", field);
+    let mut window = Window::open(&text);
+    window.until_analysed();
+    fly_its_plan(&mut window);
+    let mut value = window.app().vehicle().status.as_ref().unwrap().value.clone();
+    value.emergency_in_force = Some("return".into());
+    window.receive_status(value.clone());
+    assert!(window.shows("in an emergency: return · engine: To the field"));
+    assert!(window.shows("If engine") && window.shows("Emergency: fly return (hold)"));
+    window.receive_gateway(vec![engine_out()]);
+    window.leave_open();
+    window.hold("Emergency: fly To the field (hold)", 90);
+    let flown = Command::Emergency { cause: Cause::Operator, plan: Some("field".into()) };
+    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(flown)));
+    value.place = Some(place("take-off", "take-off"));
+    window.receive_status(value);
+    assert!(!window.shows("engine: To the field"), "it is named on the circuit alone");
 }
 
 fn on_ground() -> Position {

@@ -416,7 +416,7 @@ fn what_was_asked_for_in_the_climb_says_until_when_it_waits() {
     assert_eq!(log.map(|line| line.times).collect::<Vec<_>>(), [1], "once");
 }
 
-fn navigation(distance_m: f64) -> Navigation {
+pub fn navigation(distance_m: f64) -> Navigation {
     Navigation {
         current: None,
         next: None,
@@ -588,7 +588,7 @@ const COMMANDS: [&str; 7] = [
     "⏭ Skip leg",
     "Start and take off (hold)",
     "Rewind (hold)",
-    "Leave Safe mode",
+    "Leave Safe mode (hold)",
 ];
 
 /// The alarm went at touch-down, and the start was offered without a word.

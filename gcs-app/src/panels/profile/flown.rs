@@ -72,6 +72,14 @@ pub fn told<'a>(scene: &Scene<'a>) -> Option<(&'a Forecast, &'a Point)> {
     (way.points.len() > 1).then_some((way, here))
 }
 
+/// Seconds until it touches down, by where it is on that way: what was told long ago is still true of the rest of it.
+pub fn lands_in_s(scene: &Scene<'_>) -> Option<f64> {
+    // one that is not heard any more may be anywhere
+    scene.vehicle.clock_s(scene.now_s)?;
+    let (way, here) = told(scene).filter(|_| scene.vehicle.outlook.lands())?;
+    Some((way.duration_s() - here.time_s).max(0.0))
+}
+
 /// What is said of that way above the plot; also where it ends, if that is too early.
 pub fn name(scene: &Scene<'_>) -> String {
     let end = scene.vehicle.outlook.ends_early().map(|why| answer::told(scene, false, why));

@@ -31,7 +31,7 @@ impl Vehicle {
         let sight = Sight {
             position: live(&self.position, now_s).copied(),
             ahead: live(&self.ahead, now_s),
-            state: live(&self.gateway, now_s).map(|status| status.state),
+            state: live(&self.gateway, now_s).map(|status| (status.state, status.cause.as_str())),
         };
         self.watch.look(sight, terrain, now_s);
         for alarm in self.watch.alarms().filter(|alarm| !before.contains(&alarm.id)) {
