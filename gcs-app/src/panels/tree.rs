@@ -211,8 +211,8 @@ impl Tree {
         let index = all.iter().position(|row| row.selection.as_ref() == Some(selected));
         let parent = |index: &usize| keyboard::parent(&all, *index);
         let around = std::iter::successors(index.as_ref().and_then(parent), parent);
-        let is_unfolded =
-            around.filter_map(|at| all.get(at)).fold(false, |is, row| self.folded.remove(&row.key) || is);
+        let unfolded = around.filter_map(|at| all.get(at)).filter(|row| self.folded.remove(&row.key)).count();
+        let is_unfolded = unfolded > 0;
         self.looks += u64::from(is_unfolded);
         is_unfolded
     }
