@@ -10,7 +10,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 use tokio::runtime::{Handle, RuntimeFlavor};
+use tokio::time::Instant;
 use zenoh::Wait;
+use zenoh::session::ZenohId;
 
 /// Where a vehicle's hub listens unless told otherwise: this machine only.
 pub const DEFAULT_ENDPOINT: &str = "tcp/127.0.0.1:7447";
@@ -21,6 +23,9 @@ const PRESENT_HUB: Duration = Duration::from_secs(1);
 /// Whatever the network does, a session is closed within this time. (Zenoh itself gives up after
 /// ten seconds.)
 const CLOSE_WITHIN: Duration = Duration::from_secs(2);
+
+/// How often it is looked whether a connection is gone.
+const LOOK_AGAIN: Duration = Duration::from_millis(2);
 
 /// Called, from a network thread, whenever something has been received; must return at once.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
@@ -226,9 +231,21 @@ async fn open_zenoh(role: &Role) -> Result<zenoh::Session, SessionError> {
 
 async fn open_without_hub(endpoint: &str) -> zenoh::Result<zenoh::Session> {
     let stand_in = StandIn::open().await?;
-    let session = zenoh::open(zenoh_config("client", &[], &[endpoint, stand_in.endpoint()])?).await;
+    let (session, router) =
+        (zenoh::open(zenoh_config("client", &[], &[endpoint, stand_in.endpoint()])?).await, stand_in.id());
     stand_in.close().await?;
-    session
+    let session = session?;
+    until_gone(&session, router).await;
+    Ok(session)
+}
+
+/// Waits until a session knows that a router is gone. What was asked before would be told to be in doubt ([`crate::CallError::Lost`]),
+/// though nobody was there to do it.
+async fn until_gone(session: &zenoh::Session, router: ZenohId) {
+    let until = Instant::now() + CLOSE_WITHIN;
+    while session.info().routers_zid().await.any(|id| id == router) && Instant::now() < until {
+        tokio::time::sleep(LOOK_AGAIN).await;
+    }
 }
 
 /// No multicast, no gossip: only the endpoints given. The hub is a router, which forwards between

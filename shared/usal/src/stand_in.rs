@@ -7,6 +7,7 @@
 use crate::session::zenoh_config;
 #[cfg(unix)]
 use tempfile::TempDir;
+use zenoh::session::ZenohId;
 
 /// A router that nobody else reaches. It is gone when closed.
 pub struct StandIn {
@@ -56,6 +57,11 @@ impl StandIn {
     /// Where it listens.
     pub fn endpoint(&self) -> &str {
         &self.endpoint
+    }
+
+    /// Its name among routers.
+    pub fn id(&self) -> ZenohId {
+        self.zenoh.zid()
     }
 
     /// Ends it.
