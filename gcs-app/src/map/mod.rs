@@ -253,6 +253,7 @@ impl MapState {
         });
         if is_another {
             self.items = items::Items::default();
+            self.path.forget_draft();
             self.ways_of = None;
         }
     }

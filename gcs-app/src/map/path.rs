@@ -18,6 +18,8 @@ use std::collections::{BTreeSet, HashSet};
 /// The layer; keeps what it drew of the path until scale or forecast change.
 #[derive(Debug, Default)]
 pub struct Layer {
+    /// Of the sketch as it is, in which look.
+    draft: Kept<Look>,
     /// Of which path and octave, in which look.
     path: Kept<(u64, Option<i32>, Look)>,
     /// Of which path, as far as what was known of its alarms.
@@ -55,7 +57,7 @@ impl Layer {
         let forecast = scene.forecast();
         self.tend(view, scene);
         if forecast.points.is_empty() || forecast.is_beginning {
-            draft(sheet);
+            self.draw_draft(sheet);
         }
         if forecast.points.is_empty() {
             return;
@@ -99,6 +101,25 @@ impl Layer {
                 |wide| (of, waypoints(wide, scene, p)),
             );
         }
+    }
+
+    /// The plan's places are others than before.
+    pub fn forget_draft(&mut self) {
+        self.draft = Kept::default();
+    }
+
+    fn draw_draft(&mut self, sheet: &Sheet<'_>) {
+        let look = (colour(sheet.scene, sheet.p), sheet.p.halo);
+        self.draft.draw(
+            sheet.painter,
+            sheet.view,
+            |made| *made == look,
+            |wide| {
+                let line: Vec<Mercator> = sheet.sketch.main.iter().flatten().map(|at| (*at).into()).collect();
+                let (parts, (colour, halo)) = (polyline::visible_parts(&line, wide), look);
+                (look, polyline::shapes(&parts, Stroke::new(2.0, colour), Style::Dashed, halo))
+            },
+        );
     }
 
     fn draw_path(&mut self, sheet: &Sheet<'_>) {
@@ -227,11 +248,6 @@ impl LookedAt {
 /// Grey, when it is out of date.
 fn colour(scene: &Scene<'_>, p: &Palette) -> Color32 {
     if scene.out_of_date().is_some() { p.weak } else { p.accent }
-}
-
-fn draft(sheet: &Sheet<'_>) {
-    let line = sheet.sketch.main.iter().flatten().copied();
-    sheet.line(line, Stroke::new(2.0, colour(sheet.scene, sheet.p)), Style::Dashed);
 }
 
 /// A stronger line along some passages.
