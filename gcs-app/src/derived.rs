@@ -69,6 +69,11 @@ where
         Arc::get_mut(&mut self.value)
     }
 
+    /// It, for as long as it is used.
+    pub fn shared(&self) -> Arc<T> {
+        self.value.clone()
+    }
+
     /// It is of that, and nothing takes its place.
     pub fn is_of(&self, source: &Source<K>) -> bool {
         !self.is_busy() && self.of.as_ref().is_some_and(|of| of.is(source))

@@ -9,6 +9,7 @@ use super::in_place::{InPlace, Typed};
 use super::tree::menu;
 use super::{Panel, PanelId, Place, Scene, timeline};
 use crate::command::{Queue, Selection, ViewCommand};
+use crate::derived::{Derived, Source};
 use crate::theme;
 use cell::{cell, heading, not_flown};
 use egui::{
@@ -23,10 +24,8 @@ use typed::Column;
 /// The panel.
 #[derive(Debug, Default)]
 pub struct Table {
-    rows: Vec<Row>,
-    said: HashMap<Id, Said>,
-    /// Of which version of the plan, and of which forecast.
-    of: Option<(u64, u64)>,
+    /// Of which forecast.
+    listed: Derived<u64, Listed>,
     cursor: Cursor,
     /// What was selected when it was last drawn.
     selected: Option<Selection>,
@@ -35,6 +34,13 @@ pub struct Table {
     editing: Option<Editing>,
     /// What was selected with a leg before it was clicked: the click may be the first of a double click.
     before_click: Vec<Id>,
+}
+
+/// All rows, and what the plan says of their legs.
+#[derive(Debug, Default)]
+struct Listed {
+    rows: Vec<Row>,
+    said: HashMap<Id, Said>,
 }
 
 /// The cell that the keyboard is at.
@@ -87,6 +93,9 @@ impl Panel for Table {
     fn place(&self) -> Place {
         Place::Below
     }
+    fn is_busy(&self) -> bool {
+        self.listed.is_busy()
+    }
     /// The timeline, the heads of the columns, and five rows.
     fn least_height(&self) -> f32 {
         164.0
@@ -108,14 +117,12 @@ impl Panel for Table {
 impl Table {
     /// True: the rows are other ones.
     fn refresh(&mut self, scene: &Scene<'_>) -> bool {
-        let of = (scene.document.version(), scene.analysis.forecast_version);
-        if self.of == Some(of) {
-            return false;
-        }
-        self.of = Some(of);
-        self.rows = rows(scene.forecast(), scene.document.plan());
-        self.said = said(scene.document.plan());
-        true
+        let source = Source::new(scene.document, scene.analysis.forecast_version);
+        let forecast = scene.analysis.forecast.clone();
+        self.listed.refresh(source, scene.layers.wake(), move |plan, _| Listed {
+            rows: rows(&forecast, plan),
+            said: said(plan),
+        })
     }
 
     /// Brings what was selected elsewhere into view, as soon as it has a row.
@@ -133,7 +140,7 @@ impl Table {
             }
             _ => false,
         };
-        if let Some(row) = self.rows.iter().position(is_it) {
+        if let Some(row) = self.listed.rows.iter().position(is_it) {
             self.cursor = Cursor { row, moved: true, ..self.cursor };
             // its row moves once more when the plan as it is now is foreseen
             self.sought = scene.is_behind();
@@ -167,7 +174,7 @@ impl Table {
 
     /// To another row, which is selected; with those on the way to it, too.
     fn walk(&mut self, by: isize, extends: bool, scene: &Scene<'_>, queue: &mut Queue) {
-        let to = self.cursor.row.saturating_add_signed(by).min(self.rows.len().saturating_sub(1));
+        let to = self.cursor.row.saturating_add_signed(by).min(self.listed.rows.len().saturating_sub(1));
         self.cursor = Cursor { row: to, moved: true, ..self.cursor };
         match self.range(scene).filter(|_| extends) {
             Some(range) => queue.view(ViewCommand::SelectTogether(range)),
@@ -181,7 +188,7 @@ impl Table {
         let to = self.cursor.row;
         let is_first = |row: &usize| self.of_row(*row, scene).as_ref() == Some(first);
         // of several passages the nearest
-        let from = (0..self.rows.len()).filter(is_first).min_by_key(|row| row.abs_diff(to))?;
+        let from = (0..self.listed.rows.len()).filter(is_first).min_by_key(|row| row.abs_diff(to))?;
         let flown = (from.min(to)..=from.max(to)).filter(|row| self.entry(*row, scene).is_some());
         let flown = flown.filter_map(|row| self.of_row(row, scene));
         Some(std::iter::once(first.clone()).chain(flown).collect())
@@ -193,7 +200,7 @@ impl Table {
     }
 
     fn of_row(&self, row: usize, scene: &Scene<'_>) -> Option<Selection> {
-        match self.rows.get(row)? {
+        match self.listed.rows.get(row)? {
             Row::Stage(stage) => Some(Selection::Stage(stage.clone())),
             row => Some(part(scene, &row.entry(scene.forecast())?)),
         }
@@ -208,13 +215,13 @@ impl Table {
     }
 
     fn said_of(&self, scene: &Scene<'_>, entry: &Entry<'_>) -> Said {
-        let said = self.said.get(entry.leg).or_else(|| self.said.get(part(scene, entry).id()));
+        let said = self.listed.said.get(entry.leg).or_else(|| self.listed.said.get(part(scene, entry).id()));
         said.cloned().unwrap_or_default()
     }
 
     /// The leg of a row, if it is one.
     fn entry<'a>(&'a self, row: usize, scene: &Scene<'a>) -> Option<Entry<'a>> {
-        self.rows.get(row)?.entry(scene.forecast())
+        self.listed.rows.get(row)?.entry(scene.forecast())
     }
 
     /// Begins to type into the cell with the keyboard.
@@ -259,7 +266,8 @@ impl Table {
             }
         });
         // drawing a leg changes what is typed, and never the rows
-        let rows = std::mem::take(&mut self.rows);
+        let listed = self.listed.shared();
+        let rows = &listed.rows;
         table.body(|body| {
             body.rows(22.0, rows.len(), |mut row| {
                 let index = row.index();
@@ -274,7 +282,6 @@ impl Table {
                 }
             });
         });
-        self.rows = rows;
         if let Some((row, (column, what))) = done {
             self.take(ui, row, column, what, scene, queue);
         }

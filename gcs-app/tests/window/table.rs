@@ -11,6 +11,7 @@ use gcs_app::command::Queue;
 use gcs_app::document::Document;
 use gcs_app::forecast::{Analysis, Forecast, Passage, Point};
 use gcs_app::panels::{self, Panel};
+use std::cell::Cell;
 use std::sync::Arc;
 use terrain::Terrain;
 
@@ -281,7 +282,15 @@ fn drawn(mut panel: Box<dyn Panel>, scrolled: f32, look: impl Fn(&Harness<'_>)) 
     let mut queue = Queue::default();
     let builder =
         Harness::builder().with_size(vec2(900.0, 600.0)).with_context_setup(gcs_app::theme::install);
-    let mut harness = builder.build_ui(|ui| panel.ui(ui, &scene, &mut queue));
+    let is_busy = Cell::new(true);
+    let mut harness = builder.build_ui(|ui| {
+        panel.ui(ui, &scene, &mut queue);
+        is_busy.set(panel.is_busy());
+    });
+    while is_busy.get() {
+        std::thread::yield_now();
+        harness.step();
+    }
     harness.run_steps(2);
     harness.hover_at(Pos2::new(300.0, 300.0));
     let (unit, phase) = (egui::MouseWheelUnit::Point, egui::TouchPhase::Move);
