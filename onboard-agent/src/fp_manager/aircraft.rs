@@ -1,7 +1,11 @@
 //! Pure: the executor's view of the aircraft, out of the gateway's variables.
 
-use flight_exec::AircraftState;
+use flight_exec::{AircraftState, Time};
+use std::time::Duration;
 use usal::contract::{Air, Attitude, Position, Power};
+
+/// An older attitude may be that of before it was turned.
+const FRESH: Duration = Duration::from_secs(3);
 
 /// The latest of each.
 #[derive(Debug, Clone, Default)]
@@ -9,7 +13,7 @@ pub struct Aircraft {
     position: Option<Position>,
     air: Option<Air>,
     power: Option<Power>,
-    attitude: Option<Attitude>,
+    attitude: Option<(Time, Attitude)>,
 }
 
 impl Aircraft {
@@ -36,9 +40,9 @@ impl Aircraft {
     }
 
     /// A fresh attitude.
-    pub fn attitude(&mut self, attitude: Attitude) {
+    pub fn attitude(&mut self, now: Time, attitude: Attitude) {
         if attitude.heading_deg.is_finite() {
-            self.attitude = Some(attitude);
+            self.attitude = Some((now, attitude));
         }
     }
 
@@ -50,8 +54,9 @@ impl Aircraft {
 
     /// Everything together, once a position is known. Without air data there is no wind; without
     /// battery data it is taken as full, as conditions on it must not fire on nothing. `engine_out`: see [`AircraftState::engine_out`].
-    pub fn state(&self, engine_out: bool) -> Option<AircraftState> {
+    pub fn state(&self, now: Time, engine_out: bool) -> Option<AircraftState> {
         let p = self.position?;
+        let fresh = self.attitude.filter(|(at, _)| now.saturating_sub(*at) < FRESH);
         let (wind_east_mps, wind_north_mps) =
             self.air.map_or((0.0, 0.0), |a| (a.wind_east_mps, a.wind_north_mps));
         Some(AircraftState {
@@ -66,7 +71,41 @@ impl Aircraft {
             fuel: self.power.and_then(|p| p.fuel).filter(|f| f.is_finite()).map(|f| f.clamp(0.0, 1.0)),
             on_ground: p.on_ground,
             engine_out: engine_out && !p.on_ground,
-            heading_deg: self.attitude.filter(|_| p.on_ground).map(|a| a.heading_deg),
+            heading_deg: fresh.filter(|_| p.on_ground).map(|(_, attitude)| attitude.heading_deg),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::LatLon;
+
+    /// A stream that had stopped before the aircraft was turned had it refused on.
+    #[test]
+    fn how_it_is_turned_is_known_for_some_seconds_only() {
+        let mut aircraft = Aircraft::default();
+        aircraft.position(Position {
+            position: LatLon::new(36.0, -84.0),
+            altitude_amsl_m: 300.0,
+            altitude_home_m: 0.0,
+            track_deg: 0.0,
+            ground_speed_mps: 0.0,
+            velocity_north_mps: 0.0,
+            velocity_east_mps: 0.0,
+            velocity_down_mps: 0.0,
+            on_ground: true,
+        });
+        let turned = Attitude {
+            roll_deg: 0.0,
+            pitch_deg: 0.0,
+            heading_deg: 232.0,
+            roll_rate_dps: 0.0,
+            pitch_rate_dps: 0.0,
+            yaw_rate_dps: 0.0,
+        };
+        aircraft.attitude(Time::from_secs(10), turned);
+        let heading_deg = |s| aircraft.state(Time::from_secs(s), false).and_then(|state| state.heading_deg);
+        assert_eq!([heading_deg(11), heading_deg(20)], [Some(232.0), None]);
     }
 }

@@ -44,7 +44,7 @@ impl Manager {
         match report {
             Report::Position(position) => self.aircraft().position(position),
             Report::Air(air) => self.aircraft().air(air),
-            Report::Attitude(attitude) => self.aircraft().attitude(attitude),
+            Report::Attitude(attitude) => self.aircraft().attitude(now, attitude),
             Report::Power(power) => self.aircraft().power(power),
             Report::Gps(gps) => gps.unix_s.into_iter().for_each(|unix_s| self.time_of_day(now, unix_s)),
             Report::State(status) => self.gateway_status(now, &status, out),
@@ -158,7 +158,7 @@ impl Manager {
         let cause = call.cause;
         tracing::warn!(?cause, "alarm of the gateway: emergency");
         // laid out before it is known that the engine is out, its plan would be fed twice
-        if let Some(state) = self.aircraft_state() {
+        if let Some(state) = self.aircraft_state(now) {
             self.step(now, Input::Aircraft(state), out);
         }
         if let Err(refusal) = self.order(now, Command::Emergency { cause, plan: None }, GATEWAY, out) {

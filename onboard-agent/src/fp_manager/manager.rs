@@ -128,7 +128,7 @@ impl Manager {
 
     /// The wind as it is measured (calm, as long as nothing is known), the air, the time of day, and what the autopilot takes.
     pub fn conditions(&self, now: Time) -> Conditions {
-        let state = self.aircraft.state(self.alarms.engine_is_out());
+        let state = self.aircraft.state(now, self.alarms.engine_is_out());
         let wind =
             state.map_or(Wind::CALM, |s| Wind { east_mps: s.wind_east_mps, north_mps: s.wind_north_mps });
         let since_s = |then| now.saturating_sub(then).as_secs();
@@ -159,14 +159,14 @@ impl Manager {
         if let Some(reason) = self.gateway_session.tick(now) {
             self.not_launched(now, reason, out);
         }
-        let input = self.aircraft_state().map_or(Input::Tick, Input::Aircraft);
+        let input = self.aircraft_state(now).map_or(Input::Tick, Input::Aircraft);
         self.step(now, input, out);
         self.send(now, out);
     }
 
     /// The executor's view of the aircraft, once its position is known.
-    pub(super) fn aircraft_state(&self) -> Option<AircraftState> {
-        self.aircraft.state(self.alarms.engine_is_out())
+    pub(super) fn aircraft_state(&self, now: Time) -> Option<AircraftState> {
+        self.aircraft.state(now, self.alarms.engine_is_out())
     }
 
     /// A command of a person or a service; `by` is who asks, `id` the request's own name. One that was

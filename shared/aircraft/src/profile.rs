@@ -39,6 +39,9 @@ pub struct Profile {
     pub glide_ratio: f64,
     /// Shortest runway it can use, metres.
     pub min_runway_m: f64,
+    /// It takes off and lands upright, wherever its nose points then.
+    #[serde(default)]
+    pub rises_upright: bool,
 }
 
 /// Why a profile can't be used.
@@ -89,11 +92,6 @@ impl Profile {
             (profile.cruise_airspeed_mps / cruise_mps).ln().abs()
         };
         wings.min_by(|a, b| off_by(a).total_cmp(&off_by(b))).unwrap_or("trainer")
-    }
-
-    /// It takes off and lands upright, wherever its nose points then.
-    pub fn rises_upright(&self) -> bool {
-        self.name == VTOL
     }
 
     /// A profile that comes with the product.
@@ -193,6 +191,7 @@ impl Default for Profile {
             climb_power_w_per_mps: 70.0,
             glide_ratio: 12.0,
             min_runway_m: 150.0,
+            rises_upright: false,
         }
     }
 }

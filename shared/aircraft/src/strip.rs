@@ -7,7 +7,11 @@ use geometry::{LatLon, Vec2};
 /// So far before and behind a runway, and beside it, an aircraft counts as landed on it, metres: it flares early, and is off by a little.
 const OVERSHOOT_M: f64 = 150.0;
 const BESIDE_M: f64 = 100.0;
-/// Farther from a runway than this an aircraft does not stand at it, ready to be started, metres.
+/// So far before and behind a runway, and beside its centre line, an aircraft stands on it, metres: half its width, and what a position is
+/// wrong by.
+const ON_IT_ALONG_M: f64 = 60.0;
+const ON_IT_ASIDE_M: f64 = 30.0;
+/// Farther from a runway than this nothing stands at it, metres.
 const AT_IT_M: f64 = 500.0;
 
 /// The strip.
@@ -58,7 +62,13 @@ impl Strip {
         (-OVERSHOOT_M..=self.length_m + OVERSHOOT_M).contains(&off.n) && off.e.abs() <= BESIDE_M
     }
 
-    /// What stands here may take off from it: it may wait on a taxiway.
+    /// What stands here may take off along it.
+    pub fn is_stood_on(&self, place: LatLon) -> bool {
+        let off = self.along_and_aside_m(place);
+        (-ON_IT_ALONG_M..=self.length_m + ON_IT_ALONG_M).contains(&off.n) && off.e.abs() <= ON_IT_ASIDE_M
+    }
+
+    /// It is at least near, as a pad beside it.
     pub fn is_near(&self, place: LatLon) -> bool {
         self.beside_m(place) <= AT_IT_M
     }
@@ -71,22 +81,23 @@ mod tests {
     #[test]
     fn a_place_is_on_at_or_away_from_a_strip() {
         let strip = Strip { threshold: LatLon::new(36.49, -84.27), heading_deg: 52.0, length_m: 600.0 };
-        // along and aside; how far beside the line; landed on; at it
-        for (along_m, aside_m, beside_m, landed, near) in [
-            (300.0, 0.0, 0.0, true, true),
-            (300.0, 90.0, 90.0, true, true),
-            (-140.0, -30.0, 143.2, true, true),
-            (740.0, 0.0, 140.0, true, true),
-            (300.0, -120.0, 120.0, false, true),
-            (-200.0, 0.0, 200.0, false, true),
-            (300.0, 600.0, 600.0, false, false),
-            (-600.0, 0.0, 600.0, false, false),
+        // along and aside; how far beside the line; landed on; stands on it; at it
+        for (along_m, aside_m, beside_m, landed, stands, near) in [
+            (300.0, 0.0, 0.0, true, true, true),
+            (-40.0, 20.0, 44.7, true, true, true),
+            (300.0, 90.0, 90.0, true, false, true),
+            (-140.0, -30.0, 143.2, true, false, true),
+            (740.0, 0.0, 140.0, true, false, true),
+            (300.0, -120.0, 120.0, false, false, true),
+            (-200.0, 0.0, 200.0, false, false, true),
+            (300.0, 600.0, 600.0, false, false, false),
+            (-600.0, 0.0, 600.0, false, false, false),
         ] {
             let place = strip.threshold.destination(52.0, along_m).destination(142.0, aside_m);
             assert!((strip.beside_m(place) - beside_m).abs() < 0.5, "{along_m}, {aside_m}");
             assert_eq!(
-                (strip.is_landed_on(place), strip.is_near(place)),
-                (landed, near),
+                (strip.is_landed_on(place), strip.is_stood_on(place), strip.is_near(place)),
+                (landed, stands, near),
                 "{along_m}, {aside_m}"
             );
         }

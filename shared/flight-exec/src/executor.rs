@@ -14,6 +14,7 @@ mod refresh;
 mod replan;
 mod setup;
 mod snapshot;
+mod standing;
 mod status;
 mod trial;
 mod update;

@@ -2,7 +2,7 @@
 
 use super::Executor;
 use super::proposal::too_far;
-use crate::api::{Action, AircraftState, Command, FARTHEST_M, Output, Phase, Refusal, Token};
+use crate::api::{Action, Command, FARTHEST_M, Output, Phase, Refusal, Token};
 use crate::flight::{Flight, refusal};
 use crate::layout::cursor::control::is_call;
 use crate::layout::cursor::{Cursor, Step};
@@ -10,11 +10,7 @@ use crate::layout::path::{PathState, distance_m};
 use crate::layout::stretch::IssuedWaypoint;
 use crate::layout::world::World;
 use flight_plan::suggest::did_you_mean_leg;
-use flight_plan::{Id, Leg, LegKind, LegPath, Program, Runway, StageKind, VariableValue};
-use geometry::geodesy::normalise_180;
-
-/// An aircraft that stands farther off a runway's heading would roll the other way, degrees. Less may be a throw by hand across it.
-const MOST_OFF_DEG: f64 = 90.0;
+use flight_plan::{Id, Leg, LegKind, LegPath, Program, StageKind, VariableValue};
 
 impl Executor {
     pub(crate) fn command(
@@ -24,7 +20,7 @@ impl Executor {
         out: &mut Vec<Output>,
     ) -> Result<(), Refusal> {
         match command {
-            Command::Start => self.start(out),
+            Command::Start => self.start(by, out),
             Command::Hold => self.hold_by_command(out),
             Command::Resume => self.resume(out),
             Command::SkipLeg => self.skip_leg(out),
@@ -48,7 +44,7 @@ impl Executor {
         !self.is_flying() || self.check_taken_off().is_err()
     }
 
-    fn start(&mut self, out: &mut Vec<Output>) -> Result<(), Refusal> {
+    fn start(&mut self, by: &str, out: &mut Vec<Output>) -> Result<(), Refusal> {
         if !self.may_start() {
             return Err(refusal(
                 "already-flying",
@@ -58,7 +54,7 @@ impl Executor {
         if self.program().is_none() {
             return Err(refusal("no-plan", "there is no plan: propose one and commit it first"));
         }
-        self.check_at_runway()?;
+        self.check_at_runway(by)?;
         let cursor = match self.later_flight() {
             Some(mut cursor) => {
                 cursor.move_path_to(self.here());
@@ -76,42 +72,9 @@ impl Executor {
         Ok(())
     }
 
-    /// The aircraft stands where the flight is to take off, and does not point the other way: an autopilot takes off to where it points.
-    fn check_at_runway(&self) -> Result<(), Refusal> {
-        let stage = self.later_flight().map_or(0, |cursor| cursor.stage);
-        let stage = self.setup.program.flown().stages.get(stage).filter(|s| s.kind == StageKind::TakeOff);
-        let runway = stage.and_then(|s| self.setup.program.plan.runway(s.runway.as_ref()?));
-        let Some((runway, aircraft)) = runway.zip(self.life.aircraft()) else { return Ok(()) };
-        if !aircraft.on_ground {
-            return Ok(());
-        }
-        if runway.strip().is_near(aircraft.position) {
-            return self.check_direction(runway, aircraft);
-        }
-        let away_m = distance_m(aircraft.position, runway.threshold);
-        let reason = format!(
-            "the aircraft stands {:.1} km from runway `{}`, from which the plan takes off: bring it there, or fly a plan of where it stands",
-            away_m / 1000.0,
-            runway.id
-        );
-        Err(refusal("not-at-the-runway", reason))
-    }
-
-    fn check_direction(&self, runway: &Runway, aircraft: &AircraftState) -> Result<(), Refusal> {
-        let off_deg = aircraft.heading_deg.map_or(0.0, |deg| normalise_180(deg - runway.heading_deg).abs());
-        if off_deg <= MOST_OFF_DEG || self.setup.profile.rises_upright() {
-            return Ok(());
-        }
-        let reason = format!(
-            "the aircraft stands {off_deg:.0}° off the heading of runway `{}`, and would take off the wrong way: turn it",
-            runway.id
-        );
-        Err(refusal("wrong-way", reason))
-    }
-
     /// At the beginning of the flight that is to be started now, if others of the plan were flown before it: then what they left behind
     /// is kept. It may have been started already, and nothing came of that.
-    fn later_flight(&self) -> Option<Cursor> {
+    pub(super) fn later_flight(&self) -> Option<Cursor> {
         let horizon = &self.flight.horizon;
         let started = horizon.front().filter(|_| self.is_flying()).map(|front| &front.before);
         let cursor = self.grounded().or(started)?;

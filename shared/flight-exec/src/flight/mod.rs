@@ -14,6 +14,7 @@ mod offset;
 mod overrides;
 mod path_ahead;
 mod questions;
+mod refused_start;
 mod reported;
 mod revision;
 mod values;
@@ -28,6 +29,7 @@ pub(crate) use offset::{Offset, all_equivalent, both_or_none};
 pub(crate) use overrides::Overrides;
 pub(crate) use path_ahead::PathAhead;
 pub(crate) use questions::Questions;
+pub(crate) use refused_start::RefusedStart;
 pub(crate) use reported::Reported;
 pub(crate) use revision::Revision;
 pub(crate) use values::Values;
@@ -43,6 +45,8 @@ pub(crate) struct Life {
     pub numbers: Numbers,
     pub revision: Revision,
     pub values: Values,
+    #[serde(default)]
+    pub refused_start: RefusedStart,
     aircraft: Option<AircraftState>,
 }
 
@@ -69,8 +73,9 @@ impl Life {
     }
 
     pub fn is_equivalent(&self, other: &Self, offset: &Offset) -> bool {
-        // the last report repeats the motion, which is compared where the aircraft is; the energy in it makes no difference
-        let Self { mode, clock, numbers, revision, values, aircraft: _ } = self;
+        // the last report repeats the motion, which is compared where the aircraft is; the energy in it makes no difference. Nor does a start
+        // that was refused, once it flies
+        let Self { mode, clock, numbers, revision, values, refused_start: _, aircraft: _ } = self;
         mode.is_equivalent(&other.mode)
             && revision.is_equivalent(&other.revision)
             && clock.is_equivalent(&other.clock, offset)

@@ -1,9 +1,14 @@
 //! Commands: each is done or refused with a reason, and answered once.
 
-use crate::rig::{HOME, Rig, document, fix, program};
+use crate::rig::{GROUND_M, HOME, Rig, document, fix, program};
 use aircraft::Profile;
-use flight_exec::{AircraftState, Command, Event, Executor, Input, Output, Phase, Snapshot, Time, Token};
+use flight_exec::{
+    AircraftState, Command, Config, Event, Executor, Input, Output, Phase, Refusal, RequestId, Snapshot,
+    Time, Token,
+};
 use flight_plan::Cause;
+use std::sync::Arc;
+use terrain::Flat;
 
 const LEGS: &str = r#"<TF id="a" fix="A2"/><TF id="b" fix="B2"/><TF id="c" fix="C2"/><TF id="d" fix="C4"/>"#;
 
@@ -515,33 +520,76 @@ fn after_a_hold_what_an_update_brings_can_be_taken_back_by_the_next() {
     assert!(there(0, "k", rig.position) && there(1, "k", fix("B5")) && there(2, "z", fix("A3")), "{ways:?}");
 }
 
-/// A plan of Tennessee took off in Munich, and flew west.
-#[test]
-fn nobody_takes_off_elsewhere_than_from_the_runway_of_the_plan() {
+/// What is answered to a start of an aircraft that stands so far beside the runway, metres, and so much off its heading, degrees.
+fn standing(rig: &mut Rig, aside_m: f64, off_deg: Option<f64>) -> Result<(), Refusal> {
+    let runway = program(&document(r#"<TF id="a" fix="B1"/>"#)).plan.home().unwrap().clone();
+    let on_it = runway.threshold.destination(runway.heading_deg, 100.0);
+    rig.position = on_it.destination(runway.heading_deg + 90.0, aside_m);
+    let heading_deg = off_deg.map(|deg| runway.heading_deg + deg);
+    rig.step(Input::Aircraft(AircraftState { heading_deg, ..rig.state() }));
+    rig.command(Command::Start)
+}
+
+fn not_started() -> Rig {
     let mut rig = Rig::new();
     rig.update(&program(&document(r#"<TF id="a" fix="B1"/>"#))).unwrap();
-    rig.position = HOME.destination(200.0, 2400.0);
-    rig.report();
-    let refusal = rig.command(Command::Start).unwrap_err();
-    assert!(refusal.code == "not-at-the-runway" && refusal.reason.contains("2.4 km"), "{refusal}");
-    rig.position = HOME.destination(90.0, 300.0);
-    rig.report();
-    rig.command(Command::Start).unwrap();
+    rig
+}
+
+/// A plan of Tennessee took off in Munich, and flew west; one stood in a field beside the runway, and took off across the country.
+#[test]
+fn nobody_takes_off_elsewhere_than_from_the_runway_of_the_plan() {
+    for (aside_m, off_deg, words) in [
+        (2400.0, None, "2.4 km from runway `R`, from which the plan takes off: bring it there"),
+        (400.0, Some(-48.0), "400 m from runway `R`, from which the plan takes off, and 48° off its heading"),
+        (60.0, Some(0.0), "60 m from"),
+    ] {
+        let refusal = standing(&mut not_started(), aside_m, off_deg).unwrap_err();
+        assert!(refusal.code == "not-at-the-runway" && refusal.reason.contains(words), "{refusal}");
+    }
+    standing(&mut not_started(), 20.0, Some(0.0)).unwrap();
 }
 
 /// After an engine failure it had landed from the other end, and took off over that again.
 #[test]
 fn nobody_takes_off_the_wrong_way_along_a_runway() {
-    let start = |heading_deg| {
-        let mut rig = Rig::new();
-        rig.update(&program(&document(r#"<TF id="a" fix="B1"/>"#))).unwrap();
-        rig.step(Input::Aircraft(AircraftState { heading_deg, ..rig.state() }));
-        rig.command(Command::Start)
-    };
-    let runway_deg = program(&document(r#"<TF id="a" fix="B1"/>"#)).plan.home().unwrap().heading_deg;
-    let refusal = start(Some(runway_deg + 178.0)).unwrap_err();
+    let refusal = standing(&mut not_started(), 0.0, Some(178.0)).unwrap_err();
     assert!(refusal.code == "wrong-way" && refusal.reason.contains("178° off"), "{refusal}");
-    for heading_deg in [None, Some(runway_deg - 352.0), Some(runway_deg + 80.0)] {
-        start(heading_deg).unwrap();
+    assert!(standing(&mut not_started(), 0.0, Some(-58.0)).is_err());
+    for off_deg in [None, Some(-352.0), Some(40.0)] {
+        standing(&mut not_started(), 0.0, off_deg).unwrap();
     }
+}
+
+/// Without a compass the heading may be any: an aircraft that was turned was refused on, for ever.
+#[test]
+fn who_starts_again_within_a_minute_means_it() {
+    for (aside_m, off_deg) in [(0.0, 128.0), (400.0, 0.0), (400.0, 48.0)] {
+        let mut rig = not_started();
+        let refusal = standing(&mut rig, aside_m, Some(off_deg)).unwrap_err();
+        assert!(
+            refusal.reason.ends_with("or start again within a minute to do so all the same"),
+            "{refusal}"
+        );
+        rig.now += Time::from_secs(90);
+        standing(&mut rig, aside_m, Some(off_deg)).expect_err("he may not have meant that one");
+        rig.now += Time::from_secs(30);
+        let other = Command::Start;
+        let request = RequestId(1000);
+        let answer = rig.step(Input::Command { request, by: "somebody else".into(), command: other });
+        assert!(matches!(answer, Some(Err(_))), "{answer:?}");
+        rig.command(Command::Start).expect_err("he was not the last one who was told");
+        rig.command(Command::Start).unwrap();
+    }
+}
+
+#[test]
+fn what_rises_upright_starts_however_it_is_turned_also_from_beside_the_runway() {
+    let profile = Profile { rises_upright: true, ..Profile::default() };
+    let mut rig = Rig::new();
+    rig.executor = Executor::new(Config::default(), Arc::new(Flat(GROUND_M)), profile);
+    rig.update(&program(&document(r#"<TF id="a" fix="B1"/>"#))).unwrap();
+    standing(&mut rig, 2400.0, Some(180.0)).expect_err("it is far away");
+    rig.now += Time::from_secs(90);
+    standing(&mut rig, 300.0, Some(180.0)).unwrap();
 }

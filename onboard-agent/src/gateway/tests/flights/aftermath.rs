@@ -25,11 +25,12 @@ fn landed_without_its_engine(personality: Personality) -> Whole {
     whole
 }
 
-/// On its place, turned to where it is to take off.
-fn turned(whole: &mut Whole) {
+/// Brought to where it takes off, and so much off the runway's heading.
+fn brought_back(whole: &mut Whole, off_deg: f64) {
     let aircraft = &mut whole.flight.sim.autopilot.aircraft;
-    let at = aircraft.state().position;
-    *aircraft = aircraft::Aircraft::on_runway(aircraft.profile().clone(), at, GROUND_M, HEADING_DEG);
+    let at = HOME.destination(HEADING_DEG, 20.0);
+    *aircraft =
+        aircraft::Aircraft::on_runway(aircraft.profile().clone(), at, GROUND_M, HEADING_DEG + off_deg);
     whole.run(2.0);
 }
 
@@ -38,7 +39,7 @@ fn an_engine_that_failed_is_told_on_the_ground_until_it_runs() {
     for personality in [Personality::ArduPlane, Personality::Px4] {
         let mut whole = landed_without_its_engine(personality);
         assert!(is_engine_told(&whole), "{personality}: it is not mended by coming down");
-        turned(&mut whole);
+        brought_back(&mut whole, 0.0);
         assert!(whole.flight.sim.clear_fault("engine-out"));
         whole.run(5.0);
         assert!(is_engine_told(&whole), "{personality}: nobody has seen it run");
@@ -60,12 +61,14 @@ fn an_aircraft_that_stands_the_wrong_way_on_its_runway_is_not_started_until_it_i
     for personality in [Personality::ArduPlane, Personality::Px4] {
         let mut whole = landed_without_its_engine(personality);
         assert!(whole.flight.sim.clear_fault("engine-out"));
+        brought_back(&mut whole, 180.0);
         whole.command(Command::Rewind).unwrap();
         let refusal = whole.command(Command::Start).unwrap_err();
         assert_eq!(refusal.code, "wrong-way", "{personality}: {refusal}");
         assert!(refusal.reason.contains(RUNWAY) && refusal.reason.contains("turn it"), "{refusal}");
-        turned(&mut whole);
+        brought_back(&mut whole, 0.0);
         whole.command(Command::Start).unwrap();
+        whole.run_until(60.0, "the take-off", |w| w.flight.state() == GatewayState::TakeOff);
     }
 }
 

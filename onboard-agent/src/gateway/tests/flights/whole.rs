@@ -162,8 +162,8 @@ impl Whole {
         if let Some((_, air)) = gateway.telemetry().air {
             manager.aircraft().air(air);
         }
-        if let Some((_, attitude)) = gateway.telemetry().attitude {
-            manager.aircraft().attitude(attitude);
+        if let Some((at, attitude)) = gateway.telemetry().attitude {
+            manager.aircraft().attitude(at, attitude);
         }
         manager.tick(now, &mut effects);
         self.perform(effects);
