@@ -71,6 +71,8 @@ pub struct MavlinkDriver {
     steps: Vec<Steps>,
     /// The order to arm, while it is in flight.
     arming: Option<OrderId>,
+    /// It was refused, and why is not told yet.
+    refused: Option<arming::Refused>,
     /// One was not answered or was taken back, and may still be carried out: until it is disarmed.
     may_arm: bool,
     /// The order to stand down, while it is in flight.
@@ -250,12 +252,11 @@ impl MavlinkDriver {
             self.may_arm = false;
         }
         let arming = self.arming.take_if(|of| *of == id).is_some();
-        let report = match result {
-            Ok(()) => Report::Done(id),
+        match result {
+            Ok(()) => self.reports.push_back(Report::Done(id)),
             Err(refusal) if arming => self.not_armed(now, id, is_whole, refusal),
-            Err(refusal) => Report::Failed(id, refusal.why),
-        };
-        self.reports.push_back(report);
+            Err(refusal) => self.reports.push_back(Report::Failed(id, refusal.why)),
+        }
     }
 
     fn next_step(&mut self, id: OrderId) -> Option<Command> {
@@ -355,6 +356,7 @@ impl Driver for MavlinkDriver {
     }
 
     fn tick(&mut self, now: Time) {
+        self.tell_refusal(now);
         let mut events = std::mem::take(&mut self.events);
         self.session.tick(now, &mut events);
         self.stirred = true;

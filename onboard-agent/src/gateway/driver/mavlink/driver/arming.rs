@@ -8,6 +8,19 @@ use std::time::Duration;
 
 /// On a bad link a change of mode may be carried out so long after it was taken back.
 const STARTS_LATE: Duration = Duration::from_secs(10);
+/// Why it does not arm most autopilots say just behind their answer: so long that is listened to.
+const SAYS_WITHIN: Duration = Duration::from_secs(1);
+
+/// It refused to arm, and may still say why.
+#[derive(Debug)]
+pub(super) struct Refused {
+    at: Time,
+    id: OrderId,
+    /// In its answer.
+    why: String,
+    /// It says that it may arm later.
+    for_now: bool,
+}
 
 impl MavlinkDriver {
     pub(super) fn arm(&mut self, now: Time, id: OrderId, events: &mut Vec<SessionEvent>) {
@@ -76,23 +89,39 @@ impl MavlinkDriver {
         }
     }
 
-    /// It gives its reasons in words of its own. `sent`: the order to arm itself was sent, and not only what comes before it.
-    pub(super) fn not_armed(&mut self, now: Time, id: OrderId, sent: bool, refusal: Refusal) -> Report {
+    /// `sent`: the order to arm itself was sent, and not only what comes before it. A refusal is told with the reasons that it gives in words
+    /// of its own, once it has given them.
+    pub(super) fn not_armed(&mut self, now: Time, id: OrderId, sent: bool, refusal: Refusal) {
         let Refusal { why, for_now, is_answer } = refusal;
-        let why = match self.session.words.lately(now) {
-            Some(words) => format!("{why} (it says: {words})"),
-            None => why,
-        };
         if !is_answer && !sent {
             self.starts_late_until = Some(now + STARTS_LATE);
         }
         // what was not sent is not carried out late
-        let is_answer = is_answer || !sent;
-        self.may_arm = !is_answer;
-        match (for_now, is_answer) {
-            (true, _) => Report::PutOff(id, why),
-            (_, true) => Report::Failed(id, why),
-            (_, false) => Report::Unanswered(id, why),
+        self.may_arm = !is_answer && sent;
+        if is_answer {
+            self.refused = Some(Refused { at: now, id, why, for_now });
+        } else {
+            let why = self.in_its_words(now, why);
+            self.reports.push_back(match (for_now, sent) {
+                (true, _) => Report::PutOff(id, why),
+                (_, true) => Report::Unanswered(id, why),
+                (_, false) => Report::Failed(id, why),
+            });
+        }
+    }
+
+    /// That it refused to arm, when it has had the time to say why.
+    pub(super) fn tell_refusal(&mut self, now: Time) {
+        let is_due = |refused: &mut Refused| now.saturating_sub(refused.at) >= SAYS_WITHIN;
+        let Some(Refused { id, why, for_now, .. }) = self.refused.take_if(is_due) else { return };
+        let why = self.in_its_words(now, why);
+        self.reports.push_back(if for_now { Report::PutOff(id, why) } else { Report::Failed(id, why) });
+    }
+
+    fn in_its_words(&self, now: Time, why: String) -> String {
+        match self.session.words.lately(now) {
+            Some(words) => format!("{why} (it says: {words})"),
+            None => why,
         }
     }
 }
