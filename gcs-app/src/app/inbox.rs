@@ -23,6 +23,7 @@ impl App {
             true => self.view.behind_since_s.or(Some(now_s)),
             false => None,
         };
+        self.look_again(now);
         self.tend_pushes(now_s);
         self.watch_file();
         self.go_on_after_saving();

@@ -1,10 +1,11 @@
 //! A plan is written and compared with the one aboard in the background, then proposed: a large one takes longer than a frame.
 
-use super::App;
+use super::{App, Now};
 use crate::jobs::{Taken, Task};
 use crate::link::Call;
 use crate::panels::bar::PUSH;
-use crate::state::VehicleName;
+use crate::panels::push;
+use crate::state::{LOOK_AGAIN, VehicleName};
 use flight_plan::{Change, FlightPlan, diff};
 use std::sync::Arc;
 use usal::contract::Propose;
@@ -17,6 +18,8 @@ pub(super) struct Push {
     seen_revision: Option<u64>,
     /// The document's version that is proposed.
     version: u64,
+    /// What the log calls it.
+    label: &'static str,
     written: Task<Written>,
 }
 
@@ -38,6 +41,18 @@ impl App {
     /// Begins to propose the document; what was about to be proposed to this vehicle no longer is.
     pub(super) fn propose(&mut self, vehicle: &VehicleName) {
         self.take_proposal(vehicle);
+        self.begin_push(vehicle, PUSH);
+    }
+
+    /// While the aircraft flies on, what is proposed is looked at again; what is known of it stays until the answer.
+    pub(super) fn look_again(&mut self, now: Now) {
+        if self.pushes.is_empty() && push::is_due(&self.scene(now)) {
+            let shown = self.vehicles.shown_name().cloned();
+            shown.iter().for_each(|vehicle| self.begin_push(vehicle, LOOK_AGAIN));
+        }
+    }
+
+    fn begin_push(&mut self, vehicle: &VehicleName, label: &'static str) {
         self.pushes.retain(|push| push.vehicle != *vehicle);
         let Some(asked) = self.vehicles.get(vehicle) else { return };
         let seen_revision = asked.status.as_ref().map(|status| status.value.revision);
@@ -45,7 +60,7 @@ impl App {
         let aboard: Option<Arc<FlightPlan>> = asked.aboard.as_ref().map(|aboard| aboard.plan.clone());
         let written = Task::begin(self.wake.clone(), move || Written::of(&plan, aboard.as_deref()));
         let version = self.document.version();
-        self.pushes.push(Push { vehicle: vehicle.clone(), seen_revision, version, written });
+        self.pushes.push(Push { vehicle: vehicle.clone(), seen_revision, version, label, written });
     }
 
     /// Proposes what is written by now.
@@ -57,12 +72,12 @@ impl App {
                     self.view.notice = Some("The plan could not be written: push it again.".into());
                 }
                 Taken::Done(Written { xml, changes }) => {
-                    let Push { vehicle, seen_revision, version, .. } = push;
+                    let Push { vehicle, seen_revision, version, label, .. } = push;
                     if let Some(asked) = self.vehicles.get_mut(&vehicle) {
                         asked.put_forward = changes;
                     }
                     let ticket =
-                        self.call(&vehicle, PUSH, Call::Propose(Propose { xml, seen_revision }), now_s);
+                        self.call(&vehicle, label, Call::Propose(Propose { xml, seen_revision }), now_s);
                     if let (Some(asked), Some(ticket)) = (self.vehicles.get_mut(&vehicle), ticket) {
                         asked.requests.puts_forward(ticket, version);
                     }

@@ -1,13 +1,14 @@
 //! What a proposed plan would do, before it is committed. It stands beside map and panels: the commands of the flight
 //! stay in reach while the operator reads.
 
+use super::bar::PUSH;
 use super::{Scene, answer, problems};
 use crate::command::{FlyCommand, Queue};
-use crate::state::{Proposal, log::short_hash};
+use crate::state::{LOOK_AGAIN, Proposal, log::short_hash};
 use crate::theme::{self, Palette};
 use crate::units::{self, Units};
 use egui::collapsing_header::CollapsingState;
-use egui::{Color32, Label, RichText, ScrollArea, Sense, Ui};
+use egui::{Button, Color32, Label, RichText, ScrollArea, Sense, Ui};
 use flight_plan::{Change, FlightPlan, Id, Verdict};
 
 /// So many changes are written out.
@@ -17,6 +18,8 @@ const MOST_LEGS: usize = 200;
 const FEW_LEGS: usize = 3;
 /// What was told so long ago is of another place, seconds.
 const OLD_S: f64 = 10.0;
+/// What is proposed is not looked at again sooner after the last time, seconds of the window's clock: looking is work.
+const PAUSE_S: f64 = 10.0;
 /// What lies less far ahead is here, metres.
 const HERE_M: f64 = 1.0;
 
@@ -41,7 +44,7 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
     if report.entry_needed {
         entry(ui, scene, proposal, queue);
     }
-    ui.horizontal(|ui| buttons(ui, proposal, queue));
+    ui.horizontal(|ui| buttons(ui, scene, proposal, queue));
     ui.separator();
     if scene.path_aboard().is_some() {
         let shown =
@@ -175,11 +178,14 @@ fn next(ui: &mut Ui, proposal: &Proposal, scene: &Scene<'_>, p: &Palette) {
     };
     let leg = leg.map_or("–", |leg| scene.document.label(leg));
     let place = position.map_or_else(String::new, |at| format!(" at {}", units::position(at)));
-    let age_s = proposal.told.age_s(scene.now_s, scene.vehicle.clock_s(scene.now_s));
-    let is_old = age_s > OLD_S && scene.vehicle.is_airborne();
+    let is_old = is_old(scene, proposal);
     if is_old {
-        let text =
-            format!("⚠ Looked at {} ago, and the aircraft flew on: push again", units::duration(age_s));
+        let then = if looks_again(scene, proposal) {
+            "looking again"
+        } else {
+            "and the aircraft flew on: push again"
+        };
+        let text = format!("⚠ Looked at {} ago, {then}", units::duration(age_s(scene, proposal)));
         ui.label(RichText::new(text).color(p.caution));
     }
     ui.horizontal_wrapped(|ui| {
@@ -191,6 +197,32 @@ fn next(ui: &mut Ui, proposal: &Proposal, scene: &Scene<'_>, p: &Palette) {
     if let Some(way) = report.differs_in_m.zip(report.differs_in_s).filter(|_| scene.vehicle.is_airborne()) {
         ui.label(RichText::new(differs(way, units)).color(p.weak));
     }
+}
+
+/// How long ago it was looked at, seconds.
+fn age_s(scene: &Scene<'_>, proposal: &Proposal) -> f64 {
+    proposal.told.age_s(scene.now_s, scene.vehicle.clock_s(scene.now_s))
+}
+
+/// The aircraft flew on since.
+fn is_old(scene: &Scene<'_>, proposal: &Proposal) -> bool {
+    age_s(scene, proposal) > OLD_S && scene.vehicle.is_airborne()
+}
+
+/// It is looked at again by itself: it is what is shown, and nobody chooses a leg in it.
+fn looks_again(scene: &Scene<'_>, proposal: &Proposal) -> bool {
+    let hash = scene.analysis.hash_of(scene.document.version());
+    let is_shown = hash.is_some_and(|hash| *hash == *proposal.report.hash);
+    scene.vehicle.open_link().is_some() && is_shown && !proposal.report.entry_needed
+}
+
+/// It is to be looked at again now.
+pub fn is_due(scene: &Scene<'_>) -> bool {
+    let requests = &scene.vehicle.requests;
+    let is_due = |proposal: &Proposal| is_old(scene, proposal) && looks_again(scene, proposal);
+    let is_asked = [PUSH, LOOK_AGAIN].iter().any(|label| requests.is_pending(label));
+    let rests = requests.asked_s(LOOK_AGAIN).is_some_and(|asked_s| scene.now_s - asked_s < PAUSE_S);
+    scene.vehicle.proposal.as_ref().is_some_and(is_due) && !is_asked && !rests
 }
 
 /// Where the new path leaves the one that is flown now.
@@ -236,9 +268,15 @@ pub fn entries<'a>(scene: &Scene<'a>) -> impl Iterator<Item = &'a Id> {
     legs.filter(|context| context.section == flight_plan::Section::Main).map(|context| &context.leg.id)
 }
 
-fn buttons(ui: &mut Ui, proposal: &Proposal, queue: &mut Queue) {
+/// What was looked at long ago is committed by who insists on it.
+fn buttons(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) {
     let p = theme::of(ui);
-    if ui.add_enabled(is_ready(proposal), super::primary_button("Commit", p)).clicked() {
+    let is_old = is_old(scene, proposal);
+    if is_old && ui.add(super::primary_button("Push again", p)).clicked() {
+        queue.fly(FlyCommand::Propose);
+    }
+    let commit = if is_old { Button::new("Commit") } else { super::primary_button("Commit", p) };
+    if ui.add_enabled(is_ready(proposal), commit).clicked() {
         queue.fly(FlyCommand::Commit);
     }
     if ui.button("Keep as draft").clicked() {

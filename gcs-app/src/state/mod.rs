@@ -23,7 +23,7 @@ pub use losses::Losses;
 pub use names::Names;
 pub use outlook::{Considered, Outlook, Told};
 pub use recent::RecentEvents;
-pub use requests::{LOOK_AHEAD, Outcome, READ_ABOARD, Request, Requests, START, Ticket};
+pub use requests::{LOOK_AGAIN, LOOK_AHEAD, Outcome, READ_ABOARD, Request, Requests, START, Ticket};
 pub use strangers::Strangers;
 pub use toasts::Toasts;
 pub use trail::Trail;

@@ -50,7 +50,7 @@ impl Request {
 
     /// Somebody made it, rather than the window for itself.
     pub fn is_somebodys(&self) -> bool {
-        ![READ_ABOARD, LOOK_AHEAD].contains(&self.label.as_str())
+        ![READ_ABOARD, LOOK_AHEAD, LOOK_AGAIN].contains(&self.label.as_str())
     }
 }
 
@@ -65,6 +65,8 @@ pub struct Requests {
 pub const READ_ABOARD: &str = "Read the plan aboard";
 /// What the window asks before a command is given, and to know when the aircraft lands.
 pub const LOOK_AHEAD: &str = "Look ahead";
+/// What the window asks of a plan that is proposed while the aircraft flies on.
+pub const LOOK_AGAIN: &str = "Look at the proposed plan again";
 /// What the operator asks for by the button that is called so.
 pub const START: &str = "Start and take off";
 /// Most requests remembered.
@@ -139,6 +141,10 @@ impl Requests {
     /// All that are remembered, newest first.
     pub fn newest_first(&self) -> impl Iterator<Item = &Request> {
         self.list.iter().rev()
+    }
+    /// When something with this label was asked last, seconds of the window's clock.
+    pub fn asked_s(&self, label: &str) -> Option<f64> {
+        self.newest_first().find(|r| r.label == label).map(|r| r.sent_s)
     }
     /// Something with this label is waiting for its answer.
     pub fn is_pending(&self, label: &str) -> bool {

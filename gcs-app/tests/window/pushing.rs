@@ -49,11 +49,28 @@ fn a_proposal_says_how_old_it_is_and_whose_path_is_on_the_map() {
     assert!(window.shows("The aircraft would fly next:") && !window.shows("push again"));
     assert!(window.shows("on the map: this plan"));
     window.steps(60 * 11);
-    assert!(window.shows("ago, and the aircraft flew on: push again"));
+    assert!(window.shows("ago, looking again") && window.shows("Push again"));
+    let accent = gcs_app::theme::palette(true).accent;
+    let fill = |window: &Window, button| window.fill_around(window.harness.get_by_label(button).rect());
+    assert_eq!(
+        [fill(&window, "Push again"), fill(&window, "Commit")].map(|fill| fill == Some(accent)),
+        [true, false]
+    );
+    let again = |(_, call): &(_, Call)| matches!(call, Call::Propose(_));
+    let (ticket, _) = std::iter::from_fn(|| window.asked()).find(again).unwrap();
     assert!(window.shows("It would have flown next:") && !window.shows("The aircraft would fly next:"));
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
+    assert!(window.shows("The aircraft would fly next:") && !window.shows("Push again"));
+    assert!(!window.shows("Propose plan: pending"), "the window did it for itself");
+    window.steps(60 * 11);
+    let (ticket, _) = std::iter::from_fn(|| window.asked()).find(again).unwrap();
     window.click("Undo");
     window.until_analysed();
     assert!(window.shows("on the map: the edited draft") && !window.shows("on the map: this plan"));
+    assert!(window.shows("ago, and the aircraft flew on: push again"), "what is shown is another plan");
+    window.click("Keep as draft");
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report(&hash, true)))));
+    assert!(!window.shows("Push plan"), "it was dropped before the answer came");
 }
 
 /// What is for programs is for who points at it.

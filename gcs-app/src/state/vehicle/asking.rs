@@ -2,7 +2,7 @@
 
 use super::{Proposal, Vehicle, alarms::LINK_CAUTION_S};
 use crate::link::Reply;
-use crate::state::{LOOK_AHEAD, Level, Outcome, Outlook, Ticket, Told};
+use crate::state::{LOOK_AGAIN, LOOK_AHEAD, Level, Outcome, Outlook, Ticket, Told};
 
 /// The plan aboard is asked for again at most so often, seconds.
 const ASK_ABOARD_S: f64 = 3.0;
@@ -33,6 +33,8 @@ impl Vehicle {
             self.log.add(now_s, Level::Caution, "command", &format!("{label}: refused, {reason}"));
         }
         match result {
+            // it was committed or dropped meanwhile
+            Ok(Reply::Proposal(_)) if label == LOOK_AGAIN && self.proposal.is_none() => {}
             Ok(Reply::Proposal(report)) => {
                 let entry = report.entry_needed.then(|| report.next_leg.clone()).flatten();
                 let changes = std::mem::take(&mut self.put_forward);
