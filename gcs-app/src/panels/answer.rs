@@ -7,7 +7,8 @@ use crate::state::{Outcome, Request};
 use crate::{theme, units};
 use egui::text::LayoutJob;
 use egui::{
-    Align, Color32, FontId, Label, Layout, Rect, Response, RichText, Sense, TextStyle, Ui, UiBuilder, vec2,
+    Align, Color32, FontId, Id, Label, Layout, Rect, Response, RichText, Sense, TextStyle, Ui, UiBuilder,
+    vec2,
 };
 use flight_plan::in_words;
 
@@ -22,7 +23,9 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
     let mut line = ui.new_child(UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
     let Some(request) = last(scene) else {
-        if let Some((text, is_caution)) = flight::remark(scene) {
+        let remark = flight::remark(scene);
+        close_other_card(ui, scene, remark.as_ref().map_or("", |(text, _)| text), queue);
+        if let Some((text, is_caution)) = remark {
             say(&mut line, &text, if is_caution { p.caution } else { p.weak }, queue);
         }
         return;
@@ -39,6 +42,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             (format!("{}: refused, {}", request.label, why_not(scene, request, why)), p.caution)
         }
     };
+    close_other_card(ui, scene, &text, queue);
     let response = say(&mut line, &text, colour, queue);
     if let Outcome::Refused(why) = &request.outcome {
         with_codes(response, why);
@@ -58,9 +62,21 @@ fn say(line: &mut Ui, text: &str, colour: Color32, queue: &mut Queue) -> Respons
     };
     let is_cut = line.painter().layout_job(small(line.available_width())).elided;
     if is_cut && field::small_button(line, "⋯", "Read all of this answer") {
+        line.data_mut(|data| data.insert_temp(Id::unique(CARD), text.to_owned()));
         queue.view(ViewCommand::Notice(text.to_owned()));
     }
     line.add(Label::new(small(line.available_width())).wrap())
+}
+
+/// What the card over the map says of this line.
+const CARD: &str = "card of the answer";
+
+/// The card over the map that was opened for this line is closed when that says something else: it may be of another flight.
+fn close_other_card(ui: &Ui, scene: &Scene<'_>, said: &str, queue: &mut Queue) {
+    let opened: Option<String> = ui.data(|data| data.get_temp(Id::unique(CARD)));
+    if opened.is_some_and(|opened| opened != said && scene.view.notice.as_ref() == Some(&opened)) {
+        queue.view(ViewCommand::DismissNotice);
+    }
 }
 
 /// `, waits until 40 m above home`: what was accepted is not done yet.

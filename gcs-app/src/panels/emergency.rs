@@ -1,6 +1,6 @@
 //! An emergency plan that is being flown: what, why, where to, and the way back to the main plan.
 
-use super::{Scene, answer, field, flight, in_force, other_end, profile};
+use super::{Scene, answer, field, flight, in_force, other_end, profile, reach};
 use crate::command::Queue;
 use crate::state::is_safe;
 use crate::theme;
@@ -118,9 +118,8 @@ fn on(fill: Color32) -> Color32 {
     if fill.intensity() > 0.5 { Color32::BLACK } else { Color32::WHITE }
 }
 
-/// `EMERGENCY: flying Return home, touches down in 6:20, to runway 27, because the link was lost`; while something else than that plan leads the
-/// aircraft, what does; once it is down, where it lies. In a
-/// narrow window the end is cut.
+/// `EMERGENCY: flying Return home, touches down in 6:20, to runway 27, because the link was lost`; while something else than that plan
+/// leads the aircraft, what does; once it is down, where it lies. In a narrow window the end is cut.
 fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     let plan = scene.vehicle.aboard.as_ref().and_then(|a| plan_named(&a.plan, flown));
     let name = plan.map(|plan| plan.name.as_str()).filter(|name| !name.is_empty()).unwrap_or(flown.as_str());
@@ -139,13 +138,30 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
         return format!("⛔ EMERGENCY: climbing straight ahead {height}, then flying {name}{cause}");
     }
     if let Some(why) = scene.vehicle.outlook.ends_early() {
-        return format!("⛔ EMERGENCY: flying {name}, {}{cause}", answer::told(scene, false, why));
+        let another = another_reached(scene, plan).map(|other| format!(" · reached straight: {other}"));
+        let (why, another) = (answer::told(scene, false, why), another.unwrap_or_default());
+        return format!("⛔ EMERGENCY: flying {name}, {why}{another}{cause}");
     }
     let runway = plan
         .map_or_else(String::new, |plan| format!(", to runway {}{}", plan.runway, from_where(scene, plan)));
+    let runway = format!("{runway}{}", at_first(scene, plan).unwrap_or_default());
     let lands = profile::lands_in_s(scene);
     let lands = lands.map_or_else(String::new, |s| format!(", touches down in {}", units::duration(s)));
     format!("⛔ EMERGENCY: flying {name}{lands}{runway}{cause}")
+}
+
+/// What this window can say of the glide before the vehicle has told where it ends: those are the seconds that count.
+fn at_first(scene: &Scene<'_>, plan: Option<&EmergencyPlan>) -> Option<String> {
+    if scene.vehicle.outlook.way().is_some() || !scene.vehicle.is_engine_out() {
+        return None;
+    }
+    let runway = scene.vehicle.aboard.as_ref()?.plan.runway(&plan?.runway)?;
+    Some(format!(", straight {}", reach::in_words(scene, runway)?))
+}
+
+/// While it glides to a runway that it does not reach.
+fn another_reached(scene: &Scene<'_>, plan: Option<&EmergencyPlan>) -> Option<String> {
+    reach::another(scene, scene.vehicle.aboard.as_ref()?.plan.runway(&plan?.runway)?)
 }
 
 /// `, from its other end`, where the way that the vehicle told ends so.

@@ -2,7 +2,7 @@
 
 use super::{
     Panel, PanelId, Place, Scene, age_as_heard, age_of, alarms, emergency, ended, field, in_force, leading,
-    pfd, profile, value_with_age,
+    pfd, profile, reach, value_with_age,
 };
 use crate::actions::{flight as actions, written};
 use crate::command::{Command, Queue};
@@ -11,7 +11,7 @@ use crate::theme;
 use crate::units;
 use egui::{Button, Color32, ScrollArea, Ui};
 use flight_exec::{IterationPlace, Phase};
-use flight_plan::Id;
+use flight_plan::{EmergencyPlan, Id};
 use std::borrow::Cow;
 use usal::contract::GatewayState;
 
@@ -409,6 +409,13 @@ pub fn can_rewind(scene: &Scene<'_>) -> bool {
 /// Least width of the emergency's button, screen points: most names fit, and what is beside it stays in its place.
 const EMERGENCY: f32 = 290.0;
 
+/// `Return to R34 · 0.8 km, 120 m to spare`.
+fn label(scene: &Scene<'_>, plan: &EmergencyPlan) -> String {
+    let runway = scene.vehicle.aboard.as_ref().and_then(|aboard| aboard.plan.runway(&plan.runway));
+    let reach = runway.and_then(|runway| reach::in_words(scene, runway)).map(|reach| format!(" · {reach}"));
+    format!("{}{}", scene.vehicle.name_of(&plan.id), reach.unwrap_or_default())
+}
+
 /// Which emergency plan, then hold: named by its effect.
 fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let p = theme::of(ui);
@@ -438,7 +445,7 @@ fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let shown = combo.show_ui(ui, |ui| {
             ui.selectable_value(&mut chosen, None, "In force here");
             for plan in plans {
-                let label = scene.vehicle.name_of(&plan.id);
+                let label = label(scene, plan);
                 ui.selectable_value(&mut chosen, Some(plan.id.clone()), label);
             }
         });

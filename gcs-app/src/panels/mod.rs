@@ -30,6 +30,7 @@ pub mod pfd;
 pub mod problems;
 pub mod profile;
 pub mod push;
+pub mod reach;
 pub mod recover;
 pub mod selecting;
 pub mod services;

@@ -116,6 +116,18 @@ pub fn is_no_start(event: &Event) -> bool {
     matches!(event, Event::NotGranted { request, .. } if request == GatewayRequest::Launch.name())
 }
 
+/// Another start was accepted, or it took off: what was said of one that came to nothing is over. Whoever joins late hears all of it again.
+pub fn is_of_a_start(event: &Event) -> bool {
+    matches!(event, Event::PhaseChanged { phase: Phase::Flying } | Event::LegEntered { .. })
+}
+
+/// What is announced of a start that came to nothing.
+pub fn says_no_start(text: &str) -> bool {
+    text.starts_with(NOT_STARTED)
+}
+
+const NOT_STARTED: &str = "Not started: ";
+
 /// A plan event as a sentence.
 pub fn plan_event(event: &Event, names: Names<'_>) -> (Level, String) {
     let info = |text: String| (Level::Info, text);
@@ -170,7 +182,7 @@ pub fn plan_event(event: &Event, names: Names<'_>) -> (Level, String) {
             (Level::Warning, format!("The way ahead has a problem: warning [{code}] {leg}{reason}"))
         }
         Event::NotGranted { reason, .. } if is_no_start(event) => {
-            (Level::Caution, format!("Not started: {reason}"))
+            (Level::Caution, format!("{NOT_STARTED}{reason}"))
         }
         Event::NotGranted { request, reason } => {
             (Level::Caution, format!("The gateway does not grant `{request}`: {reason}"))

@@ -2,7 +2,7 @@
 
 use super::Window;
 use super::flying::{connected, flying};
-use super::vehicle::{decision, gateway_status, status};
+use super::vehicle::{decision, gateway_status, place, status};
 use egui_kittest::kittest::Queryable;
 use flight_exec::{DecisionRequest, Event, Phase};
 use gcs_app::link::{LinkEvent, LinkId, LinkState, Numbered, Reply, Telemetry};
@@ -68,6 +68,26 @@ fn a_start_that_is_not_granted_says_what_to_do_until_that_is_read() {
     assert!(is_announced(&window, "Not started"), "it stays until it is read");
     window.click("Put aside what uav1 announced");
     assert!(!is_announced(&window, "Not started"));
+}
+
+/// It stayed through a push, an accepted start and a flight, and a window that came later showed it without a time.
+#[test]
+fn a_start_that_came_to_nothing_is_not_announced_once_another_is_accepted() {
+    let refused = Event::NotGranted { request: "launch".into(), reason: "the autopilot refused Arm".into() };
+    let phase = |phase| Event::PhaseChanged { phase };
+    let (mut window, _) = connected();
+    window.send(event(1, taken("ask", "default")));
+    for (number, said) in [(2, phase(Phase::Flying)), (3, refused.clone()), (4, phase(Phase::Idle))] {
+        window.send(event(number, said));
+    }
+    assert!(is_announced(&window, "Not started"), "nobody has started it since");
+    window.send(event(5, phase(Phase::Flying)));
+    assert!(!is_announced(&window, "Not started"));
+    window.send(event(6, refused));
+    assert!(is_announced(&window, "Not started"), "nor did this one");
+    window.send(event(7, Event::LegEntered { place: place("take-off", "take-off") }));
+    assert!(!is_announced(&window, "Not started"));
+    assert!(is_announced(&window, "Nobody decided at ask"), "another thing is not put aside by that");
 }
 
 /// As a gateway says it of PX4.

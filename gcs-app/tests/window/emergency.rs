@@ -407,6 +407,56 @@ fn emergency_plan_of_the_engine_is_named_beside_the_one_for_other_causes() {
     assert!(!window.shows("engine: To the field"), "it is named on the circuit alone");
 }
 
+/// The square, with a runway R34 three kilometres east of R05, and a way to it.
+fn with_r34() -> String {
+    let at = THRESHOLD.destination(90.0, 3000.0);
+    let (lat, lon) = (at.lat_deg, at.lon_deg);
+    let runway = format!(
+        r#"<runway id="R34" lat="{lat}" lon="{lon}" elevation="349" heading="52" length="600"/></runways>"#
+    );
+    let way = r#"<emergencyPlan id="east" name="To R34" runway="R34">
+        <stage id="e-arrival" type="arrival"><DF id="e1" fix="B" altitude="150" altitudeReference="home"/></stage>
+        <stage id="e-land" type="land" runway="R34"/></emergencyPlan></emergencyPlans>"#;
+    SQUARE.replace("</runways>", &runway).replace("</emergencyPlans>", way)
+}
+
+/// These are the seconds that count: it was known aboard at once, and here the banner named the runway, the profile the main plan.
+#[test]
+fn engine_failure_says_at_once_what_is_in_reach_and_the_list_of_plans_does() {
+    let mut window = Window::open(&with_r34());
+    window.until_analysed();
+    fly_its_plan(&mut window);
+    let mut value = window.app().vehicle().status.as_ref().unwrap().value.clone();
+    let Telemetry::Position(mut here) = position(1.0, 500.0, false) else { unreachable!() };
+    here.value.position = THRESHOLD.destination(90.0, 2600.0);
+    here.value.track_deg = 52.0;
+    window.receive(Telemetry::Position(here.clone()));
+    let list = |window: &mut Window| {
+        window.click_role(egui::accesskit::Role::ComboBox, "Alternate");
+    };
+    list(&mut window);
+    assert!(window.shows("To R34 · 0.4 km") && !window.shows("to spare"), "the engine runs");
+    window.press(egui::Key::Escape);
+    value.emergency = Some("return".into());
+    window.receive_gateway(vec![engine_out()]);
+    window.receive(Telemetry::Position(here.clone()));
+    window.receive_status(value);
+    window.steps(20);
+    assert!(window.shows("to runway R05, straight 2.2 km, not reached: "));
+    assert!(window.shows("return is flown: it was asked which way"), "not the profile of the main plan");
+    list(&mut window);
+    assert!(window.shows("return · 2.2 km, not reached: ") && window.shows("To R34 · 0.4 km, "));
+    window.press(egui::Key::Escape);
+    let asked: Vec<_> = std::iter::from_fn(|| window.asked()).collect();
+    let (way, _) = asked.iter().rfind(|(_, call)| *call == Call::Foresee(None)).unwrap();
+    let why = "without its engine it comes down 2000 m from runway `R05`";
+    let short = Foresight { landed: false, cut_short: Some(why.into()), ..foresight() };
+    window.receive(Telemetry::Position(here));
+    window.answer(*way, Ok(Reply::Foresight(Box::new(short))));
+    window.steps(20);
+    assert!(window.shows("2000 m from runway “R05” · reached straight: R34 0.4 km, 81 m to spare"));
+}
+
 fn on_ground() -> Position {
     let Telemetry::Position(here) = position(0.0, 349.0, true) else { unreachable!() };
     here.value

@@ -29,7 +29,7 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
         window.receive(Telemetry::Power(Stamped { time_s: 3.0, validity_s: 5.0, value }));
         let (id, source, advice) = ("energy-low".into(), "gateway".into(), "Land soon.".into());
         window.receive_gateway(vec![Alarm { id, severity: Severity::Caution, source, advice, cause: None }]);
-        window.steps(3);
+        window.steps(20);
         let bottom = window.harness.get_by_label("⏸ Hold").rect().top();
         let vital = ["ENERGY LOW", "Arrival ▸ r1", "above the ground", "71 % · 24.1 V"];
         for text in vital {
@@ -126,6 +126,10 @@ fn alarms_and_answers_are_read_whole() {
         window.click("Read all of this answer");
         assert!(window.paints_whole(&long), "{size}: over the map");
         assert_eq!(rect(&window, "⏸ Hold"), hold, "{size}: no button moves for it");
+        window.steps(60);
+        assert!(window.paints_whole(&long), "{size}: it is read for as long as it takes");
+        told(&mut window, dropped);
+        assert!(!window.shows(&long), "{size}: the card of another answer would be false by now");
     }
 }
 

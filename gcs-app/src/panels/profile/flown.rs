@@ -59,7 +59,13 @@ pub fn on_preview<'a>(scene: &Scene<'a>) -> Option<&'a Point> {
 
 /// Why nobody knows the way that is flown.
 pub fn unknown(scene: &Scene<'_>) -> Option<String> {
-    emergency::led_by_safe_mode(scene).map(|how| format!("{how}. Which way it flies is not told"))
+    let safe = emergency::led_by_safe_mode(scene).map(|how| format!("{how}. Which way it flies is not told"));
+    // that of the main plan is no comfort then
+    let flown =
+        scene.vehicle.emergency().filter(|_| scene.vehicle.outlook.is_elsewhere() && told(scene).is_none());
+    safe.or_else(|| {
+        flown.map(|flown| format!("{} is flown: it was asked which way", scene.vehicle.name_of(flown)))
+    })
 }
 
 /// The way that it flies instead, as far as it was told, and the point of it where the aircraft is.

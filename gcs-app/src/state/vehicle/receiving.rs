@@ -175,6 +175,9 @@ impl Vehicle {
         if log::is_no_start(event) {
             self.requests.take_back(START);
         }
+        if log::is_of_a_start(event) {
+            self.unread.retain(|known| !log::says_no_start(known));
+        }
         if log::is_announced(event) {
             // asked for again and again, it is refused as often
             self.unread.retain(|known| *known != text);
