@@ -156,6 +156,10 @@ impl Gateway {
             self.fp_manager.heard_others(now, 1);
             return FeedAnswer::NotNow("Another FP Manager has joined: join first.".into());
         }
+        if self.fp_manager.instance.is_none() {
+            // it may not know what this gateway, which started anew, has met or forgotten
+            return FeedAnswer::NotNow("Nobody has joined this gateway: join first.".into());
+        }
         if let Err(why) = self.takes_waypoints(now) {
             return FeedAnswer::NotNow(why);
         }

@@ -22,6 +22,8 @@ const MET_WITHIN: Duration = Duration::from_secs(70);
 const ORDERS_A_SECOND: u64 = 4;
 /// Orders that follow from one thing that happens.
 const ORDERS_EACH: u64 = 8;
+/// An FP Manager that finds a gateway which it has not joined does so at every so many of its heartbeats.
+const JOINS_EVERY: u64 = 5;
 /// Kinds of things that happen.
 const KINDS: u8 = 27;
 /// Number of every request: each is answered before the next.
@@ -209,7 +211,7 @@ impl World {
         (first + 1..).zip(&mut waypoints).for_each(|(token, waypoint)| waypoint.token = Token(token));
         let feed = Feed { cancel_after: cancel_after.map(Token), waypoints: waypoints.clone() };
         if self.answer(Input::Feed(REQUEST, feed, fp_manager())) == Answer::Feed(FeedAnswer::Accepted) {
-            self.token += count as u64;
+            (self.token, self.feeds) = (self.token + count as u64, true);
             if self.autopilot.unknown {
                 // what an earlier gateway was sent belongs to a flight that ended unheard
                 self.sent.clear();
@@ -217,7 +219,6 @@ impl World {
             self.sent.retain(|token, _| cancel_after.is_none_or(|after| *token <= after));
             self.sent.extend(waypoints.into_iter().map(|waypoint| (waypoint.token.0, waypoint)));
         }
-        self.feeds = true;
         self.settle();
         self.feeds = false;
     }
@@ -232,6 +233,9 @@ impl World {
             self.core.beats += 1;
             let (count, plan, from) = (self.core.beats, Some("plan".into()), fp_manager());
             self.step(Input::Heartbeat { count, plan, from });
+            if self.core.gateway.fp_manager().is_none() && self.core.beats.is_multiple_of(JOINS_EVERY) {
+                self.join("plan", self.token);
+            }
         }
         let reports = self.autopilot.tick();
         self.see_pilot();
@@ -417,6 +421,8 @@ fn what_is_sent_to_an_approach_of_which_nobody_is_in_charge_is_replaced_by_the_w
     world.restart_gateway();
     world.ticks(6);
     assert_eq!(world.state, GatewayState::Approach);
+    world.join("plan", world.token);
+    world.ticks(3);
     world.feed(None, 1);
     assert_eq!(world.state, GatewayState::SafeReturn);
     assert!(world.sent.is_empty() && world.has_what_was_sent(), "{:?}", world.autopilot);

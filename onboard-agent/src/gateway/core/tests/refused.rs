@@ -204,6 +204,24 @@ fn who_joins_says_who_it_is_and_follows_none_that_lives() {
     assert!(why.contains("join first"), "{why}");
 }
 
+/// An FP Manager that has not noticed yet that the gateway is another one may send what does not fit what that has met or forgotten.
+#[test]
+fn who_has_not_joined_since_the_gateway_started_anew_feeds_nothing() {
+    let mut core = Core::started_anew(Some(Core::in_nav().gateway.snapshot()));
+    core.run(2, &flying(25.0, 25.0));
+    let adopted = Report::Adopted(adoption(&core), Some(10));
+    core.step(Input::Report(adopted));
+    core.step(Input::Report(Report::Course(course(true))));
+    core.run(1, &flying(25.0, 25.0));
+    assert_eq!(core.gateway.state(), S::Nav);
+    core.out.clear();
+    let FeedAnswer::NotNow(why) = fed(&mut core, more(1)) else { panic!("taken") };
+    assert!(why.contains("join first"), "{why}");
+    assert_eq!((core.orders(), core.gateway.navigation().last), (vec![], Some(Token(10))));
+    assert!(core.join().accepted);
+    assert_eq!(fed(&mut core, more(1)), FeedAnswer::Accepted);
+}
+
 #[test]
 fn whom_the_aircraft_can_not_be_given_is_told_why() {
     let cases = [
