@@ -173,7 +173,10 @@ impl Autopilot {
         let (course, token) = match steered {
             _ if !is_ours => (Course::default(), None),
             // unheard it is known what is still to be written, and no more of what it steers to
-            _ if self.silent => (Course { ready: self.said.ready && settled, ..self.said }, self.said_token),
+            _ if self.silent => {
+                let (ready, target) = (self.said.ready && settled, self.unheard_target());
+                (Course { ready, target, ..self.said }, self.said_token)
+            }
             None => (Course { aboard: true, ready: settled, target: Target::End }, None),
             Some(fed) => {
                 let target = Target::Waypoint(fed.serial);
@@ -182,6 +185,14 @@ impl Autopilot {
         };
         self.said_token = token;
         (std::mem::replace(&mut self.said, course) != course).then_some(Report::Course(course))
+    }
+
+    /// What was fed behind the end is still to be flown, whatever it steers to.
+    fn unheard_target(&self) -> Target {
+        match (self.said.target, self.list.front()) {
+            (Target::End, Some(fed)) => Target::Unknown { next: fed.serial },
+            (said, _) => said,
+        }
     }
 
     /// A tick; what is reported.
