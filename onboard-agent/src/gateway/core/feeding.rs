@@ -163,6 +163,7 @@ impl Gateway {
         if let Err(why) = self.takes_waypoints(now) {
             return FeedAnswer::NotNow(why);
         }
+        let feed = self.in_place_of_own(feed);
         if is_take_back(&feed) && self.state != GatewayState::Stop {
             let why = "a start is taken back on the ground only: in flight, hold or land elsewhere";
             return FeedAnswer::Refused { faults: vec![(Token(0), "in-flight".into(), why.into())] };
@@ -187,6 +188,15 @@ impl Gateway {
             GatewayState::Terminate => Err("The flight was ended by force.".into()),
             _ => Ok(()),
         }
+    }
+
+    /// Nothing follows on our own way home: it has no tokens, and a later batch that keeps what came behind it would cancel both.
+    fn in_place_of_own(&self, feed: Feed) -> Feed {
+        let follows_own = self.buffer.last().is_some_and(|last| last.token == Token(0));
+        if feed.waypoints.is_empty() || !follows_own {
+            return feed;
+        }
+        Feed { cancel_after: Some(Token(0)), ..feed }
     }
 
     /// Safe.Hold because the buffer ran dry, with an FP Manager that is alive: waypoints heal it.

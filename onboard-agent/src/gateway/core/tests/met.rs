@@ -156,3 +156,22 @@ fn what_an_earlier_gateway_knew_is_forgotten_when_the_aircraft_is_had_back_witho
     assert_eq!((core.gateway.state(), known.intent), (GatewayState::Hold, Intent::Hold));
     assert!(known.waypoints.is_empty());
 }
+
+/// A batch that keeps the first waypoint cancelled it with the way home before it, of which the sender knows nothing.
+#[test]
+fn what_is_sent_to_one_that_is_met_on_its_way_home_takes_the_place_of_that() {
+    let mut core = Core::in_nav();
+    let way_home = crate::gateway::tests::flights::landing();
+    core.gateway.feed_driver(Some(Token(0)), way_home, &mut vec![]);
+    let mut core = met(Mode::Waypoints, Some(core.gateway.snapshot()), false);
+    let answer = core.join();
+    assert!(answer.accepted && answer.last.is_none(), "{answer:?}");
+    let zigzag = crate::gateway::tests::flights::zigzag(0, 2, 300.0);
+    for (cancel_after, (token, sent)) in [None, Some(Token(11))].into_iter().zip((11..).zip(zigzag)) {
+        let waypoints = vec![Waypoint { token: Token(token), ..sent }];
+        let feed = Input::Feed(4, Feed { cancel_after, waypoints }, fp_manager());
+        assert_eq!(core.answer(feed), Answer::Feed(FeedAnswer::Accepted));
+    }
+    let tokens = core.gateway.buffer.waypoints().map(|w| w.token.0);
+    assert_eq!(tokens.collect::<Vec<_>>(), [11, 12]);
+}
