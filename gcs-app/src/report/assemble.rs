@@ -242,7 +242,10 @@ fn sentence(event: &Event) -> (String, bool) {
         Event::EmergencyStarted { cause, plan, .. } => {
             (format!("emergency ({cause:?}): flying {plan}"), true)
         }
-        Event::EmergencyUnanswered { cause } => {
+        Event::EmergencyUnanswered { cause, plan: Some(plan), reason, .. } => {
+            (format!("emergency ({cause:?}): {plan} is not flown: {reason}"), true)
+        }
+        Event::EmergencyUnanswered { cause, plan: None, .. } => {
             (format!("emergency ({cause:?}) without a plan for it"), true)
         }
         Event::PhaseChanged { phase } => (phase_name(*phase).to_owned(), false),

@@ -162,7 +162,10 @@ pub fn plan_event(event: &Event, names: Names<'_>) -> (Level, String) {
         Event::EmergencyStarted { cause, plan, .. } => {
             (Level::Warning, format!("Emergency plan {} is being flown ({cause:?})", name(plan)))
         }
-        Event::EmergencyUnanswered { cause } => {
+        Event::EmergencyUnanswered { cause, plan: Some(plan), reason, .. } => {
+            (Level::Warning, format!("{} is not flown ({cause:?}): {reason}", name(plan)))
+        }
+        Event::EmergencyUnanswered { cause, plan: None, .. } => {
             (Level::Warning, format!("No emergency plan for {cause:?}: Safe mode decides"))
         }
         Event::PhaseChanged { phase: Phase::AwaitingDecision } => {

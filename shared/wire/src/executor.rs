@@ -152,7 +152,7 @@ same_variants!(domain::Event = contract::PlanEvent {
     ExpressionFailed { leg, reason },
     PlanActivated { hash, revision },
     EmergencyStarted { cause, plan, from_leg },
-    EmergencyUnanswered { cause },
+    EmergencyUnanswered { cause, plan, code, reason },
     PhaseChanged { phase },
     WaypointsRejected { leg, reason },
     ProblemAhead { leg, code, reason },

@@ -274,7 +274,12 @@ fn events(s: &mut Source) -> Vec<Event> {
         Event::ExpressionFailed { leg: s.id(), reason: s.text() },
         Event::PlanActivated { hash: s.shared(), revision: s.whole() },
         Event::EmergencyStarted { cause: s.one(causes), plan: s.id(), from_leg: s.maybe(Source::id) },
-        Event::EmergencyUnanswered { cause: s.one(causes) },
+        Event::EmergencyUnanswered {
+            cause: s.one(causes),
+            plan: s.maybe(Source::id),
+            code: s.text(),
+            reason: s.text(),
+        },
         Event::PhaseChanged { phase: s.one(phases) },
         Event::WaypointsRejected { leg: s.maybe(Source::id), reason: s.text() },
         Event::ProblemAhead { leg: s.maybe(Source::id), code: s.text(), reason: s.text() },

@@ -92,10 +92,19 @@ pub enum Event {
         /// The leg it was raised on.
         from_leg: Option<Id>,
     },
-    /// No emergency plan applies: the gateway's Safe mode has to decide.
+    /// No emergency plan is flown for this: the gateway's Safe mode has to decide.
     EmergencyUnanswered {
         /// Why it was raised.
         cause: Cause,
+        /// The plan that is there for it and is not flown. `None`: there is none.
+        #[serde(default)]
+        plan: Option<Id>,
+        /// Why: short, stable, for programs (`no-emergency-plan`, `another-runway-reached`, `glide-into-terrain`).
+        #[serde(default)]
+        code: String,
+        /// For people.
+        #[serde(default)]
+        reason: String,
     },
     /// What it is doing changed.
     PhaseChanged {

@@ -20,13 +20,11 @@ impl Executor {
             (self.flight.emergencies.leg_of_main_plan(|| self.main_leg()), plan.is_some());
         let found = emergencies::resolve(&program, cause, plan.as_ref(), from_leg.as_ref())?;
         let Some((index, plan)) = found else {
-            out.push(Output::Event(Event::EmergencyUnanswered { cause }));
             let reason = "no emergency plan applies here: the gateway's Safe mode decides, or name a plan";
-            return Err(refusal("no-emergency-plan", reason));
+            return Err(unanswered(cause, None, refusal("no-emergency-plan", reason), out));
         };
         if let Err(refused) = self.check_glide(index, is_named) {
-            out.push(Output::Event(Event::EmergencyUnanswered { cause }));
-            return Err(refused);
+            return Err(unanswered(cause, Some(plan), refused, out));
         }
         self.switch_to(index, Emergency { cause, plan, from_leg }, out);
         Ok(())
@@ -83,4 +81,11 @@ impl Executor {
         let leg = self.flight.emergencies.leg_of_main_plan(|| self.main_leg());
         Some(emergencies::in_force(&self.setup.program, leg.as_ref(), Cause::Operator)?.id.clone())
     }
+}
+
+/// Nobody but the one who raised it reads its refusal: the gateway raises most.
+fn unanswered(cause: Cause, plan: Option<Id>, refused: Refusal, out: &mut Vec<Output>) -> Refusal {
+    let Refusal { code, reason } = refused.clone();
+    out.push(Output::Event(Event::EmergencyUnanswered { cause, plan, code, reason }));
+    refused
 }

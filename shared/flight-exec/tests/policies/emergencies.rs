@@ -89,7 +89,8 @@ fn ends_on_a_runway(trace: &Trace, found: &mut Findings) {
 fn is_answered(trace: &Trace, found: &mut Findings) {
     for step in trace.steps().filter(|s| s.before.is_flying()) {
         let Some(Command::Emergency { cause, .. }) = step.command() else { continue };
-        let unanswered = step.events().any(|e| *e == Event::EmergencyUnanswered { cause: *cause });
+        let unanswered =
+            step.events().any(|e| matches!(e, Event::EmergencyUnanswered { cause: of, .. } if of == cause));
         let answered = match step.refused() {
             None => started(step).is_some_and(|(c, plan, _)| c == *cause && flies(step.after, plan)),
             // the document's own answer is there wherever the flight is
