@@ -71,3 +71,16 @@ fn of_a_very_large_plan_map_and_tree_come_when_they_are_ready() {
     window.press_ctrl(egui::Key::Z);
     assert!(window.shows("TF side2") && window.shows("Fix A") && !window.shows("Waypoint w"));
 }
+
+/// What is kept of it is that of the plan as it is.
+#[test]
+fn the_draft_of_a_plan_that_cannot_be_flown_follows_its_places() {
+    let mut window = Window::open(&SQUARE.replace(r#"<runway id="R05""#, r#"<runway id="R23""#));
+    window.until_analysed();
+    assert!(window.app().analysis().forecast.points.is_empty());
+    let weak = gcs_app::theme::palette(true).weak;
+    let before = window.triangles_within("Map", weak);
+    window.drag(window.centre("Fix A"), vec2(60.0, -60.0));
+    let after = window.triangles_within("Map", weak);
+    assert!(before > 0 && after > before, "its line is longer: {before}, {after}");
+}
