@@ -182,7 +182,8 @@ impl Gateway {
             mode: self.telemetry.mode.map(|_| self.telemetry.mode_name.clone().into_owned()),
             terminated: self.forced_end.outlives(),
             terminated_unix_s: self.forced_end.unix_s,
-            engine: self.alarms.of_engine(),
+            // of a flight that is over it says nothing of the next one
+            engine: self.alarms.of_engine().filter(|_| self.telemetry.is_up(self.now)),
             climb_out: self.control.climb_out.clone(),
         }
     }

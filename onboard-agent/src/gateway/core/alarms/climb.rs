@@ -32,8 +32,12 @@ struct Start {
 }
 
 impl Climb {
-    /// Looks at what is told now. One report of no climb ends it, one of less energy a level flight.
+    /// Looks at what is told now. One report of no climb ends it, one of less energy a level flight; standing on the ground is neither.
     pub fn take(&mut self, now: Time, t: &Telemetry) {
+        if !t.is_up(now) {
+            *self = Self::default();
+            return;
+        }
         let fix = t.fix.filter(|(at, _)| now.saturating_sub(*at) < FRESH);
         let known_mps = fix.and(speed_m(now, t)).and_then(|_| energy_mps(now, t));
         self.stays_up_since =

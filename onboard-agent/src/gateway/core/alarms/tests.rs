@@ -159,6 +159,28 @@ fn a_suspicion_ends_with_a_climb_that_only_an_engine_gives() {
     }
 }
 
+/// It had stood there for a minute, as high and as fast as before: the first moment in the air took the suspicion for refuted.
+#[test]
+fn standing_on_the_ground_refutes_no_suspicion() {
+    let (mut alarms, mut telemetry) = (Alarms::default(), Telemetry::default());
+    alarms.take_up("engine-suspected", &mut vec![]);
+    let air = Air {
+        airspeed_mps: 3.0,
+        wind_east_mps: 0.0,
+        wind_north_mps: 0.0,
+        pressure_hpa: 960.0,
+        temperature_c: 15.0,
+    };
+    for tenth in 0..620_u32 {
+        let now = Duration::from_millis(100 * u64::from(tenth));
+        let mut reports: Vec<Report> = good(i64::from(tenth)).into_iter().take(2).collect();
+        reports.extend([Report::OnGround(tenth < 600), moving(0.0), Report::Air(air)]);
+        reports.iter().for_each(|report| telemetry.take(now, report));
+        alarms.update(now, &telemetry, AlarmInputs::default(), &mut vec![]);
+    }
+    assert!(telemetry.is_up(Duration::from_secs(62)) && alarms.engine_has_failed());
+}
+
 /// Its autopilot warns of its engine, on the ground or in the air, and then flies like this for 10 s: throttle, climb, m/s, and airspeed
 /// with its change, m/s and m/s². When it is suspected, seconds behind the warning.
 fn suspected_behind_words(

@@ -252,6 +252,16 @@ fn an_engine_alarm_that_this_gateway_does_not_know_is_not_taken_up() {
     assert_eq!(events.len(), 1);
 }
 
+/// A gateway that was dead on the ground, and started anew after the pilot's take-off, glided with an engine that ran.
+#[test]
+fn an_engine_alarm_is_left_to_a_gateway_that_follows_in_the_air_only() {
+    let mut core = Core::in_nav();
+    core.gateway.alarms.take_up("engine-out", &mut vec![]);
+    assert_eq!(core.gateway.snapshot().engine.as_deref(), Some("engine-out"));
+    core.step(Input::Report(Report::OnGround(true)));
+    assert_eq!(core.gateway.snapshot().engine, None);
+}
+
 /// On its way home by power, its engine fails, and no runway is within a glide.
 #[test]
 fn a_way_home_is_kept_where_no_glide_is_better() {
