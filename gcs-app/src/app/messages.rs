@@ -1,7 +1,7 @@
 //! What the window tells by itself: messages that go again, the story of a demo, the tour.
 
 use super::{App, Now, REFRESH};
-use crate::panels::profile;
+use crate::panels::{emergency, profile};
 use crate::state::Level;
 use crate::story::Story;
 use std::time::Duration;
@@ -75,6 +75,18 @@ impl App {
             }
             let is_elsewhere = profile::is_elsewhere(&self.scene(now));
             self.vehicles.set_elsewhere(is_elsewhere);
+            self.look_for_emergency(now);
         }
+    }
+
+    /// An emergency that begins is brought into view, with where it leads: the map may have been left anywhere. Once: who looks elsewhere
+    /// afterwards means to.
+    fn look_for_emergency(&mut self, now: Now) {
+        let places = emergency::places(&self.scene(now));
+        let whose = self.vehicles.shown_name().filter(|_| places.is_some()).cloned();
+        if let Some(places) = places.filter(|_| whose != self.in_emergency) {
+            self.map.reveal_all(places);
+        }
+        self.in_emergency = whose;
     }
 }

@@ -91,6 +91,8 @@ pub struct App {
     time_of_day: TimeOfDay,
     /// When the aircraft were looked at last, seconds of the window's clock.
     looked_s: f64,
+    /// The vehicle that was shown then, if it was in an emergency.
+    in_emergency: Option<VehicleName>,
     /// The window closes, whatever was not saved.
     leaving: bool,
     /// What happens when all that is to be saved is saved.
@@ -166,6 +168,7 @@ impl App {
             mirrored: None,
             time_of_day: jiff::Timestamp::now,
             looked_s: f64::NEG_INFINITY,
+            in_emergency: None,
             leaving: false,
             after_saving: None,
             screenshot: None,

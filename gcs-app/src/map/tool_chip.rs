@@ -35,6 +35,8 @@ pub fn show(ui: &mut Ui, tools: &mut Toolbox, columns: &[Rect], scene: &Scene<'_
         true => line(ui, tools, &status, columns, scene),
         false => whole(ui, tools, status, columns, scene),
     });
+    let takes_places = tools.takes_places();
+    ui.data_mut(|data| data.insert_temp(places_id(), takes_places));
     ui.data_mut(|data| match shown {
         Some(rect) => _ = data.insert_temp(said_id(), rect),
         None => data.remove::<Rect>(said_id()),
@@ -140,6 +142,15 @@ const CHOICES: f32 = 260.0;
 
 fn said_id() -> Id {
     Id::unique("what the tool in use says")
+}
+
+fn places_id() -> Id {
+    Id::unique("the tool in use takes places")
+}
+
+/// A click on the map is a place for the tool in use: what comes and goes by itself gives way to the pointer.
+pub fn takes_places(ctx: &Context) -> bool {
+    ctx.data(|data| data.get_temp(places_id())).unwrap_or(false)
 }
 
 /// What is left of the map below what the tool in use says at its upper edge.

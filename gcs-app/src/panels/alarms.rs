@@ -1,10 +1,11 @@
 //! Alarms: warnings red, cautions amber, advisories neither; the symbol says it too.
 
-use super::Scene;
+use super::{Scene, flight, reach};
 use crate::state::GROUND_STATION;
 use crate::theme::{self, Palette};
 use egui::{Color32, CornerRadius, RichText, Stroke, Ui};
-use usal::contract::{Alarm, Severity};
+use std::borrow::Cow;
+use usal::contract::{Alarm, Cause, Severity};
 
 /// Draws the alarms that are raised, the most severe first; a quiet line when there are none.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
@@ -17,11 +18,23 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>) {
         ui.label(RichText::new(text).color(p.weak));
     }
     for alarm in &alarms {
-        one(ui, alarm);
+        one(ui, alarm, &advice(scene, alarm));
     }
 }
 
-fn one(ui: &mut Ui, alarm: &Alarm) {
+/// What to do. The gateway's advice without an engine is to land: this window knows when there is nothing to land on, or no more to land.
+fn advice<'a>(scene: &Scene<'_>, alarm: &'a Alarm) -> Cow<'a, str> {
+    let is_engine = alarm.cause == Some(Cause::Engine);
+    if is_engine && flight::is_on_ground(scene) {
+        return "It is down: look at the engine before another start.".into();
+    }
+    if is_engine && reach::reaches_none(scene) {
+        return "No runway of the plan is within a straight glide: look for a place to come down.".into();
+    }
+    alarm.advice.as_str().into()
+}
+
+fn one(ui: &mut Ui, alarm: &Alarm, advice: &str) {
     let p = theme::of(ui);
     let (symbol, colour) = style(alarm.severity, p);
     egui::Frame::new()
@@ -37,7 +50,7 @@ fn one(ui: &mut Ui, alarm: &Alarm) {
                     .strong()
                     .color(colour),
             );
-            ui.label(RichText::new(&alarm.advice).size(12.0));
+            ui.label(RichText::new(advice).size(12.0));
             if alarm.source == GROUND_STATION {
                 ui.label(RichText::new("Seen by this ground station").size(11.0).color(p.weak));
             }

@@ -8,6 +8,7 @@ use crate::units;
 use egui::{Align, Button, Color32, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, Ui};
 use flight_exec::{Command, Phase};
 use flight_plan::{Cause, EmergencyPlan, FlightPlan, Id, Section};
+use geometry::LatLon;
 use usal::contract::GatewayState;
 
 /// Height of the strip, screen points.
@@ -226,6 +227,19 @@ pub fn way_back_to(scene: &Scene<'_>) -> Option<Id> {
 fn main_legs(plan: &FlightPlan) -> Vec<&Id> {
     let legs = plan.all_legs().into_iter().filter(|context| context.section == Section::Main);
     legs.map(|context| &context.leg.id).collect()
+}
+
+/// Where the aircraft is, and the runway that its emergency plan leads to, while one is flown or Safe mode leads it; `None`: neither.
+pub fn places(scene: &Scene<'_>) -> Option<Vec<LatLon>> {
+    let vehicle = scene.vehicle;
+    let flown = vehicle.emergency().filter(|_| vehicle.is_airborne());
+    if flown.is_none() && !is_safe_mode(scene) {
+        return None;
+    }
+    let aboard = vehicle.aboard.as_ref().map(|aboard| aboard.plan.as_ref());
+    let runway = aboard.zip(flown).and_then(|(plan, id)| plan.runway(&plan_named(plan, id)?.runway));
+    let here = vehicle.position.as_ref()?.value.position;
+    Some(std::iter::once(here).chain(runway.map(|runway| runway.threshold)).collect())
 }
 
 /// Why the way back is the last thing to do.

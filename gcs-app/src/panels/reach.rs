@@ -1,64 +1,145 @@
-//! How far a runway is from the aircraft, and while the engine is out, whether a glide straight to it gets there: an estimate of this
-//! window, for who has to choose now. What is flown to it, and where that ends, the vehicle tells.
+//! How far a runway is, and without an engine, whether a glide straight to it gets there: an estimate of this window, for who has to
+//! choose. What is flown to it, and where that ends, the vehicle or the preview tells.
 
 use super::Scene;
+use crate::units::Units;
 use aircraft::glide::{GlideStart, glide, reserve_m};
-use aircraft::{Profile, Wind};
-use flight_plan::Runway;
+use aircraft::{Profile, Wind, Winds};
+use flight_plan::{FlightPlan, Runway};
 
-/// A runway as seen from the aircraft.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Distance {
-    /// To the nearest point of it, metres.
-    pub away_m: f64,
-    /// What a glide straight to its better end has to spare there, besides its reserve, metres; negative: what it lacks. `None`: the
-    /// engine runs, or the wind does not let it get there.
-    pub spare_m: Option<f64>,
+/// A place to glide from, if there is no engine.
+struct Start {
+    /// Where, how high, which way; and in which winds if the engine is out.
+    from: GlideStart,
+    without_engine: Option<(Profile, Winds)>,
 }
 
-/// From where the aircraft is; `None`: that is not known now, or it is on the ground.
-pub fn distance(scene: &Scene<'_>, runway: &Runway) -> Option<Distance> {
-    let position =
-        scene.vehicle.position.as_ref().filter(|v| !v.is_expired(scene.now_s) && !v.value.on_ground)?;
-    let away_m = runway.strip().beside_m(position.value.position);
-    let glides = scene.vehicle.is_engine_out();
-    let ends = [runway.clone(), runway.from_other_end()];
-    let spare_m = ends.iter().filter_map(|end| spare_over(scene, end));
-    Some(Distance { away_m, spare_m: spare_m.max_by(f64::total_cmp).filter(|_| glides) })
+/// A runway as seen from there, metres.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// To the nearest point of it.
+    away_m: f64,
+    /// What a glide straight to its better end has to spare there, besides its reserve; negative: what it lacks. `None`: the engine runs, or
+    /// the wind does not let it get there.
+    spare_m: Option<f64>,
 }
 
-fn spare_over(scene: &Scene<'_>, runway: &Runway) -> Option<f64> {
-    let profile = Profile::by_name(&scene.vehicle.aboard.as_ref()?.plan.aircraft).ok()?;
-    let position = scene.vehicle.position.as_ref()?.value;
-    let air = scene.vehicle.air.as_ref().filter(|air| !air.is_expired(scene.now_s)).map(|air| air.value);
-    let wind =
-        air.map_or(Wind::CALM, |air| Wind { east_mps: air.wind_east_mps, north_mps: air.wind_north_mps });
-    let (altitude_amsl_m, course_deg) = (position.altitude_amsl_m, position.track_deg);
-    let start = GlideStart { position: position.position, altitude_amsl_m, course_deg };
-    let arrives_m =
-        glide(&profile, wind.into(), start, &[runway.threshold], runway.heading_deg)?.last()?.altitude_amsl_m;
-    Some(arrives_m - runway.elevation_amsl_m - reserve_m(altitude_amsl_m - arrives_m))
+impl Start {
+    /// Where the aircraft is; `None`: that is not known now, or it is on the ground.
+    fn now(scene: &Scene<'_>) -> Option<Self> {
+        let vehicle = scene.vehicle;
+        let live =
+            vehicle.position.as_ref().filter(|v| !v.is_expired(scene.now_s) && !v.value.on_ground)?.value;
+        let (position, altitude_amsl_m, course_deg) = (live.position, live.altitude_amsl_m, live.track_deg);
+        let without_engine = vehicle.aboard.as_ref().filter(|_| vehicle.is_engine_out()).and_then(|aboard| {
+            let air = vehicle.air.as_ref().filter(|air| !air.is_expired(scene.now_s)).map(|air| air.value);
+            let wind = air.map(|air| Wind { east_mps: air.wind_east_mps, north_mps: air.wind_north_mps });
+            Some((Profile::by_name(&aboard.plan.aircraft).ok()?, wind.unwrap_or(Wind::CALM).into()))
+        });
+        Some(Self { from: GlideStart { position, altitude_amsl_m, course_deg }, without_engine })
+    }
+
+    /// At the preview's cursor, in the world that is tried there, without an engine.
+    fn at_cursor(scene: &Scene<'_>) -> Option<Self> {
+        let (plan, forecast) = (scene.document.plan(), scene.forecast());
+        let at = forecast.at(scene.view.cursor_s?)?;
+        let course_deg = forecast.approach_at(at.time_s)?.course_deg?;
+        let without_engine = Some((Profile::by_name(&plan.aircraft).ok()?, scene.view.what_if.winds(plan)));
+        let from = GlideStart { position: at.position, altitude_amsl_m: at.altitude_amsl_m, course_deg };
+        Some(Self { from, without_engine })
+    }
+
+    fn seen(&self, runway: &Runway) -> Seen {
+        let away_m = runway.strip().beside_m(self.from.position);
+        let ends = [runway.clone(), runway.from_other_end()];
+        Seen { away_m, spare_m: ends.iter().filter_map(|end| self.spare_m(end)).max_by(f64::total_cmp) }
+    }
+
+    fn spare_m(&self, runway: &Runway) -> Option<f64> {
+        let (profile, winds) = self.without_engine.as_ref()?;
+        let way = glide(profile, *winds, self.from, &[runway.threshold], runway.heading_deg)?;
+        let arrives_m = way.last()?.altitude_amsl_m;
+        Some(arrives_m - runway.elevation_amsl_m - reserve_m(self.from.altitude_amsl_m - arrives_m))
+    }
+
+    /// `2.9 km`; without an engine `2.9 km, 120 m to spare` or `2.9 km, not reached: 220 m too low`.
+    fn in_words(&self, runway: &Runway, units: Units) -> String {
+        let Seen { away_m, spare_m } = self.seen(runway);
+        let (away, height) = (units.distance().show(away_m), units.altitude());
+        match spare_m {
+            Some(spare_m) if spare_m < 0.0 => {
+                format!("{away}, not reached: {} too low", height.show(-spare_m))
+            }
+            Some(spare_m) => format!("{away}, {} to spare", height.show(spare_m)),
+            None if self.without_engine.is_some() => format!("{away}, not reached against the wind"),
+            None => away,
+        }
+    }
+
+    /// Another runway than this that is reached, the one with the most to spare: `R34 0.8 km, 120 m to spare`.
+    fn another(&self, plan: &FlightPlan, than: &Runway, units: Units) -> Option<String> {
+        let others = plan.runways.iter().filter(|other| other.id != than.id);
+        let reached =
+            others.filter_map(|other| Some((other, self.seen(other).spare_m.filter(|m| *m >= 0.0)?)));
+        let (other, _) = reached.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        Some(format!("{} {}", other.id, self.in_words(other, units)))
+    }
 }
 
-/// `2.9 km`; with the engine out `2.9 km, 120 m to spare` or `2.9 km, not reached: 220 m too low`.
+/// How far a runway is from the aircraft, and with the engine out, whether it is reached.
 pub fn in_words(scene: &Scene<'_>, runway: &Runway) -> Option<String> {
-    let Distance { away_m, spare_m } = distance(scene, runway)?;
-    let (away, height) = (scene.units().distance().show(away_m), scene.units().altitude());
-    Some(match spare_m {
-        Some(spare_m) if spare_m < 0.0 => format!("{away}, not reached: {} too low", height.show(-spare_m)),
-        Some(spare_m) => format!("{away}, {} to spare", height.show(spare_m)),
-        None if scene.vehicle.is_engine_out() => format!("{away}, not reached against the wind"),
-        None => away,
-    })
+    Some(Start::now(scene)?.in_words(runway, scene.units()))
 }
 
-/// Another runway of the plan aboard that a glide straight to it reaches, the one with the most to spare: `R34 0.8 km, 120 m to
-/// spare`.
+/// Another runway of the plan aboard that the aircraft reaches: `R34 0.8 km, 120 m to spare`.
 pub fn another(scene: &Scene<'_>, than: &Runway) -> Option<String> {
-    let plan = &scene.vehicle.aboard.as_ref()?.plan;
-    let others = plan.runways.iter().filter(|other| other.id != than.id);
-    let reached =
-        others.filter_map(|other| Some((other, distance(scene, other)?.spare_m.filter(|m| *m >= 0.0)?)));
-    let (other, _) = reached.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
-    Some(format!("{} {}", other.id, in_words(scene, other)?))
+    Start::now(scene)?.another(&scene.vehicle.aboard.as_ref()?.plan, than, scene.units())
+}
+
+/// Another runway of the plan that is reached from the preview's cursor, if the engine fails there.
+pub fn another_at_cursor(scene: &Scene<'_>, than: &Runway) -> Option<String> {
+    Start::at_cursor(scene)?.another(scene.document.plan(), than, scene.units())
+}
+
+/// The engine is out, and none of the runways of the plan aboard is reached.
+pub fn reaches_none(scene: &Scene<'_>) -> bool {
+    let Some(start) = Start::now(scene).filter(|start| start.without_engine.is_some()) else { return false };
+    let plan = scene.vehicle.aboard.as_ref().map(|aboard| &aboard.plan);
+    let is_reached = |runway: &Runway| start.seen(runway).spare_m.is_some_and(|m| m >= 0.0);
+    plan.is_some_and(|plan| !plan.runways.is_empty() && !plan.runways.iter().any(is_reached))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::LatLon;
+
+    #[test]
+    fn without_an_engine_a_runway_is_judged_by_its_better_end_and_with_one_by_its_distance() {
+        let text = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><runways>
+            <runway id="R05" lat="46" lon="9" elevation="300" heading="90" length="600"/>
+            <runway id="R34" lat="46.02" lon="9" elevation="300" heading="340" length="600"/></runways><mainPlan/></flightPlan>"#;
+        let plan = flight_plan::read(text.as_bytes()).plan;
+        let [near, far] = &plan.runways[..] else { unreachable!() };
+        let words = |out_m: f64, altitude_amsl_m: f64, engine: bool, wind: Wind| {
+            let position = LatLon::new(46.0, 9.0).destination(270.0, out_m);
+            let from = GlideStart { position, altitude_amsl_m, course_deg: 90.0 };
+            let without_engine = (!engine).then(|| (Profile::by_name("trainer").unwrap(), wind.into()));
+            let start = Start { from, without_engine };
+            (start.in_words(near, Units::Si), start.another(&plan, far, Units::Si))
+        };
+        assert_eq!(
+            words(800.0, 500.0, true, Wind::CALM),
+            ("0.8 km".into(), None),
+            "nothing is to spare with an engine"
+        );
+        let (said, another) = words(800.0, 500.0, false, Wind::CALM);
+        assert!(said.starts_with("0.8 km, ") && said.ends_with(" m to spare"), "{said}");
+        assert_eq!(another, Some(format!("R05 {said}")));
+        let (said, another) = words(2800.0, 500.0, false, Wind::CALM);
+        assert!(said.starts_with("2.8 km, not reached: ") && said.ends_with(" too low"), "{said}");
+        assert_eq!(another, None);
+        let storm = Wind::from_direction(90.0, 60.0);
+        assert_eq!(words(800.0, 500.0, false, storm).0, "0.8 km, not reached against the wind");
+    }
 }

@@ -4,12 +4,14 @@
 use super::Scene;
 use crate::command::{Queue, ViewCommand};
 use crate::jobs::Job;
+use crate::map::tool_chip;
 use crate::state::Level;
 use crate::state::toasts::Toast;
 use crate::theme;
 use egui::accesskit::Live;
 use egui::{
-    Align2, Area, Frame, Id, Label, ProgressBar, Rect, RichText, Role, Spinner, Ui, WidgetInfo, vec2,
+    Align2, Area, AreaState, Frame, Id, Label, ProgressBar, Rect, RichText, Role, Spinner, Ui, WidgetInfo,
+    vec2,
 };
 
 /// Width of one where there is room, screen points.
@@ -27,25 +29,33 @@ pub fn show(ui: &Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     if jobs.is_empty() && toasts.is_empty() {
         return;
     }
+    let id = Id::unique("toasts");
+    if is_in_the_way(ui, id) {
+        return;
+    }
     // the newest where there is no room for all
     let fit = ((room.height() - 2.0 * MARGIN.y) / HEIGHT).max(1.0) as usize;
     let toasts = toasts.get(toasts.len().saturating_sub(fit.saturating_sub(jobs.len()).max(1))..);
     let at = room.right_bottom() - MARGIN;
-    Area::new(Id::unique("toasts")).fixed_pos(at).pivot(Align2::RIGHT_BOTTOM).constrain_to(room).show(
-        ui.ctx(),
-        |ui| {
-            ui.set_max_width(WIDTH.min(room.width() - 2.0 * MARGIN.x));
-            for job in jobs {
-                card(ui).show(ui, |ui| work(ui, job, queue));
+    Area::new(id).fixed_pos(at).pivot(Align2::RIGHT_BOTTOM).constrain_to(room).show(ui.ctx(), |ui| {
+        ui.set_max_width(WIDTH.min(room.width() - 2.0 * MARGIN.x));
+        for job in jobs {
+            card(ui).show(ui, |ui| work(ui, job, queue));
+        }
+        for toast in toasts.unwrap_or_default() {
+            let shown = card(ui).show(ui, |ui| message(ui, toast, queue));
+            if shown.response.contains_pointer() {
+                queue.view(ViewCommand::KeepToast(toast.id));
             }
-            for toast in toasts.unwrap_or_default() {
-                let shown = card(ui).show(ui, |ui| message(ui, toast, queue));
-                if shown.response.contains_pointer() {
-                    queue.view(ViewCommand::KeepToast(toast.id));
-                }
-            }
-        },
-    );
+        }
+    });
+}
+
+/// Somebody draws there: they come again when the pointer has gone.
+fn is_in_the_way(ui: &Ui, id: Id) -> bool {
+    let lies = AreaState::load(ui.ctx(), id).map(|area| area.rect());
+    let pointer = ui.ctx().pointer_hover_pos().filter(|_| tool_chip::takes_places(ui.ctx()));
+    lies.zip(pointer).is_some_and(|(lies, pointer)| lies.contains(pointer))
 }
 
 fn card(ui: &Ui) -> Frame {

@@ -457,6 +457,48 @@ fn engine_failure_says_at_once_what_is_in_reach_and_the_list_of_plans_does() {
     assert!(window.shows("2000 m from runway “R05” · reached straight: R34 0.4 km, 81 m to spare"));
 }
 
+/// The map had been moved to a push, and the aircraft flew out of it.
+#[test]
+fn emergency_that_begins_is_brought_into_view_once() {
+    let mut window = flying_its_plan();
+    let away = THRESHOLD.destination(0.0, 40_000.0);
+    let Telemetry::Position(mut here) = position(1.0, 500.0, false) else { unreachable!() };
+    here.value.position = away;
+    let at = |window: &mut Window| {
+        window.receive(Telemetry::Position(here.clone()));
+        window.steps(40);
+        window.app().map().middle().unwrap().distance_m(away)
+    };
+    let before_m = at(&mut window);
+    assert!(before_m > 30_000.0, "nobody looks there");
+    let mut value = window.app().vehicle().status.as_ref().unwrap().value.clone();
+    value.emergency = Some("return".into());
+    window.receive_status(value);
+    let begun_m = at(&mut window);
+    assert!(begun_m < before_m - 10_000.0, "{begun_m} of {before_m} m: between the aircraft and the runway");
+    let map = window.centre("Map");
+    window.drag(map, egui::vec2(0.0, -150.0));
+    assert!(at(&mut window) > begun_m + 1000.0, "who looks elsewhere means to");
+}
+
+/// It said to land where nothing is in reach, and still when the aircraft stood.
+#[test]
+fn alarm_of_the_engine_says_what_can_be_done() {
+    let mut window = flying_its_plan();
+    let advice = |window: &mut Window, off_m: f64, on_ground: bool| {
+        let Telemetry::Position(mut here) = position(1.0, 500.0, on_ground) else { unreachable!() };
+        here.value.position = THRESHOLD.destination(90.0, off_m);
+        window.receive(Telemetry::Position(here));
+        window.receive_gateway(vec![engine_out()]);
+        let none = "No runway of the plan is within a straight glide: look for a place to come down.";
+        ["Fly the emergency plan", none, "It is down: look at the engine before another start."]
+            .map(|said| window.shows(said))
+    };
+    assert_eq!(advice(&mut window, 300.0, false), [true, false, false]);
+    assert_eq!(advice(&mut window, 9000.0, false), [false, true, false]);
+    assert_eq!(advice(&mut window, 9000.0, true), [false, false, true]);
+}
+
 fn on_ground() -> Position {
     let Telemetry::Position(here) = position(0.0, 349.0, true) else { unreachable!() };
     here.value

@@ -296,6 +296,18 @@ fn a_fix_that_is_left_behind_by_its_last_leg_is_told_of() {
     window.select_row(("TF side2", 0));
     window.press(egui::Key::Delete);
     assert!(window.shows("No leg goes to B any more"));
+    // it lay where one draws
+    let there = window.harness.get_by_label("No leg goes to B any more").rect().center();
+    window.harness.hover_at(there);
+    window.steps(3);
+    assert!(window.shows("No leg goes to B any more"), "nothing is drawn");
+    window.press(egui::Key::T);
+    window.harness.hover_at(there);
+    window.steps(3);
+    assert!(!window.shows("No leg goes to B any more"), "it gives way to the pointer of a tool");
+    window.harness.hover_at(window.centre("Map"));
+    window.steps(3);
+    assert!(window.shows("No leg goes to B any more"));
 }
 
 /// What is expected on the ground shows behind the landing, in the timeline, and as fields of the stage.

@@ -213,6 +213,40 @@ fn an_engine_failure_at_the_cursor_leads_to_the_runway_of_the_plan_as_without_a_
     assert!(window.app().view().alarm.is_none(), "another plan");
 }
 
+/// The runway of the plan was out of reach, and another one was just below: nobody said so.
+#[test]
+fn an_engine_failure_names_another_runway_that_is_reached() {
+    let threshold = geometry::LatLon::new(36.3190, -84.1730);
+    let far = threshold.destination(232.0, 9000.0);
+    let near = geometry::LatLon::new(36.3132, -84.1660);
+    let runways: String = [("FAR", far), ("NEAR", near)]
+        .map(|(id, at)| {
+            let (lat, lon) = (at.lat_deg, at.lon_deg);
+            format!(
+                r#"<runway id="{id}" lat="{lat}" lon="{lon}" elevation="349" heading="232" length="600"/>"#
+            )
+        })
+        .concat();
+    let (main, emergency) = SQUARE.split_once("<emergencyPlans>").unwrap();
+    let text = format!(
+        "{}<emergencyPlans>{}",
+        main.replace("</runways>", &format!("{runways}</runways>")),
+        emergency.replace("R05", "FAR")
+    );
+    let ground = Arc::new(terrain::Flat(349.0));
+    let mut window = Window::open_over(&text, vec2(1280.0, 800.0), None, ground);
+    window.until_analysed();
+    window.click("What if");
+    scrub(&mut window, 0.5);
+    choose(&mut window, "Engine failure");
+    window.until("the way out", |app| app.analysis().diversion().is_some());
+    assert!(window.shows("Engine failure: FAR is not reached without the engine"));
+    assert!(
+        window.shows("Reached in a straight glide: NEAR ")
+            && window.shows("In flight Safe mode decides then.")
+    );
+}
+
 #[test]
 fn the_way_out_goes_with_its_banner_and_with_its_cursor() {
     let mut window = opened(SQUARE);

@@ -2,11 +2,12 @@
 
 use super::{remark, words};
 use crate::command::{PreviewCommand, Queue};
-use crate::panels::{Scene, group_title};
+use crate::panels::{Scene, group_title, reach};
 use crate::theme;
 use crate::units;
 use egui::{RichText, Ui, vec2};
-use flight_exec::rehearse::Reach;
+use flight_exec::rehearse::{Diversion, Reach};
+use flight_exec::review::Margins;
 use flight_plan::Cause;
 
 /// The alarms that can be raised.
@@ -78,4 +79,16 @@ fn outcome(ui: &mut Ui, scene: &Scene<'_>) {
         let text = if index == 0 { text.strong().color(p.text) } else { text.color(p.weak) };
         ui.add(egui::Label::new(text).wrap());
     }
+    if let Some(other) = another(scene, found) {
+        let text = format!("Reached in a straight glide: {other}. In flight Safe mode decides then.");
+        ui.add(egui::Label::new(RichText::new(text).size(12.5).color(p.caution)).wrap());
+    }
+}
+
+/// Where the engine fails and the runway of its plan is not reached: a runway that is.
+fn another(scene: &Scene<'_>, found: &Diversion) -> Option<String> {
+    let (_, runway) = found.plan.as_ref().filter(|_| found.cause == Cause::Engine)?;
+    let margins = Margins::default();
+    let is_out = found.reach(margins.glide_m, margins.energy_share) == Reach::Out;
+    reach::another_at_cursor(scene, scene.document.plan().runway(runway).filter(|_| is_out)?)
 }
