@@ -294,10 +294,11 @@ fn a_zone_is_selected_by_its_edge() {
 #[test]
 fn a_click_on_what_covers_the_map_is_explained() {
     let (mut window, _) = super::flying::flying();
-    window.steps(60 * 5);
+    let missing = super::reach::Missing("/nowhere/missing.xml".into());
+    window.harness.input_mut().dropped_files.push(std::sync::Arc::new(missing));
+    window.until("notice", |app| app.view().notice.is_some());
     window.press(Key::T);
-    let message = window.harness.get_by_label_contains("Put aside: uav1: nothing is heard").rect();
-    window.harness.hover_at(message.left_center() - vec2(40.0, 0.0));
+    window.harness.hover_at(window.centre("Close this message"));
     window.steps(2);
     assert!(window.shows("The map is covered where the pointer is"));
     window.harness.hover_at(window.centre("Map"));
