@@ -1,6 +1,6 @@
 //! What is made of answers and drawings, with the ground below.
 
-use super::App;
+use super::{App, even};
 use crate::airfields::Ground;
 use crate::command::Selection;
 use aircraft::Profile;
@@ -34,7 +34,13 @@ impl App {
         self.view.notice = Some(format!("The ground is {}", ground.words(self.view.units)));
     }
 
-    pub(super) fn add_runway(&mut self, threshold: LatLon, end: LatLon, both: bool) -> Result<(), String> {
+    /// What is against a runway there, if something is.
+    pub(super) fn add_runway(
+        &mut self,
+        threshold: LatLon,
+        end: LatLon,
+        both: bool,
+    ) -> Result<Option<String>, String> {
         let ways = [(threshold, end), (end, threshold)];
         let mut plan = self.document.plan().as_ref().clone();
         let mut edits = Vec::new();
@@ -52,7 +58,7 @@ impl App {
         }
         self.document.edit(&Edit::All(edits))?;
         self.view.select(made.map(Selection::Runway));
-        Ok(())
+        Ok(even::objection(self.layers.ground().as_ref(), threshold, end, self.view.units))
     }
 
     /// What should be known of the plan that was made: that nothing names it, or that it climbs, if that is so.

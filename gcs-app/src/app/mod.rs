@@ -2,6 +2,7 @@
 //! asked for. Nothing here waits for file, network or computation.
 
 mod clock;
+mod even;
 mod file_name;
 mod filing;
 mod focus;

@@ -57,16 +57,12 @@ impl App {
                 self.tell(done);
             }
             DocumentCommand::AddRunway { threshold, end, both } => {
-                let done = self.add_runway(threshold, end, both);
-                self.tell(done);
+                let made = self.add_runway(threshold, end, both);
+                self.tell_of_what_was_made(made, now_s);
             }
             DocumentCommand::BringHome { runway, outwards, from } => {
-                match self.bring_home(&runway, &outwards, from) {
-                    Ok(texts) => {
-                        texts.into_iter().for_each(|text| self.toasts.add(now_s, Level::Caution, text));
-                    }
-                    refused => self.tell(refused.map(drop)),
-                }
+                let made = self.bring_home(&runway, &outwards, from);
+                self.tell_of_what_was_made(made, now_s);
             }
             DocumentCommand::Dropped(path) => self.files.sort_dropped(path),
             DocumentCommand::TakeImport => self.take_import(now_s),
@@ -108,6 +104,14 @@ impl App {
                     self.show_another();
                 }
             }
+        }
+    }
+
+    /// Says why it could not be made, or else what should be known of it.
+    fn tell_of_what_was_made(&mut self, made: Result<impl IntoIterator<Item = String>, String>, now_s: f64) {
+        match made {
+            Ok(texts) => texts.into_iter().for_each(|text| self.toasts.add(now_s, Level::Caution, text)),
+            Err(why) => self.tell(Err(why)),
         }
     }
 
