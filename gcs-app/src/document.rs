@@ -87,7 +87,9 @@ impl Document {
 
     /// Takes over what another program wrote in its file, as a step that can be undone.
     pub fn reread(&mut self, theirs: Self) {
-        self.replace(theirs.plan().as_ref().clone());
+        // of a large plan no frame can wait for them: they were looked up where it was read
+        self.names = theirs.names;
+        self.replace(theirs.history.plan().as_ref().clone());
         (self.reading_problems, self.is_partial) = (theirs.reading_problems, theirs.is_partial);
         (self.text, self.stamp) = (theirs.text, theirs.stamp);
         self.history.mark_saved();
@@ -383,6 +385,20 @@ mod tests {
 
     fn latitude(d: &Document) -> f64 {
         d.plan().fixes[0].position.lat_deg
+    }
+
+    #[test]
+    fn what_was_read_again_is_called_as_it_is_there_and_undone_as_before() {
+        let named = |name: &str| {
+            let mut plan = document().plan().as_ref().clone();
+            plan.fixes[0].name = name.into();
+            Document::new(plan, None, Vec::new())
+        };
+        let mut d = named("mine");
+        d.reread(named("theirs"));
+        assert!(d.label(&"A".into()) == "theirs" && !d.is_dirty());
+        d.undo();
+        assert_eq!(d.label(&"A".into()), "mine");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Documents that gave way to others. Undo and redo reach them for as long as the window lives.
 
 use crate::document::Document;
+use crate::jobs::discard;
 use std::path::Path;
 
 /// Documents on either side hold so much together, bytes; then the oldest without unsaved changes are forgotten.
@@ -146,11 +147,15 @@ impl Shelf {
 /// One with unsaved changes is never forgotten: it took somebody's work to make it.
 fn forget_oldest(documents: &mut Vec<Document>, most_bytes: usize) {
     let mut bytes: usize = documents.iter().map(Document::bytes).sum();
-    documents.retain(|document| {
+    let is_forgotten = |document: &mut Document| {
         let is_forgotten = bytes > most_bytes && !document.would_be_missed();
         bytes -= if is_forgotten { document.bytes() } else { 0 };
-        !is_forgotten
-    });
+        is_forgotten
+    };
+    let forgotten: Vec<Document> = documents.extract_if(.., is_forgotten).collect();
+    if !forgotten.is_empty() {
+        discard(forgotten);
+    }
 }
 
 #[cfg(test)]
