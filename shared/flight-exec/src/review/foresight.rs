@@ -57,15 +57,22 @@ fn ahead(flight: &Executor, conditions: Conditions) -> Option<(Preview, Option<S
     let (mut flown, error) =
         preview_on_as_far_as_possible(flight.clone(), conditions.wind, &Scenario::default(), &options)?;
     let cut_short = match flight.glides_to() {
-        Some(runway) => glided(&mut flown, runway, flight.terrain().as_ref()),
+        Some(runway) => {
+            let plan = flight.active().flown();
+            glided(&mut flown, (runway, plan), flight.terrain().as_ref())
+        }
         None => error.map(|why| why.to_string()),
     };
     Some((flown, cut_short))
 }
 
 /// A flight without an engine ends where it comes down; where that is, if it is not on the runway.
-fn glided(flown: &mut Preview, runway: &Runway, terrain: &dyn Terrain) -> Option<String> {
-    let missed_m = end_in_ground(&mut flown.track, runway, terrain)?;
+fn glided(
+    flown: &mut Preview,
+    (runway, plan): (&Runway, &FlightPlan),
+    terrain: &dyn Terrain,
+) -> Option<String> {
+    let missed_m = end_in_ground(&mut flown.track, (runway, plan), terrain)?;
     let spans = flown.track.iter().zip(flown.track.iter().skip(1));
     flown.distance_m = spans.map(|(a, b)| distance_m(a.position, b.position)).sum();
     flown.time_s = flown.track.last()?.time_s;

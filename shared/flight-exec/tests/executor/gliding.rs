@@ -392,6 +392,29 @@ fn looking_ahead_without_an_engine_glides_and_says_where_it_comes_down() {
     }
 }
 
+/// The ground there was taken to be as high as the end that is named: what landed was said to come down short of the runway.
+#[test]
+fn looking_ahead_to_the_lower_end_of_a_runway_comes_down_on_it() {
+    let end = HOME.destination(90.0, 600.0);
+    let (lat, lon) = (end.lat_deg, end.lon_deg);
+    let lower = GROUND_M - 20.0;
+    let other = format!(
+        r#"<runway id="R2" lat="{lat}" lon="{lon}" elevation="{lower}" heading="270" length="600"/></runways>"#
+    );
+    let mut rig = Rig::flying(&holding_first().replace("</runways>", &other));
+    rig.fly_to("b");
+    rig.position = end.destination(90.0, 1100.0);
+    (rig.altitude_amsl_m, rig.engine_out) = (Some(GROUND_M + 100.0), true);
+    rig.report();
+    rig.command(Command::Emergency { cause: Cause::Engine, plan: Some("back".into()) }).unwrap();
+    rig.report();
+    let look = flight_exec::foresee(&rig.executor, "operator", None, flight_exec::Conditions::default());
+    let ahead = look.unwrap();
+    assert!(ahead.landed && ahead.cut_short.is_none(), "{:?}", ahead.cut_short);
+    let stands = ahead.path.last().unwrap();
+    assert!(stands.altitude_amsl_m < lower + 10.0, "{stands:?}");
+}
+
 /// Somebody pressed it by habit, circled for 20 s, and came down 0.9 km from the runway.
 #[test]
 fn nobody_holds_who_glides() {

@@ -10,17 +10,18 @@ use super::super::situation::Situation;
 use super::super::{LegPassage, Preview, PreviewError, TrackPoint, names_engine, route};
 use super::{Flown, Rehearsal};
 use crate::api::{Branching, Command};
+use crate::layout::homeward::end_of;
 use crate::layout::path::distance_and_course;
 use aircraft::glide::{GlidePoint, GlideStart, glide};
 use aircraft::{Profile, Winds};
-use flight_plan::{Cause, EmergencyPlan, Id, Program, Runway, StageKind, Variables};
+use flight_plan::{Cause, EmergencyPlan, FlightPlan, Id, Program, Runway, StageKind, Variables};
 use geometry::{LatLon, PathElement};
 use terrain::Terrain;
 
 /// Distance between points of a glide, metres, and the most of them between two places.
 const SPACING_M: f64 = 150.0;
 const MAX_SAMPLES: f64 = 500.0;
-/// So near to the threshold the ground is the runway's.
+/// So near to an end of a runway the ground is the runway's.
 const AT_RUNWAY_M: f64 = 400.0;
 
 /// An engine that has failed is noticed aboard so much later, seconds: it is told once a second, and has stood for a second then.
@@ -182,6 +183,7 @@ impl<'a> Here<'a> {
         let fails = Trigger { at: When::After { seconds: self.time_s }, then: vec![Act::FailEngine] };
         let alarm = self.alarm(self.time_s + NOTICED_S, Cause::Engine);
         let terrain = self.rehearsal.terrain.as_ref();
+        let runway = (runway, self.flown.program.flown());
         self.flown_on([fails, alarm], |flight| glided(flight, self.time_s, runway, terrain))?
     }
 
@@ -377,7 +379,12 @@ fn powered(flight: Flight, since_s: f64) -> Result<Powered, String> {
 }
 
 /// The flight after the engine failed, up to where it is in the ground.
-fn glided(flight: Flight, since_s: f64, runway: &Runway, terrain: &dyn Terrain) -> Option<Glided> {
+fn glided(
+    flight: Flight,
+    since_s: f64,
+    runway: (&Runway, &FlightPlan),
+    terrain: &dyn Terrain,
+) -> Option<Glided> {
     let (flown, _) = flight.flown_as_far_as_possible();
     let first = flown.track.partition_point(|point| point.time_s < since_s);
     let mut track = flown.track.get(first..)?.to_vec();
@@ -385,29 +392,44 @@ fn glided(flight: Flight, since_s: f64, runway: &Runway, terrain: &dyn Terrain) 
     Some(Glided { time_s: track.last()?.time_s - since_s, track, missed_m })
 }
 
-/// Cuts a track without an engine where it is in the ground. How far that is from the runway, metres; 0: on it. `None`: there is none.
+/// Cuts a track without an engine where it is in the ground. How far that is from the runway of the plan, metres; 0: on it. `None`: there
+/// is no track.
 pub(crate) fn end_in_ground(
     track: &mut Vec<TrackPoint>,
-    runway: &Runway,
+    (runway, plan): (&Runway, &FlightPlan),
     terrain: &dyn Terrain,
 ) -> Option<f64> {
-    let is_down = |at: &TrackPoint| at.altitude_amsl_m <= ground_m(at.position, runway, terrain);
+    let [low_m, high_m] = elevations_m(runway, plan, terrain);
+    let is_in =
+        |at: &TrackPoint, own_m| at.altitude_amsl_m <= ground_m(at.position, (runway, own_m), terrain);
+    let is_down = |at: &TrackPoint| is_in(at, low_m);
     if let Some(down) = track.iter().position(is_down) {
         track.truncate(down + 1);
     }
     let last = track.last()?;
     let away_m = runway.strip().beside_m(last.position);
-    Some(if is_down(last) { (away_m - TOLERANCE_M).max(0.0) } else { away_m.max(1.0) })
+    // it stands as high as the end that it landed on
+    Some(if is_in(last, high_m) { (away_m - TOLERANCE_M).max(0.0) } else { away_m.max(1.0) })
 }
 
 /// So near to a runway's centre line, or to its ends, one is on it, metres.
 const TOLERANCE_M: f64 = 60.0;
 
+/// Elevations of a runway's lower and higher end, metres AMSL: it may be landed on from either.
+fn elevations_m(runway: &Runway, plan: &FlightPlan, terrain: &dyn Terrain) -> [f64; 2] {
+    let named = end_of(runway);
+    let other = named.opposite(plan.runways.iter().map(end_of), |place| terrain.elevation_m(place));
+    let [named_m, other_m] = [named, other.unwrap_or(named)].map(|end| end.elevation_amsl_m);
+    [named_m.min(other_m), named_m.max(other_m)]
+}
+
 /// The ground of a place; near the runway, and where nothing is known, the runway's.
-fn ground_m(place: LatLon, runway: &Runway, terrain: &dyn Terrain) -> f64 {
-    let near = distance_and_course(place, runway.threshold).0 < AT_RUNWAY_M
-        || runway.strip().beside_m(place) < TOLERANCE_M;
-    terrain.elevation_m(place).filter(|_| !near).unwrap_or(runway.elevation_amsl_m)
+fn ground_m(place: LatLon, (runway, own_m): (&Runway, f64), terrain: &dyn Terrain) -> f64 {
+    let strip = runway.strip();
+    let ends = [strip.threshold, strip.from_other_end().threshold];
+    let near = ends.into_iter().any(|end| distance_and_course(place, end).0 < AT_RUNWAY_M)
+        || strip.beside_m(place) < TOLERANCE_M;
+    terrain.elevation_m(place).filter(|_| !near).unwrap_or(own_m)
 }
 
 /// A glide in small steps, up to where it is in the ground: short of the runway, or in a hill, which is given.
