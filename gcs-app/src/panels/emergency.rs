@@ -1,6 +1,6 @@
 //! An emergency plan that is being flown: what, why, where to, and the way back to the main plan.
 
-use super::{Scene, answer, field, flight, in_force, other_end, profile, reach};
+use super::{Scene, answer, ended, field, flight, in_force, other_end, profile, reach};
 use crate::command::Queue;
 use crate::state::is_safe;
 use crate::theme;
@@ -129,6 +129,9 @@ fn sentence(scene: &Scene<'_>, flown: &Id) -> String {
     if has_come_down(scene) {
         return format!("⛔ EMERGENCY: {name}, ended {}{cause}", where_it_ended(scene, plan));
     }
+    if is_down(scene) {
+        return format!("⛔ EMERGENCY: {name}, down {}{cause}", where_it_ended(scene, plan));
+    }
     if let Some(how) = safe_mode(scene, &cause) {
         return format!("⛔ EMERGENCY: {how}");
     }
@@ -183,7 +186,7 @@ fn where_it_ended(scene: &Scene<'_>, plan: Option<&EmergencyPlan>) -> String {
         return "on the ground".to_owned();
     };
     if runway.strip().is_landed_on(lies) {
-        return format!("on runway {}", runway.id);
+        return format!("on runway {}{}", runway.id, ended::from_which_end(scene, runway));
     }
     let off = scene.units().distance().show(runway.strip().beside_m(lies));
     format!("on the ground, {off} from runway {}", runway.id)
@@ -214,6 +217,12 @@ pub fn is_flown(scene: &Scene<'_>) -> bool {
 /// An emergency plan was being flown, and the aircraft stands, disarmed: wherever that is, nothing is flown any more.
 pub fn has_come_down(scene: &Scene<'_>) -> bool {
     is_flown(scene) && flight::can_rewind(scene)
+}
+
+/// It is on the ground, still armed.
+fn is_down(scene: &Scene<'_>) -> bool {
+    let position = scene.vehicle.position.as_ref().filter(|position| !position.is_expired(scene.now_s));
+    position.is_some_and(|position| position.value.on_ground)
 }
 
 /// The leg at which the main plan would be gone on with: where the emergency was raised, else its first.

@@ -1,6 +1,6 @@
 //! How a flight ended that did not end as its plan has it: by Safe mode, by an emergency plan, or far from where the plan lands.
 
-use super::{Scene, emergency};
+use super::{Scene, emergency, other_end};
 use flight_exec::Phase;
 use flight_plan::{FlightPlan, Runway, StageKind};
 use geometry::LatLon;
@@ -37,10 +37,16 @@ fn nearest(plan: &FlightPlan, at: LatLon) -> Option<&Runway> {
 
 fn landed(scene: &Scene<'_>, runway: &Runway, stands: LatLon) -> String {
     if runway.strip().is_landed_on(stands) {
-        return format!(", landed on {}", runway.id);
+        return format!(", landed on {}{}", runway.id, from_which_end(scene, runway));
     }
     let off = scene.units().distance().show(runway.strip().beside_m(stands));
     format!(", came down {off} from {}", runway.id)
+}
+
+/// ` from its other end`, where the aircraft came to rest on a runway so.
+pub fn from_which_end(scene: &Scene<'_>, runway: &Runway) -> &'static str {
+    let way = scene.vehicle.trail.points().iter().copied();
+    if other_end::is_come_to(way, runway) { " from its other end" } else { "" }
 }
 
 /// The runway on which a plan lands at its end.

@@ -13,6 +13,6 @@ pub fn is_come_to(way: impl DoubleEndedIterator<Item = LatLon>, runway: &Runway)
     let before = back.find(|before| before.distance_m(end) > APART_M);
     before.is_some_and(|before| {
         let course_deg = before.inverse(end).bearing_end_deg;
-        runway.strip().beside_m(end) < APART_M && normalise_180(course_deg - runway.heading_deg).abs() > 90.0
+        runway.strip().is_landed_on(end) && normalise_180(course_deg - runway.heading_deg).abs() > 90.0
     })
 }

@@ -4,6 +4,7 @@
 use super::Scene;
 use crate::units::Units;
 use aircraft::glide::{GlideStart, glide, reserve_m};
+use aircraft::glide_in::End;
 use aircraft::{Profile, Wind, Winds};
 use flight_plan::{FlightPlan, Runway};
 
@@ -19,9 +20,17 @@ struct Start {
 struct Seen {
     /// To the nearest point of it.
     away_m: f64,
-    /// What a glide straight to its better end has to spare there, besides its reserve; negative: what it lacks. `None`: the engine runs, or
-    /// the wind does not let it get there.
-    spare_m: Option<f64>,
+    /// How a glide straight to its better end ends. `None`: the engine runs, or the wind does not let it get there.
+    arrives: Option<Arrives>,
+}
+
+/// How a glide ends, metres.
+#[derive(Clone, Copy)]
+struct Arrives {
+    /// Above the threshold; negative: so much is lacking.
+    above_m: f64,
+    /// The same without the reserve.
+    spare_m: f64,
 }
 
 impl Start {
@@ -49,28 +58,35 @@ impl Start {
         Some(Self { from, without_engine })
     }
 
-    fn seen(&self, runway: &Runway) -> Seen {
+    fn seen(&self, runway: &Runway, plan: &FlightPlan) -> Seen {
         let away_m = runway.strip().beside_m(self.from.position);
-        let ends = [runway.clone(), runway.from_other_end()];
-        Seen { away_m, spare_m: ends.iter().filter_map(|end| self.spare_m(end)).max_by(f64::total_cmp) }
+        let named = end(runway);
+        let ends =
+            [Some(named), named.opposite(plan.runways.iter().map(end), |_| None)].into_iter().flatten();
+        let arrives = ends.filter_map(|end| self.arrives(end));
+        Seen { away_m, arrives: arrives.max_by(|a, b| a.spare_m.total_cmp(&b.spare_m)) }
     }
 
-    fn spare_m(&self, runway: &Runway) -> Option<f64> {
+    fn arrives(&self, end: End) -> Option<Arrives> {
         let (profile, winds) = self.without_engine.as_ref()?;
-        let way = glide(profile, *winds, self.from, &[runway.threshold], runway.heading_deg)?;
+        let way = glide(profile, *winds, self.from, &[end.strip.threshold], end.strip.heading_deg)?;
         let arrives_m = way.last()?.altitude_amsl_m;
-        Some(arrives_m - runway.elevation_amsl_m - reserve_m(self.from.altitude_amsl_m - arrives_m))
+        let above_m = arrives_m - end.elevation_amsl_m;
+        Some(Arrives { above_m, spare_m: above_m - reserve_m(self.from.altitude_amsl_m - arrives_m) })
     }
 
-    /// `2.9 km`; without an engine `2.9 km, 120 m to spare` or `2.9 km, not reached: 220 m too low`.
-    fn in_words(&self, runway: &Runway, units: Units) -> String {
-        let Seen { away_m, spare_m } = self.seen(runway);
+    /// `2.9 km`; without an engine `2.9 km, 120 m to spare`, `2.9 km, just reached: 20 m above it` or `2.9 km, not reached: 220 m too low`.
+    fn in_words(&self, runway: &Runway, plan: &FlightPlan, units: Units) -> String {
+        let Seen { away_m, arrives } = self.seen(runway, plan);
         let (away, height) = (units.distance().show(away_m), units.altitude());
-        match spare_m {
-            Some(spare_m) if spare_m < 0.0 => {
-                format!("{away}, not reached: {} too low", height.show(-spare_m))
+        match arrives {
+            Some(Arrives { above_m, .. }) if above_m < 0.0 => {
+                format!("{away}, not reached: {} too low", height.show(-above_m))
             }
-            Some(spare_m) => format!("{away}, {} to spare", height.show(spare_m)),
+            Some(Arrives { above_m, spare_m }) if spare_m < 0.0 => {
+                format!("{away}, just reached: {} above it", height.show(above_m))
+            }
+            Some(Arrives { spare_m, .. }) => format!("{away}, {} to spare", height.show(spare_m)),
             None if self.without_engine.is_some() => format!("{away}, not reached against the wind"),
             None => away,
         }
@@ -80,15 +96,24 @@ impl Start {
     fn another(&self, plan: &FlightPlan, than: &Runway, units: Units) -> Option<String> {
         let others = plan.runways.iter().filter(|other| other.id != than.id);
         let reached =
-            others.filter_map(|other| Some((other, self.seen(other).spare_m.filter(|m| *m >= 0.0)?)));
+            others.filter_map(|other| Some((other, self.spare_m(other, plan).filter(|m| *m >= 0.0)?)));
         let (other, _) = reached.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
-        Some(format!("{} {}", other.id, self.in_words(other, units)))
+        Some(format!("{} {}", other.id, self.in_words(other, plan, units)))
     }
+
+    fn spare_m(&self, runway: &Runway, plan: &FlightPlan) -> Option<f64> {
+        Some(self.seen(runway, plan).arrives?.spare_m)
+    }
+}
+
+/// The end of a runway that is named.
+fn end(runway: &Runway) -> End {
+    End { strip: runway.strip(), elevation_amsl_m: runway.elevation_amsl_m }
 }
 
 /// How far a runway is from the aircraft, and with the engine out, whether it is reached.
 pub fn in_words(scene: &Scene<'_>, runway: &Runway) -> Option<String> {
-    Some(Start::now(scene)?.in_words(runway, scene.units()))
+    Some(Start::now(scene)?.in_words(runway, &scene.vehicle.aboard.as_ref()?.plan, scene.units()))
 }
 
 /// Another runway of the plan aboard that the aircraft reaches: `R34 0.8 km, 120 m to spare`.
@@ -104,9 +129,11 @@ pub fn another_at_cursor(scene: &Scene<'_>, than: &Runway) -> Option<String> {
 /// The engine is out, and none of the runways of the plan aboard is reached.
 pub fn reaches_none(scene: &Scene<'_>) -> bool {
     let Some(start) = Start::now(scene).filter(|start| start.without_engine.is_some()) else { return false };
-    let plan = scene.vehicle.aboard.as_ref().map(|aboard| &aboard.plan);
-    let is_reached = |runway: &Runway| start.seen(runway).spare_m.is_some_and(|m| m >= 0.0);
-    plan.is_some_and(|plan| !plan.runways.is_empty() && !plan.runways.iter().any(is_reached))
+    let Some(aboard) = &scene.vehicle.aboard else { return false };
+    let plan = aboard.plan.as_ref();
+    let is_reached =
+        |runway: &Runway| start.seen(runway, plan).arrives.is_some_and(|arrives| arrives.above_m >= 0.0);
+    !plan.runways.is_empty() && !plan.runways.iter().any(is_reached)
 }
 
 #[cfg(test)]
@@ -126,7 +153,7 @@ mod tests {
             let from = GlideStart { position, altitude_amsl_m, course_deg: 90.0 };
             let without_engine = (!engine).then(|| (Profile::by_name("trainer").unwrap(), wind.into()));
             let start = Start { from, without_engine };
-            (start.in_words(near, Units::Si), start.another(&plan, far, Units::Si))
+            (start.in_words(near, &plan, Units::Si), start.another(&plan, far, Units::Si))
         };
         assert_eq!(
             words(800.0, 500.0, true, Wind::CALM),
@@ -139,6 +166,9 @@ mod tests {
         let (said, another) = words(2800.0, 500.0, false, Wind::CALM);
         assert!(said.starts_with("2.8 km, not reached: ") && said.ends_with(" too low"), "{said}");
         assert_eq!(another, None);
+        let (said, another) = words(1300.0, 420.0, false, Wind::CALM);
+        assert!(said.starts_with("1.3 km, just reached: ") && said.ends_with(" above it"), "{said}");
+        assert_eq!(another, None, "without its reserve it is not offered");
         let storm = Wind::from_direction(90.0, 60.0);
         assert_eq!(words(800.0, 500.0, false, storm).0, "0.8 km, not reached against the wind");
     }

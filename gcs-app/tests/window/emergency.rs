@@ -256,8 +256,11 @@ fn what_came_down_on_the_runway_is_said_to_be_there_however_long_that_is() {
     window.receive_gateway_state(GatewayState::Stop);
     for along_m in [0.0, 400.0, 600.0] {
         window.stand_at(THRESHOLD.destination(52.0, along_m).destination(142.0, 10.0));
-        assert!(window.shows("ended on runway R05, because"), "{along_m} m along it");
+        assert!(window.shows("ended on runway R05"), "{along_m} m along it");
     }
+    assert!(window.shows("ended on runway R05, because"), "it came along it");
+    window.stand_at(THRESHOLD.destination(52.0, 300.0));
+    assert!(window.shows("ended on runway R05 from its other end, because"), "it came back");
     // counted from where the runway is nearest
     window.stand_at(THRESHOLD.destination(52.0, 1600.0));
     assert!(window.shows("ended on the ground, 1.0 km from runway R05"));
@@ -269,7 +272,8 @@ const THRESHOLD: LatLon = LatLon::new(36.3190, -84.1730);
 impl Window {
     fn stand_at(&mut self, at: LatLon) {
         let value = Position { position: at, ..on_ground() };
-        self.receive(Telemetry::Position(Stamped { time_s: 101.0, validity_s: 2.0, value }));
+        let before_s = self.app().vehicle().position.as_ref().map_or(100.0, |before| before.time_s);
+        self.receive(Telemetry::Position(Stamped { time_s: before_s + 1.0, validity_s: 2.0, value }));
     }
 }
 

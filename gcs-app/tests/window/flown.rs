@@ -140,7 +140,8 @@ impl Field {
             window.app().vehicle().position.is_some() && window.is_enabled("Push")
         });
         self.push();
-        self.until_shown("Start and take off");
+        // before it has heard that this plan is aboard, it would start another one
+        self.until_shown("Start and take off (hold)");
         self.window.hold("Start and take off (hold)", 80);
         self.until_leg(Branching::Main, "side2");
     }
@@ -232,6 +233,7 @@ fn the_landing_is_gone_to_at_once() {
 fn an_emergency_is_flown_and_the_way_back_is_taken() {
     let mut field = Field::new();
     field.take_off();
+    field.until_shown("Emergency: fly return (hold)");
     field.window.hold("Emergency: fly return (hold)", 80);
     let emergency = Branching::Emergency("return".into());
     field.until_leg(emergency.clone(), "r1");
