@@ -154,7 +154,11 @@ fn is_in_the_air(scene: &Scene<'_>) -> bool {
 
 fn flying(scene: &Scene<'_>, command: PlanCommand) -> Asked {
     linked(scene)?;
-    if is_flying(scene) { plan(command) } else { Err(NOT_FLYING) }
+    match scene.vehicle.phase() {
+        _ if is_flying(scene) => plan(command),
+        Phase::Holding => Err("It holds: resume first"),
+        _ => Err(NOT_FLYING),
+    }
 }
 
 /// What the plan would do next is not what Safe mode does.

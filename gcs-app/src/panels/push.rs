@@ -9,7 +9,7 @@ use crate::theme::{self, Palette};
 use crate::units::{self, Units};
 use egui::collapsing_header::CollapsingState;
 use egui::{Button, Color32, Label, RichText, ScrollArea, Sense, Ui};
-use flight_plan::{Change, FlightPlan, Id, Verdict};
+use flight_plan::{Change, FlightPlan, Id, LegKind, Verdict};
 
 /// So many changes are written out.
 const MOST_CHANGES: usize = 200;
@@ -196,7 +196,27 @@ fn next(ui: &mut Ui, proposal: &Proposal, scene: &Scene<'_>, p: &Palette) {
     // on the ground none is flown
     if let Some(way) = report.differs_in_m.zip(report.differs_in_s).filter(|_| scene.vehicle.is_airborne()) {
         ui.label(RichText::new(differs(way, units)).color(p.weak));
+        let under_way = scene.vehicle.current_leg().filter(|leg| report.changed.contains(leg));
+        if let Some(text) = under_way.and_then(|leg| goes_on(scene.document.plan(), leg)) {
+            ui.label(RichText::new(text).color(p.text));
+        }
     }
+}
+
+/// A survey under way that is changed goes on, where what is drawn of the new plan begins anew: the executor leaves out what is flown, and
+/// does not turn tracks of which nobody says where they lead.
+fn goes_on(plan: &FlightPlan, leg: &Id) -> Option<String> {
+    let LegKind::Scan(scan) = &plan.leg(leg)?.leg.kind else { return None };
+    let turned = if scan.heading_deg.is_none() {
+        ", and its tracks keep their direction (give the scan a heading to turn them)"
+    } else {
+        ""
+    };
+    let name = plan.label(leg);
+    Some(format!(
+        "{name} is under way: what is flown of it is not flown again{turned}. The map shows it from its beginning; once this is committed, the \
+         vehicle tells the way that it flies"
+    ))
 }
 
 /// How long ago it was looked at, seconds.
@@ -287,6 +307,21 @@ fn buttons(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queu
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn of_a_survey_under_way_it_is_said_that_it_goes_on() {
+        let said = |heading: &str| {
+            let text = format!(
+                r#"<flightPlan xmlns="urn:legwork:flight-plan:1"><mainPlan><stage id="m" type="mission">
+                <scan id="s" spacing="100"{heading}><area><corner lat="46" lon="9"/><corner lat="46" lon="9.01"/>
+                <corner lat="46.01" lon="9"/></area></scan></stage></mainPlan></flightPlan>"#
+            );
+            goes_on(&flight_plan::read(text.as_bytes()).plan, &"s".into())
+        };
+        let keeps = |heading: &str| said(heading).unwrap().contains("keep their direction");
+        assert!(keeps("") && !keeps(r#" heading="40""#));
+        assert_eq!(goes_on(&FlightPlan::default(), &"s".into()), None);
+    }
 
     #[test]
     fn where_the_way_differs_is_said_in_words() {
