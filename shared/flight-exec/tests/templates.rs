@@ -55,6 +55,24 @@ fn every_template_can_be_flown_among_hills() {
     }
 }
 
+/// A hill beside the final's line, where its hold goes round.
+struct Hill(LatLon);
+impl Terrain for Hill {
+    fn elevation_m(&self, at: LatLon) -> Option<f64> {
+        Some(if at.distance_m(self.0) < 150.0 { 490.0 } else { 300.0 })
+    }
+}
+
+#[test]
+fn every_template_holds_above_a_hill_beside_its_final() {
+    let threshold = LatLon::new(46.0, 8.0);
+    let hill = threshold.destination(270.0, 2900.0).destination(180.0, 200.0);
+    for template in Template::ALL {
+        let outline = outline(template, threshold, 300.0, 90.0);
+        assert_eq!(problems(&outline, Arc::new(Hill(hill))), Vec::<String>::new(), "{template:?}");
+    }
+}
+
 #[test]
 fn a_corridor_beside_the_mountains_is_no_higher_than_its_own_ground_asks_for() {
     let line =

@@ -1,6 +1,6 @@
 //! What all templates have in common: places around the runway, heights above it, the way out and the way home.
 
-use super::{Outline, Template, above_home, fix, hold, leg, stage, to};
+use super::{HOLD_M, Outline, Template, above_home, fix, hold, leg, stage, to};
 use crate::{Altitude, Fix, Id, Leg, LegKind, Place, PlanWaypoint, Runway, Stage, StageKind, TurnDirection};
 use aircraft::Profile;
 use geometry::{LatLon, LocalFrame, Vec2};
@@ -26,6 +26,8 @@ const WAY_STEP_M: f64 = 100.0;
 const MOST_STEPS: f64 = 1000.0;
 /// Around what is flown, turn radii.
 const ROOM: f64 = 6.0;
+/// Around a hold, turn radii.
+const HOLD_ROOM: f64 = 1.5;
 /// Towards which it is asked how far a mission reaches.
 const DIRECTIONS: usize = 16;
 
@@ -49,6 +51,8 @@ pub(super) struct Frame<'a> {
     pub(super) height_m: f64,
     /// Of the highest ground under the final, metres above the runway.
     hill_m: f64,
+    /// Of that under the hold where the final begins, metres above the runway.
+    hold_hill_m: f64,
     /// The fixes where the final begins, and lower on it.
     pub(super) final_fix: Id,
     pub(super) gate_fix: Id,
@@ -66,10 +70,12 @@ impl<'a> Frame<'a> {
             gate_m: (9.0 * turn_radius_m).max(1200.0),
             height_m: outline.height_m,
             hill_m: 0.0,
+            hold_hill_m: 0.0,
             final_fix: "FINAL".into(),
             gate_fix: "GATE".into(),
         };
         frame.hill_m = frame.hill_on_final(terrain);
+        frame.hold_hill_m = frame.hill_below_hold(terrain);
         let hilltop_m = frame.highest_ground(outline, terrain) - outline.runway.elevation_amsl_m;
         frame.height_m = (outline.height_m.max(hilltop_m + CLEARANCE_M) / 10.0).ceil() * 10.0;
         frame
@@ -126,6 +132,16 @@ impl<'a> Frame<'a> {
         ground.fold(0.0, |hill_m: f64, at_m| hill_m.max(at_m - self.runway.elevation_amsl_m))
     }
 
+    /// The highest known ground below the hold where the final begins, to its right, and around it, metres above the runway.
+    fn hill_below_hold(&self, terrain: &dyn Terrain) -> f64 {
+        let (room_m, share) = (HOLD_ROOM * self.turn_radius_m, |i: u32| f64::from(i) / f64::from(GRID));
+        let back_m = |i: u32| self.final_m - room_m + (HOLD_M + 2.0 * room_m) * share(i);
+        let right_m = |j: u32| (2.0 * self.turn_radius_m + 2.0 * room_m) * share(j) - room_m;
+        let grid = (0..=GRID).flat_map(|i| (0..=GRID).map(move |j| (i, j)));
+        let ground = grid.filter_map(|(i, j)| terrain.elevation_m(self.at(-back_m(i), right_m(j))));
+        ground.fold(0.0, |hill_m: f64, at_m| hill_m.max(at_m - self.runway.elevation_amsl_m))
+    }
+
     /// So many metres in the runway's direction from its threshold, and to its right.
     pub(super) fn at(&self, ahead_m: f64, right_m: f64) -> LatLon {
         let heading_deg = self.runway.heading_deg;
@@ -149,7 +165,8 @@ impl<'a> Frame<'a> {
 
     /// Not above the mission: a mission that ends beside the final would leave no room to climb there.
     fn final_height_m(&self) -> f64 {
-        (self.final_m * GLIDE_SLOPE).min(self.height_m).max(self.hill_m + 2.0 * LOWEST_M).round()
+        let least_m = (self.hill_m + 2.0 * LOWEST_M).max(self.hold_hill_m + LOWEST_M);
+        (self.final_m * GLIDE_SLOPE).min(self.height_m).max(least_m).round()
     }
 
     pub(super) fn fixes(&self) -> Vec<Fix> {
