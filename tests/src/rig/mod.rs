@@ -20,7 +20,7 @@ use std::{
 };
 use track::Track;
 use usal::{
-    Occurrence,
+    CallError, Occurrence,
     contract::{
         Attitude, Command, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Navigation, PlanStatus,
         Position, ProposalReport, Propose, Recording, Stamped,
@@ -158,8 +158,21 @@ impl Rig {
         })
         .await?;
         self.load(plan).await?;
-        self.command(Command::Start).await?;
+        self.start_off().await?;
         self.until("airborne", 120.0, |rig, _| rig.position().is_some_and(|p| !p.on_ground)).await
+    }
+
+    /// An aircraft that the wind has moved or turned on the ground, where its simulation's ground holds nothing, is started a second time:
+    /// that is meant.
+    async fn start_off(&self) -> anyhow::Result<()> {
+        let Err(error) = self.command(Command::Start).await else { return Ok(()) };
+        let is_of_its_place = error.downcast_ref::<CallError>().is_some_and(
+            |error| matches!(error, CallError::Refused(why) if ["wrong-way", "not-at-the-runway"].contains(&why.code.as_str())),
+        );
+        match (&self.world, is_of_its_place) {
+            (World::Theirs(_), true) => self.command(Command::Start).await,
+            _ => Err(error),
+        }
     }
 
     /// Lets time go on, tick by tick, until the condition holds; an error after so many simulated seconds.
