@@ -154,7 +154,10 @@ impl App {
         if let Some(imported) = self.view.imported.take() {
             let name = imported.path.file_name().unwrap_or_default().to_string_lossy();
             self.tell_losses(format!("Imported {name}"), &imported.import.notes, now_s);
-            self.shelf.open(&mut self.document, Document::imported(imported.import.plan.clone()));
+            // nobody else holds it: it is not copied within a frame, however large it is
+            let plan =
+                Arc::try_unwrap(imported).map_or_else(|one| one.import.plan.clone(), |one| one.import.plan);
+            self.shelf.open(&mut self.document, Document::imported(plan));
             self.show_another();
         }
     }

@@ -27,14 +27,17 @@ use rows::{Row, rows};
 pub use rows::{leg_tag, title};
 pub use search::focus as focus_search;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Deref;
 
 /// The tree; its rows are worked out again only when the plan or what is folded changes.
 #[derive(Debug, Default)]
 pub struct Tree {
     /// In so many ways they were looked at.
-    rows: Derived<u64, Vec<Row>>,
+    rows: Derived<u64, Rows>,
     looks: u64,
     folded: BTreeSet<String>,
+    /// What was selected elsewhere and is not among the rows: what hides it is to be unfolded.
+    hidden: Option<Selection>,
     /// What is searched for, as it was typed.
     sought: String,
     problems: Problems,
@@ -50,6 +53,20 @@ pub struct Tree {
     renaming: Option<Renaming>,
     drag: Option<Drag>,
     asking: Option<Asking>,
+}
+
+/// All rows but those inside of what is folded, and what was unfolded to have one among them, by its key.
+#[derive(Debug, Default)]
+struct Rows {
+    rows: Vec<Row>,
+    unfolded: Vec<String>,
+}
+
+impl Deref for Rows {
+    type Target = [Row];
+    fn deref(&self) -> &[Row] {
+        &self.rows
+    }
 }
 
 /// The row that the keyboard is at.
@@ -161,11 +178,21 @@ impl Tree {
         if self.rows.keep_for(&source, alike::have_same_rows) {
             return false;
         }
-        let (folded, sought) = (self.folded.clone(), self.sought.trim().to_owned());
-        self.rows.refresh(source, scene.layers.wake(), move |plan, _| match sought.as_str() {
-            "" => rows(plan, &folded),
-            sought => search::matching(rows(plan, &BTreeSet::new()), sought),
-        })
+        let (mut folded, sought) = (self.folded.clone(), self.sought.trim().to_owned());
+        let hidden = self.hidden.clone();
+        let is_another = self.rows.refresh(source, scene.layers.wake(), move |plan, _| {
+            let unfolded = hidden.map_or_else(Vec::new, |hidden| around(plan, &hidden));
+            folded.retain(|key| !unfolded.contains(key));
+            let rows = match sought.as_str() {
+                "" => rows(plan, &folded),
+                sought => search::matching(rows(plan, &BTreeSet::new()), sought),
+            };
+            Rows { rows, unfolded }
+        });
+        if is_another {
+            self.folded.retain(|key| !self.rows.unfolded.contains(key));
+        }
+        is_another
     }
 
     /// Shows what was selected elsewhere, unfolding what hides it.
@@ -175,15 +202,16 @@ impl Tree {
         }
         let selected = scene.view.selection.clone();
         let mut found = selected.as_ref().and_then(|selected| self.index_of(selected));
-        if let Some(selected) = selected.as_ref().filter(|_| found.is_none())
-            && self.unfold(selected, scene.document.plan())
-        {
+        if found.is_none() && !self.folded.is_empty() && self.hidden != selected {
+            self.hidden.clone_from(&selected);
+            self.looks += 1;
             self.work_out(scene);
             if self.rows.is_busy() {
                 return;
             }
-            found = self.index_of(selected);
+            found = selected.as_ref().and_then(|selected| self.index_of(selected));
         }
+        self.hidden = None;
         self.selected = selected;
         if let Some(index) = found {
             let had_focus = self.has_focus(ui);
@@ -200,21 +228,6 @@ impl Tree {
 
     fn index_of(&self, selected: &Selection) -> Option<usize> {
         self.rows.iter().position(|row| row.selection.as_ref() == Some(selected))
-    }
-
-    /// Unfolds everything around what is selected. True: something was folded.
-    fn unfold(&mut self, selected: &Selection, plan: &FlightPlan) -> bool {
-        if self.folded.is_empty() {
-            return false;
-        }
-        let all = rows(plan, &BTreeSet::new());
-        let index = all.iter().position(|row| row.selection.as_ref() == Some(selected));
-        let parent = |index: &usize| keyboard::parent(&all, *index);
-        let around = std::iter::successors(index.as_ref().and_then(parent), parent);
-        let unfolded = around.filter_map(|at| all.get(at)).filter(|row| self.folded.remove(&row.key)).count();
-        let is_unfolded = unfolded > 0;
-        self.looks += u64::from(is_unfolded);
-        is_unfolded
     }
 
     /// Scrolls to a row that is out of view.
@@ -373,6 +386,15 @@ impl Tree {
             ui.request_repaint();
         }
     }
+}
+
+/// The keys of all rows that something is in.
+fn around(plan: &FlightPlan, what: &Selection) -> Vec<String> {
+    let all = rows(plan, &BTreeSet::new());
+    let index = all.iter().position(|row| row.selection.as_ref() == Some(what));
+    let parent = |index: &usize| keyboard::parent(&all, *index);
+    let around = std::iter::successors(index.as_ref().and_then(parent), parent);
+    around.filter_map(|at| all.get(at)).map(|row| row.key.clone()).collect()
 }
 
 impl Problems {

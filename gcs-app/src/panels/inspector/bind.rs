@@ -4,7 +4,7 @@ use super::page::Page;
 use crate::panels::binding;
 use crate::theme;
 use egui::{Popup, Pos2, Rect, RichText, Role, Ui, WidgetInfo, pos2};
-use flight_plan::create::{Binding, place_binding};
+use flight_plan::create::{bind, place_binding, place_name};
 use flight_plan::describe::{Kind, OneOf, Property, Row, Subject};
 use flight_plan::{Id, Use};
 
@@ -43,12 +43,13 @@ pub fn drop_value(ui: &Ui, page: &mut Page<'_, '_>, property: &Property, from: P
     }
 }
 
-/// Likewise a place.
-pub fn drop_place(ui: &Ui, page: &mut Page<'_, '_>, binding: &Binding, from: Pos2) {
-    let fits = |name: &Id| binding.choices.iter().any(|(choice, _)| choice == name);
-    let Some(name) = binding::dropped(ui, row_since(ui, from), fits) else { return };
-    if let Some((_, edit)) = binding.choices.iter().find(|(choice, _)| *choice == name) {
-        page.queue.edit(edit.clone());
+/// Likewise the place of a leg.
+pub fn drop_place(ui: &Ui, page: &mut Page<'_, '_>, leg: &Id, from: Pos2) {
+    let plan = page.plan();
+    let fits = |name: &Id| bind(plan, leg, name).is_some();
+    let dropped = binding::dropped(ui, row_since(ui, from), fits);
+    if let Some(edit) = dropped.and_then(|name| bind(plan, leg, &name)) {
+        page.queue.edit(edit);
     }
 }
 
@@ -57,8 +58,8 @@ pub fn row_since(ui: &Ui, from: Pos2) -> Rect {
     Rect::from_min_max(from, pos2(ui.max_rect().right(), ui.cursor().top() - ui.spacing().item_spacing.y))
 }
 
-/// A leg's place or area, where this row says it.
-pub fn place_of(page: &Page<'_, '_>, one: &OneOf) -> Option<Binding> {
+/// The leg whose place or area this row says, and what that is called.
+pub fn place_of(page: &Page<'_, '_>, one: &OneOf) -> Option<(Id, &'static str)> {
     let gives_place =
         |property: &Property| matches!(property.kind, Kind::Formula(Use::Position | Use::Polygon));
     let says = |row: &Row| matches!(row, Row::Property(property) if gives_place(property));
@@ -69,12 +70,16 @@ pub fn place_of(page: &Page<'_, '_>, one: &OneOf) -> Option<Binding> {
         Subject::Leg(leg) if is_it && is_own && !page.is_several() => leg,
         _ => return None,
     };
-    place_binding(page.plan(), leg)
+    Some((leg.clone(), place_name(page.plan(), leg)?))
 }
 
-/// Beside where a leg goes.
-pub fn place(ui: &mut Ui, page: &mut Page<'_, '_>, binding: &Binding) {
-    menu(ui, page, &binding.name, |ui, page| binding::show(ui, binding, page.queue));
+/// Beside where a leg goes. What can be done is worked out when the menu is open: in a large plan that takes its time.
+pub fn place(ui: &mut Ui, page: &mut Page<'_, '_>, leg: &Id, name: &str) {
+    menu(ui, page, name, |ui, page| {
+        if let Some(binding) = place_binding(page.plan(), leg) {
+            binding::show(ui, &binding, page.queue);
+        }
+    });
 }
 
 fn menu(ui: &mut Ui, page: &mut Page<'_, '_>, of: &str, show: impl FnOnce(&mut Ui, &mut Page<'_, '_>)) {

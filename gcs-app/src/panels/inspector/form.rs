@@ -59,7 +59,7 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
         *label = bound;
     }
     let name = page.name(one.label);
-    let binding = bind::place_of(page, one);
+    let place = bind::place_of(page, one);
     let from = ui.cursor().min;
     let (chosen, below) = field::row_with_help(ui, one.label, one.help, |ui| {
         let short = way.and_then(|way| labels.get(way)).is_some_and(|label| label.len() <= SHORT);
@@ -67,18 +67,18 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
         let chosen = match alone {
             Some((Row::Property(property), [])) if !is_position(property) => {
                 let chosen = within(ui, WAY_WIDTH, |ui| field::choice(ui, &name, &labels, way));
-                let room = ui.available_width() - if binding.is_some() { bind::WIDTH } else { 0.0 };
+                let room = ui.available_width() - if place.is_some() { bind::WIDTH } else { 0.0 };
                 (chosen, Some((property, within(ui, room, |ui| value::field(ui, page, property)))))
             }
             _ => (field::choice(ui, &name, &labels, way), None),
         };
-        if let Some(binding) = &binding {
-            bind::place(ui, page, binding);
+        if let Some((leg, name)) = &place {
+            bind::place(ui, page, leg, name);
         }
         chosen
     });
-    if let Some(binding) = &binding {
-        bind::drop_place(ui, page, binding, from);
+    if let Some((leg, _)) = &place {
+        bind::drop_place(ui, page, leg, from);
     }
     match below {
         Some((property, below)) => {

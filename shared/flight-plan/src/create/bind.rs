@@ -7,6 +7,7 @@ use crate::edit::shape::{area_mut, place_mut};
 use crate::{
     Area, Edit, FlightPlan, Id, Leg, LegKind, Pattern, Place, Scan, Thing, Value, Variable, VariableValue,
 };
+use geometry::LatLon;
 use std::sync::Arc;
 
 /// A fix made a variable: every leg that goes to it goes to where the variable says. `None`: there is no such fix.
@@ -24,10 +25,8 @@ pub fn variable_of_fix(plan: &FlightPlan, fix: &Id) -> Option<(Id, Edit)> {
 /// The place or area of a leg made a variable. `None`: it has none of its own, or it is one already.
 pub fn variable_of_leg(plan: &FlightPlan, leg: &Id) -> Option<(Id, Edit)> {
     let leg = plan.leg(leg)?.leg;
-    let initial = match (area(leg), leg.place()) {
-        (Some(Area::Polygon { corners, holes }), _) if holes.is_empty() => {
-            VariableValue::Polygon(corners.clone())
-        }
+    let initial = match (own_polygon(leg), leg.place()) {
+        (Some(corners), _) => VariableValue::Polygon(corners.clone()),
         (_, Some(Place::Position(Value::Constant(at)))) => VariableValue::Position(*at),
         // the fix stays where it is, for others
         (_, Some(Place::Fix(fix))) => VariableValue::Position(plan.fix(fix)?.position),
@@ -36,6 +35,14 @@ pub fn variable_of_leg(plan: &FlightPlan, leg: &Id) -> Option<(Id, Edit)> {
     let name = variable_name(plan, &leg.id);
     let bound = bound(leg, &name, &initial)?;
     Some((name.clone(), Edit::All(vec![add(&name, initial), bound])))
+}
+
+/// The corners of a leg's area, where a variable can say them: it can say no holes.
+pub(super) fn own_polygon(leg: &Leg) -> Option<&Vec<LatLon>> {
+    match area(leg)? {
+        Area::Polygon { corners, holes } => Some(corners).filter(|_| holes.is_empty()),
+        _ => None,
+    }
 }
 
 /// A leg whose place or area is what a variable says. `None`: the variable is of another type, or the leg has no such thing.

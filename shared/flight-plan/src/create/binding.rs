@@ -1,6 +1,6 @@
 //! What of a leg a variable can give: its place or area and its numbers, each with the edits that make it so.
 
-use super::bind::{Numeric, bind, bound_to, unbind, variable_of_leg};
+use super::bind::{Numeric, bind, bound_to, own_polygon, unbind, variable_of_leg};
 use crate::{Edit, FlightPlan, Id, Leg, Variable, VariableValue};
 
 /// Something of a leg that a variable can give.
@@ -23,7 +23,12 @@ pub struct Binding {
 /// A variable can give something of the leg: what [`bindings`] would not be empty for.
 pub fn has_bindings(plan: &FlightPlan, leg: &Id) -> bool {
     let Some(leg) = plan.leg(leg).map(|context| context.leg) else { return false };
-    !Numeric::of(leg).is_empty() || place(plan, leg).is_some()
+    !Numeric::of(leg).is_empty() || name_of_place(plan, leg).is_some()
+}
+
+/// What [`place_binding`] would be called, without working out what can be done.
+pub fn place_name(plan: &FlightPlan, leg: &Id) -> Option<&'static str> {
+    name_of_place(plan, plan.leg(leg)?.leg)
 }
 
 /// The place or area of a leg.
@@ -53,21 +58,26 @@ pub fn bindings(plan: &FlightPlan, leg: &Id) -> Vec<Binding> {
 
 /// Where a leg goes, or its area.
 fn place(plan: &FlightPlan, leg: &Leg) -> Option<Binding> {
-    let (bound, new) = (bound_to(leg), variable_of_leg(plan, &leg.id));
-    let variable = bound.as_ref().and_then(|name| plan.variable(name));
-    let is_area = variable.map_or(leg.place().is_none(), |v| matches!(v.initial, VariableValue::Polygon(_)));
-    let is_any = bound.is_some() || new.is_some() || leg.place().is_some();
     let fits = |variable: &Variable| {
         matches!(variable.initial, VariableValue::Position(_) | VariableValue::Polygon(_))
     };
-    is_any.then(|| Binding {
-        name: if is_area { "Area" } else { "Place" }.into(),
+    Some(Binding {
+        name: name_of_place(plan, leg)?.into(),
         number: None,
-        bound,
+        bound: bound_to(leg),
         choices: edits(plan, fits, |name| bind(plan, &leg.id, name)),
-        new,
+        new: variable_of_leg(plan, &leg.id),
         free: unbind(plan, &leg.id),
     })
+}
+
+/// `None`: it has none that a variable can give.
+fn name_of_place(plan: &FlightPlan, leg: &Leg) -> Option<&'static str> {
+    let bound = bound_to(leg);
+    let variable = bound.as_ref().and_then(|name| plan.variable(name));
+    let is_area = variable.map_or(leg.place().is_none(), |v| matches!(v.initial, VariableValue::Polygon(_)));
+    let is_any = bound.is_some() || leg.place().is_some() || own_polygon(leg).is_some();
+    is_any.then_some(if is_area { "Area" } else { "Place" })
 }
 
 fn edits(

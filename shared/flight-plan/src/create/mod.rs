@@ -23,7 +23,7 @@ pub use arrange::{
 };
 pub use beside::like_beside;
 pub use bind::{Numeric, bind, bound_to, named_variable, put_at, unbind, variable_of_fix, variable_of_leg};
-pub use binding::{Binding, bindings, has_bindings, place_binding};
+pub use binding::{Binding, bindings, has_bindings, place_binding, place_name};
 pub use branch::{Way, begin_way, delete_leg, insert};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
