@@ -115,8 +115,7 @@ impl Layer {
             sheet.view,
             |made| *made == look,
             |wide| {
-                let line: Vec<Mercator> = sheet.sketch.main.iter().flatten().map(|at| (*at).into()).collect();
-                let (parts, (colour, halo)) = (polyline::visible_parts(&line, wide), look);
+                let (parts, (colour, halo)) = (polyline::visible_parts(&sheet.sketch.draft, wide), look);
                 (look, polyline::shapes(&parts, Stroke::new(2.0, colour), Style::Dashed, halo))
             },
         );

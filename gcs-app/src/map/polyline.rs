@@ -96,6 +96,7 @@ pub fn shapes(parts: &[Vec<Pos2>], stroke: Stroke, style: Style, halo: Color32) 
     let mut shapes: Vec<Shape> = haloed.iter().map(|part| Shape::line(part.clone(), around)).collect();
     for part in parts {
         match style {
+            Style::Dashed if is_winding(part) => shapes.push(Shape::line(part.clone(), stroke)),
             Style::Solid => shapes.push(Shape::line(part.clone(), stroke)),
             Style::Dashed => shapes.extend(Shape::dashed_line(part, stroke, 9.0, 6.0)),
             Style::Dotted => {
@@ -104,6 +105,15 @@ pub fn shapes(parts: &[Vec<Pos2>], stroke: Stroke, style: Style, halo: Color32) 
         }
     }
     shapes
+}
+
+/// It goes to and fro for so long that nobody could tell its dashes apart, and each of them would have to be drawn. One long way that
+/// is seen from near is not meant.
+fn is_winding(part: &[Pos2]) -> bool {
+    const MANY: usize = 1000;
+    const LONGEST: f32 = 30_000.0;
+    let lengths = part.iter().zip(part.iter().skip(1)).map(|(from, to)| from.distance(*to));
+    part.len() > MANY && lengths.sum::<f32>() > LONGEST
 }
 
 #[cfg(test)]
@@ -126,6 +136,18 @@ mod tests {
             (0..100_000).map(|i| LatLon::new(0.0, f64::from(i) * 1e-5 - 0.5).into()).collect();
         let vertices: usize = visible_parts(&line, &view(9.0)).iter().map(Vec::len).sum();
         assert!((300..1000).contains(&vertices), "{vertices}");
+    }
+
+    #[test]
+    fn a_line_that_fills_the_screen_has_no_dashes_to_be_told_apart() {
+        let shapes_of = |tracks: u16| {
+            let ends = |track: u16| [pos2(0.0, f32::from(track)), pos2(800.0, f32::from(track))];
+            let part: Vec<Pos2> = (0..tracks).flat_map(ends).collect();
+            shapes(&[part], Stroke::new(2.0, Color32::RED), Style::Dashed, Color32::BLACK).len()
+        };
+        // each with its halo
+        assert!(shapes_of(10) > 500);
+        assert_eq!(shapes_of(600), 2);
     }
 
     #[test]

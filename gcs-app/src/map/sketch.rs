@@ -19,6 +19,7 @@ pub use radius::{bound_radius, radius_edit};
 use reader::Reader;
 pub use ways::Way;
 
+use super::view::Mercator;
 use crate::forecast::Forecast;
 use flight_plan::{
     Area, Env, FlightPlan, FlightState, Id, Leg, LegKind, Pattern, Place, Scan, Section, Value,
@@ -68,6 +69,8 @@ pub struct Sketch {
     pub polygons: Vec<(Id, Vec<Vec<LatLon>>)>,
     /// The main plan's places in order, stage by stage.
     pub main: Vec<Vec<LatLon>>,
+    /// The same on the map, as one line.
+    pub draft: Vec<Mercator>,
     /// Emergency plans, each with its line.
     pub emergencies: Vec<(Id, Vec<LatLon>)>,
     /// Variables that are a place.
@@ -284,6 +287,11 @@ impl Sketch {
     }
 
     fn add_lines(&mut self, plan: &FlightPlan, reader: &Reader<'_>) {
+        self.add_lines_of_stages(plan, reader);
+        self.draft = self.main.iter().flatten().map(|at| (*at).into()).collect();
+    }
+
+    fn add_lines_of_stages(&mut self, plan: &FlightPlan, reader: &Reader<'_>) {
         for (section, stage) in plan.all_stages() {
             let mut line = Vec::new();
             stage.legs.iter().for_each(|leg| reader.line_of(leg, &mut line));

@@ -172,14 +172,18 @@ impl View {
 
     /// The map's middle and zoom level at which all of `points` are shown with a margin, clear of the strip of commands.
     pub fn fit(points: &[LatLon], size: egui::Vec2) -> Option<(walkers::Position, f64)> {
-        let mut all = points.iter().filter(|p| p.is_valid()).map(|p| Mercator::from(*p));
-        let first = all.next()?;
-        let (low, high) = all.fold((first, first), |(low, high), m| {
+        let mut all = points.iter().filter(|p| p.is_valid());
+        let first = *all.next()?;
+        // the corners first, and only they on the map: of a hundred thousand places that is much less
+        let (south_west, north_east) = all.fold((first, first), |(low, high), p| {
             (
-                Mercator { x: low.x.min(m.x), y: low.y.min(m.y) },
-                Mercator { x: high.x.max(m.x), y: high.y.max(m.y) },
+                LatLon::new(low.lat_deg.min(p.lat_deg), low.lon_deg.min(p.lon_deg)),
+                LatLon::new(high.lat_deg.max(p.lat_deg), high.lon_deg.max(p.lon_deg)),
             )
         });
+        let (bottom_left, top_right) = (Mercator::from(south_west), Mercator::from(north_east));
+        let low = Mercator { x: bottom_left.x, y: top_right.y };
+        let high = Mercator { x: top_right.x, y: bottom_left.y };
         let room = |points: f32, extent: f64| f64::from((points - 2.0 * MARGIN).max(64.0)) / extent.max(1e-6);
         let scale = room(size.x, high.x - low.x).min(room(size.y - STRIP, high.y - low.y));
         let zoom = (scale / 256.0).log2().clamp(1.0, 17.0);
