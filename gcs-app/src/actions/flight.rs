@@ -193,11 +193,10 @@ pub(super) fn resume(scene: &Scene<'_>) -> Asked {
 
 pub(super) fn start(scene: &Scene<'_>) -> Asked {
     linked(scene)?;
-    let why_not = "A vehicle on the ground with a plan aboard can be started";
     if scene.vehicle.unfit().is_some() {
         return Err("Its autopilot is not set up for it: the bar of the commands says what to do");
     }
-    if panel::can_launch(scene) { Ok(Command::Fly(FlyCommand::Launch)) } else { Err(why_not) }
+    panel::no_start(scene).map_or(Ok(Command::Fly(FlyCommand::Launch)), Err)
 }
 
 /// Why there is nothing to fly where no alternate is in force.

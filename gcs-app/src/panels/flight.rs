@@ -334,7 +334,7 @@ pub fn remark(scene: &Scene<'_>) -> Option<(String, bool)> {
     let unfit = unfit.map(|why| format!("⚠ Can't be started. {why}"));
     let another = another_aboard(scene).filter(|_| can_launch(scene)).map(str::to_owned);
     let ended = ended::otherwise(scene).map(|how| format!("⚠ {how}"));
-    let rest = nothing_to_do(scene).filter(|_| ended.is_none()).map(str::to_owned);
+    let rest = nothing_to_do(scene).map(str::to_owned);
     let cautions: Vec<String> = [heard, dead, unfit, another, ended].into_iter().flatten().collect();
     let is_caution = !cautions.is_empty();
     let all: Vec<String> = cautions.into_iter().chain(rest).collect();
@@ -350,14 +350,48 @@ pub fn another_aboard(scene: &Scene<'_>) -> Option<&'static str> {
 
 /// Why there is nothing to command.
 fn nothing_to_do(scene: &Scene<'_>) -> Option<&'static str> {
+    let is_flown = scene.vehicle.phase() == Phase::Finished && ended::otherwise(scene).is_none();
+    if stands(scene) {
+        return no_start(scene).map(|why| if is_flown && why == IS_OVER { WAS_FLOWN } else { why });
+    }
     if scene.vehicle.active_hash().is_none() {
-        return Some("No plan aboard: push one");
+        return Some(NO_PLAN);
     }
     match scene.vehicle.phase() {
-        Phase::Finished => Some("The plan was flown"),
-        Phase::Grounded if !can_launch(scene) => Some("Landed: the next flight waits for its start"),
-        Phase::Idle if !can_launch(scene) => Some("The plan aboard was not started"),
+        Phase::Finished if is_flown => Some("The plan was flown"),
+        Phase::Grounded => Some("Landed: the next flight waits for its start"),
+        Phase::Idle => Some("The plan aboard was not started"),
         _ => None,
+    }
+}
+
+const NO_PLAN: &str = "No plan aboard: push one";
+const IS_OVER: &str = "The flight is over: rewind the plan before the next start";
+const WAS_FLOWN: &str = "The plan was flown: rewind it before the next start";
+
+/// Why a vehicle that stands on the ground is not started, and what comes first; its autopilot may have reasons of its own.
+pub fn no_start(scene: &Scene<'_>) -> Option<&'static str> {
+    let state = scene.vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
+    if !stands(scene) {
+        return Some("It does not stand on the ground, as far as is known");
+    }
+    if scene.vehicle.active_hash().is_none() {
+        return Some(NO_PLAN);
+    }
+    if emergency::has_come_down(scene) {
+        return Some("An emergency plan was flown: rewind the plan before the next start");
+    }
+    match (scene.vehicle.phase(), state) {
+        (Phase::Finished, _) => Some(IS_OVER),
+        // nothing may have come of an earlier start: the arming was refused, or somebody held it
+        (Phase::Idle | Phase::Grounded, _) | (_, Some(GatewayState::Stop)) => None,
+        (_, None | Some(GatewayState::Off)) => {
+            Some("The plan was begun, and what its autopilot does is not known")
+        }
+        (_, Some(GatewayState::Manual)) => Some("The plan was begun, and the pilot has the aircraft"),
+        (_, Some(GatewayState::Terminate)) => Some("The flight was ended by force"),
+        (_, Some(GatewayState::TakeOff)) => Some("It was started: the take-off is under way"),
+        _ => Some("The plan is being flown: it has not stopped yet"),
     }
 }
 
@@ -374,14 +408,7 @@ pub fn can_resume(scene: &Scene<'_>) -> bool {
 
 /// The vehicle stands on the ground, with a plan to be flown.
 pub fn can_launch(scene: &Scene<'_>) -> bool {
-    let state = scene.vehicle.gateway.as_ref().map(|g| g.value.state);
-    // nothing may have come of an earlier start: the arming was refused, or somebody held it
-    let may_start = match scene.vehicle.phase() {
-        Phase::Idle | Phase::Grounded => true,
-        Phase::Flying | Phase::AwaitingDecision | Phase::Holding => state == Some(GatewayState::Stop),
-        Phase::Finished => false,
-    };
-    stands(scene) && may_start && scene.vehicle.active_hash().is_some() && !emergency::has_come_down(scene)
+    no_start(scene).is_none()
 }
 
 /// On the ground, as far as was ever heard.

@@ -53,6 +53,7 @@ mod recreating;
 mod replacing;
 mod sheets;
 mod small;
+mod starting;
 mod states;
 mod store;
 mod table;
