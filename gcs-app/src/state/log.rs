@@ -99,12 +99,24 @@ pub fn merged<'a>(a: &'a Log, b: &'a Log) -> Vec<&'a Line> {
 /// Who decided, where nobody did.
 const BY_DEFAULT: &str = "default";
 
-/// What nobody must miss, also who looked elsewhere when it happened.
-pub fn is_announced(event: &Event) -> bool {
-    matches!(event, Event::DecisionTaken { by, .. } if by == BY_DEFAULT)
+/// What nobody must miss, also who looked elsewhere when it happened, as `said` or in words of its own.
+pub fn announced(event: &Event, said: String, names: Names<'_>) -> Option<String> {
+    if let Event::ProblemAhead { reason, .. } = event {
+        return is_of_glide(event).then(|| names.told(reason));
+    }
+    let is_announced = matches!(event, Event::DecisionTaken { by, .. } if by == BY_DEFAULT)
         || matches!(event, Event::PhaseChanged { phase: Phase::AwaitingDecision | Phase::Grounded })
-        || is_refusal(event)
+        || is_refusal(event);
+    is_announced.then_some(said)
 }
+
+/// Without an engine it does not come to its runway as planned: the last that was said of it counts.
+pub fn is_of_glide(event: &Event) -> bool {
+    matches!(event, Event::ProblemAhead { code, .. } if GLIDE.contains(&code.as_str()))
+}
+
+/// As the executor says it in flight. What a review says of glides is told among the problems.
+const GLIDE: [&str; 2] = ["glide-shortened", "glide-long"];
 
 /// What somebody asked for is not done after all. Of reports that do not count there is an alarm.
 fn is_refusal(event: &Event) -> bool {
@@ -114,6 +126,11 @@ fn is_refusal(event: &Event) -> bool {
 /// The aircraft does not take off after all, though the start was accepted.
 pub fn is_no_start(event: &Event) -> bool {
     matches!(event, Event::NotGranted { request, .. } if request == GatewayRequest::Launch.name())
+}
+
+/// It lies on the ground: where it would come down is told no more.
+pub fn ends_a_flight(event: &Event) -> bool {
+    matches!(event, Event::PhaseChanged { phase: Phase::Finished | Phase::Idle })
 }
 
 /// Another start was accepted, or it took off: what was said of one that came to nothing is over. Whoever joins late hears all of it again.

@@ -9,13 +9,23 @@ pub struct Names<'a>(pub Option<&'a FlightPlan>);
 impl Names<'_> {
     /// Of a leg, a stage, an emergency plan. A stage without a name is called by its kind.
     pub fn of(self, id: &Id) -> String {
-        let name = self.0.and_then(|plan| plan.name_of(id).or_else(|| Some(plan.stage(id)?.kind.name())));
-        name.unwrap_or(id.as_str()).to_owned()
+        self.known(id).unwrap_or(id.as_str()).to_owned()
+    }
+
+    /// A sentence with names in the place of the identifiers that it quotes.
+    pub fn told(self, sentence: &str) -> String {
+        flight_plan::in_names(sentence, |id| self.known(id))
     }
 
     /// Of a branch. Its identifier may be that of a leg, too.
     pub fn of_branch(self, fork: &Id, branch: &Id) -> String {
         self.0.map_or(branch.as_str(), |plan| plan.branch_label(fork, branch)).to_owned()
+    }
+}
+
+impl<'a> Names<'a> {
+    fn known(self, id: &Id) -> Option<&'a str> {
+        self.0.and_then(|plan| plan.name_of(id).or_else(|| Some(plan.stage(id)?.kind.name())))
     }
 }
 
@@ -36,5 +46,10 @@ mod tests {
             ["Round", "Out", "b", "Landing", "return"]
         );
         assert_eq!(Names(None).of(&"r-land".into()), "r-land");
+        let told = |names: Names<'_>| names.told("straight to `r-land`");
+        assert_eq!(
+            (told(Names(Some(&plan))), told(Names(None))),
+            ("straight to “Landing”".into(), "straight to “r-land”".into())
+        );
     }
 }

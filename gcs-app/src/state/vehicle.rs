@@ -100,6 +100,8 @@ pub struct Vehicle {
     pub log: Log,
     /// What happened that nobody must miss and nobody has put aside yet, oldest first.
     pub unread: VecDeque<String>,
+    /// What was announced of its glide last.
+    said_of_glide: Option<String>,
     /// The emergency that was raised last.
     pub raised: Option<Raised>,
     /// How long there was for the decision that is asked for when it was asked, seconds.

@@ -127,6 +127,31 @@ fn a_vehicle_that_is_not_shown_announces_as_well() {
     assert!(window.shows("uav9: Nobody decided in time: the aircraft circles"));
 }
 
+/// It stood in the log alone, among all the lines that an emergency writes there.
+#[test]
+fn a_glide_that_falls_short_is_announced_until_it_is_read_or_down() {
+    let (mut window, _) = flying();
+    let ahead = |code: &str, lacks_m: u32| Event::ProblemAhead {
+        leg: Some("r-land".into()),
+        code: code.into(),
+        reason: format!(
+            "the engine is out, and the height does not suffice for all that is ahead: straight to `r-land`, even so {lacks_m} m are lacking: be ready to land elsewhere"
+        ),
+    };
+    window.send(event(1, ahead("turn-too-tight", 30)));
+    assert!(!is_announced(&window, "the engine is out"), "what a review finds is among the problems");
+    window.send(event(2, ahead("glide-shortened", 30)));
+    let said = "even so 30 m are lacking: be ready to land elsewhere";
+    assert!(is_announced(&window, "the engine is out") && window.paints_whole(said));
+    window.send(event(3, ahead("glide-shortened", 50)));
+    assert!(
+        window.paints_whole("even so 50 m are lacking") && !is_announced(&window, said),
+        "the last one counts"
+    );
+    window.send(event(4, Event::PhaseChanged { phase: Phase::Finished }));
+    assert!(!is_announced(&window, "the engine is out"), "it is down");
+}
+
 #[test]
 fn of_many_announcements_the_latest_are_shown() {
     let (mut window, _) = flying();

@@ -175,19 +175,32 @@ impl Vehicle {
         if log::is_no_start(event) {
             self.requests.take_back(START);
         }
+        if log::ends_a_flight(event)
+            && let Some(over) = self.said_of_glide.take()
+        {
+            self.unread.retain(|known| *known != over);
+        }
         if log::is_of_a_start(event) {
             self.unread.retain(|known| !log::says_no_start(known));
         }
-        if log::is_announced(event) {
-            // asked for again and again, it is refused as often
-            self.unread.retain(|known| *known != text);
-            self.unread.push_back(text);
-            while self.unread.len() > MOST_UNREAD {
-                self.unread.pop_front();
-            }
+        if let Some(text) = log::announced(event, text, self.names()) {
+            self.announce(text, log::is_of_glide(event));
         }
         if let Event::EmergencyStarted { cause, plan, from_leg } = event {
             self.raised = Some(Raised { cause: *cause, plan: plan.clone(), from_leg: from_leg.clone() });
+        }
+    }
+
+    /// `of_glide`: what was said before of the glide is over.
+    fn announce(&mut self, text: String, of_glide: bool) {
+        // asked for again and again, it is refused as often
+        self.unread.retain(|known| *known != text);
+        if of_glide && let Some(before) = self.said_of_glide.replace(text.clone()) {
+            self.unread.retain(|known| *known != before);
+        }
+        self.unread.push_back(text);
+        while self.unread.len() > MOST_UNREAD {
+            self.unread.pop_front();
         }
     }
 
