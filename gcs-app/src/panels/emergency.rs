@@ -2,10 +2,11 @@
 
 use super::{Scene, answer, ended, field, flight, in_force, other_end, profile, reach};
 use crate::command::Queue;
-use crate::state::is_safe;
+use crate::state::{Unanswered, is_safe};
 use crate::theme;
 use crate::units;
-use egui::{Align, Button, Color32, ComboBox, Frame, Label, Layout, Margin, Panel, RichText, Ui};
+use egui::text::LayoutJob;
+use egui::{Align, Button, Color32, ComboBox, FontId, Frame, Label, Layout, Margin, Panel, TextStyle, Ui};
 use flight_exec::{Command, Phase};
 use flight_plan::{Cause, EmergencyPlan, FlightPlan, Id, Section};
 use geometry::LatLon;
@@ -13,6 +14,8 @@ use usal::contract::GatewayState;
 
 /// Height of the strip, screen points.
 const STRIP: f32 = 34.0;
+/// Of two lines in it, points.
+const SMALL: f32 = 11.5;
 /// Most of it that the way back takes.
 const WAY_BACK: f32 = 0.55;
 
@@ -30,13 +33,13 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let frame = Frame::new().fill(fill).inner_margin(Margin::symmetric(10, 0));
     Panel::top("emergency").exact_size(STRIP).frame(frame).show(ui, |ui| {
         let (text, colour) = match said {
-            Some(said) => (RichText::new(said).strong(), on(fill)),
+            Some(said) => (said, on(fill)),
             None => match led_otherwise(scene) {
-                Some(how) => (RichText::new(format!("⚠ {how}")), p.caution),
+                Some(how) => (format!("⚠ {how}"), p.caution),
                 None => {
                     let silence_s = scene.vehicle.autopilot_silence_s(scene.now_s);
                     let old = silence_s.map(|s| format!(" · last heard {} ago", units::age(s)));
-                    (RichText::new(format!("{}{}", as_planned(scene), old.unwrap_or_default())), p.weak)
+                    (format!("{}{}", as_planned(scene), old.unwrap_or_default()), p.weak)
                 }
             },
         };
@@ -45,11 +48,21 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
                 way_back(ui, scene, queue);
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let whole = text.text().to_owned();
-                ui.add(Label::new(text.color(colour)).truncate()).on_hover_text(whole);
+                say(ui, &text, colour);
             });
         });
     });
+}
+
+/// In one line or, smaller, in two; the end of what takes more is read by pointing at it.
+fn say(ui: &mut Ui, text: &str, colour: Color32) {
+    let own = TextStyle::Body.resolve(ui.style());
+    let width = ui.available_width();
+    let fits = ui.painter().layout_no_wrap(text.to_owned(), own.clone(), colour).size().x <= width;
+    let font = if fits { own } else { FontId::proportional(SMALL) };
+    let mut job = LayoutJob::simple(text.to_owned(), font, colour, width);
+    job.wrap.max_rows = 2;
+    ui.add(Label::new(job).wrap()).on_hover_text(text);
 }
 
 /// The gateway's Safe mode leads it in the air: it flies its own way, which nobody tells.
@@ -81,16 +94,42 @@ pub fn led_otherwise(scene: &Scene<'_>) -> Option<String> {
     }
 }
 
-/// `Safe mode: gliding to runway R05, straight in, touches down in 1:10, because the engine failed`, or for this cause.
+/// `Safe mode: gliding to runway R05, straight in, touches down in 1:10, because the engine failed`, or for this cause, and why no emergency
+/// plan is flown.
 fn safe_mode(scene: &Scene<'_>, cause: &str) -> Option<String> {
     let how = led_by_safe_mode(scene)?;
-    let engine = scene.vehicle.is_engine_out().then(|| format!(", because {}", because(Cause::Engine)));
-    let state = scene.vehicle.gateway.as_ref()?.value.state;
+    let status = &scene.vehicle.gateway.as_ref()?.value;
     // what is left in the autopilot's list is its way to the ground
     let left = scene.vehicle.navigation.as_ref().filter(|left| !left.is_expired(scene.now_s));
-    let left = left.filter(|left| left.value.end_of_plan && state != GatewayState::SafeHold);
+    let left = left.filter(|left| left.value.end_of_plan && status.state != GatewayState::SafeHold);
     let down = left.map(|left| format!(", touches down in {}", units::duration(left.value.buffer_s)));
-    Some(format!("{how}{}{}", down.unwrap_or_default(), engine.as_deref().unwrap_or(cause)))
+    let why = why_safe(scene, cause, &status.cause);
+    Some(format!("{how}{}{why}", down.unwrap_or_default()))
+}
+
+/// What the executor says with each of its reasons, and the banner before them.
+const SAFE_DECIDES: &str = ": the gateway's Safe mode decides";
+
+/// `, because the engine failed; Return home is not flown: its runway is not reached without the engine`. What is `shown` before is not said again.
+fn why_safe(scene: &Scene<'_>, cause: &str, shown: &str) -> String {
+    let unanswered = scene.vehicle.unanswered();
+    let engine = scene.vehicle.is_engine_out().then_some(Cause::Engine);
+    let because = match engine.or_else(|| Some(unanswered?.cause)) {
+        Some(cause) => format!(", because {}", because(cause)),
+        None if cause.is_empty() => {
+            let began = scene.vehicle.why_safe.began.as_deref().filter(|began| *began != shown);
+            began.map_or_else(String::new, |began| format!(" · {began}"))
+        }
+        None => cause.to_owned(),
+    };
+    let not_flown = unanswered.map(|Unanswered { plan, reason, .. }| match plan {
+        Some(plan) => {
+            let reason = scene.vehicle.told(reason.strip_suffix(SAFE_DECIDES).unwrap_or(reason));
+            format!("; {} is not flown: {reason}", scene.vehicle.name_of(plan))
+        }
+        None => "; no emergency plan is named for that".to_owned(),
+    });
+    format!("{because}{}", not_flown.unwrap_or_default())
 }
 
 /// `Flying Departure ▸ Climb in the hold · in an emergency: Return home`.

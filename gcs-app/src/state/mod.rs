@@ -16,6 +16,7 @@ mod trail;
 mod vehicle;
 mod vehicles;
 mod watch;
+mod why_safe;
 
 pub use aged::Aged;
 pub use log::{Level, Line, Log};
@@ -30,5 +31,6 @@ pub use trail::Trail;
 pub use vehicle::{ActivePlan, LINK_CAUTION_S, LINK_WARNING_S, Proposal, Raised, Vehicle, VehicleName};
 pub use vehicles::Vehicles;
 pub use watch::{GROUND_STATION, is_safe};
+pub use why_safe::{Unanswered, WhySafe};
 
 use repeats::Repeats;

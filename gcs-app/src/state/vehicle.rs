@@ -7,7 +7,10 @@ mod receiving;
 pub use alarms::{LINK_CAUTION_S, LINK_WARNING_S};
 
 use super::watch::Watch;
-use super::{Aged, Log, Losses, Names, Outlook, RecentEvents, Repeats, Requests, Strangers, Told, Trail};
+use super::{
+    Aged, Log, Losses, Names, Outlook, RecentEvents, Repeats, Requests, Strangers, Told, Trail, Unanswered,
+    WhySafe,
+};
 use crate::link::{LinkId, LinkState, Rows};
 use aircraft::Autopilot;
 use flight_exec::{Phase, ProposalReport, Status};
@@ -19,6 +22,7 @@ use usal::contract::{
     Ahead, Air, Attitude, AutopilotLinks, Engine, GatewayStatus, Gps, Navigation, PlanVariables, Position,
     Power, Recording,
 };
+use wire::Convert;
 
 /// A vehicle's name: what everything known of it is kept under.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -116,6 +120,8 @@ pub struct Vehicle {
     pub strangers: Strangers,
     /// What this ground station watches by itself.
     pub watch: Watch,
+    /// Why its gateway's Safe mode leads it.
+    pub why_safe: WhySafe,
     plan_events: Repeats,
     gateway_events: Repeats,
     asked_aboard_s: Option<f64>,
@@ -198,6 +204,12 @@ impl Vehicle {
         alarms.iter().any(|alarm| alarm.cause == Some(usal::contract::Cause::Engine))
     }
 
+    /// The emergency that no plan answers, while an alarm of its gateway says that it goes on.
+    pub fn unanswered(&self) -> Option<&Unanswered> {
+        let alarms = self.gateway.as_ref().map(|gateway| gateway.value.alarms.as_slice()).unwrap_or_default();
+        self.why_safe.unanswered(|cause| alarms.iter().any(|alarm| alarm.cause.convert() == Some(cause)))
+    }
+
     /// What the executor is doing; idle when nothing is known.
     pub fn phase(&self) -> Phase {
         self.status.as_ref().map_or(Phase::Idle, |s| s.value.phase)
@@ -206,6 +218,11 @@ impl Vehicle {
     /// What people call a part of the plan aboard; its identifier, where nobody named it.
     pub fn name_of(&self, id: &Id) -> String {
         self.names().of(id)
+    }
+
+    /// A sentence with names in the place of the identifiers that it quotes.
+    pub fn told(&self, sentence: &str) -> String {
+        self.names().told(sentence)
     }
 
     /// What people call a branch of the plan aboard.

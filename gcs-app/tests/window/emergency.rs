@@ -11,7 +11,7 @@ use gcs_app::link::{Call, LinkEvent, Numbered, Reply, Telemetry};
 use gcs_app::state::{ActivePlan, Ticket};
 use geometry::LatLon;
 use std::sync::Arc;
-use usal::contract::{GatewayState, GatewayStatus, Navigation, Position, Stamped};
+use usal::contract::{GatewayEvent, GatewayState, GatewayStatus, Navigation, Position, Stamped};
 
 const START: &str = "Start and take off with the plan aboard (hold)";
 
@@ -362,6 +362,52 @@ fn safe_mode_in_the_air_is_red_and_says_why_whereto_and_when_and_is_left_by_a_ho
     assert!(matches!(window.asked(), Some((_, Call::Gateway(usal::contract::GatewayRequest::Recover)))));
     says(&mut window, GatewayState::SafeLand, "steering to the touch-down");
     assert!(window.shows("⛔ Safe mode: gliding to runway R05, straight in, steering to the touch-down"));
+}
+
+/// Why Safe mode leads was said until it told where it goes; why no emergency plan is flown, in the log alone.
+#[test]
+fn safe_mode_says_why_it_began_and_why_no_emergency_plan_is_flown() {
+    let gateway = |window: &mut Window, state, cause: &str, alarms| {
+        let value = GatewayStatus { cause: cause.into(), alarms, ..gateway_status(state) };
+        window.receive(Telemetry::Gateway(Stamped { time_s: 4.0, validity_s: 2.0, value }.into()));
+        window.receive_position(false);
+        window.steps(20);
+    };
+    let changed = |window: &mut Window, sequence, from, to, cause: &str| {
+        let value = GatewayEvent::StateChanged { from, to, cause: cause.into() };
+        let event = Stamped { time_s: f64::from(sequence), validity_s: f64::MAX, value };
+        window.send(LinkEvent::Telemetry(Telemetry::GatewayEvent(Numbered { sequence, event })));
+    };
+    let (mut window, _) = flying();
+    changed(&mut window, 1, GatewayState::Nav, GatewayState::SafeHold, "the FP Manager is silent");
+    gateway(&mut window, GatewayState::SafeHold, "the FP Manager is silent", Vec::new());
+    assert!(window.shows("⛔ Safe mode: the FP Manager is silent") && !window.shows("· the FP Manager"));
+    changed(&mut window, 2, GatewayState::SafeHold, GatewayState::SafeReturn, "returning to runway R05");
+    gateway(&mut window, GatewayState::SafeReturn, "returning to runway R05", Vec::new());
+    assert!(window.shows("⛔ Safe mode: returning to runway R05 · the FP Manager is silent"));
+
+    let mut window = flying_its_plan();
+    window.harness.set_size(egui::vec2(960.0, 600.0));
+    let unanswered = |plan: Option<&str>, reason: &str| Event::EmergencyUnanswered {
+        cause: Cause::Engine,
+        plan: plan.map(Into::into),
+        code: "any".into(),
+        reason: reason.into(),
+    };
+    let told = |window: &mut Window, sequence, value| {
+        let event = Stamped { time_s: f64::from(sequence), validity_s: f64::MAX, value };
+        window.send(LinkEvent::Telemetry(Telemetry::PlanEvent(Numbered { sequence, event })));
+    };
+    let reason =
+        "its runway is not reached without the engine, but runway `R34` is: the gateway's Safe mode decides";
+    told(&mut window, 1, unanswered(Some("return"), reason));
+    gateway(&mut window, GatewayState::SafeReturn, "gliding to runway R34", vec![engine_out()]);
+    let whole = "⛔ Safe mode: gliding to runway R34, because the engine failed; return is not flown: \
+                 its runway is not reached without the engine, but runway “R34” is";
+    assert!(window.shows(whole) && window.paints_whole(whole), "nothing of it is cut in a small window");
+    told(&mut window, 2, unanswered(None, "no emergency plan applies here"));
+    window.steps(2);
+    assert!(window.shows("because the engine failed; no emergency plan is named for that"));
 }
 
 /// It was the largest button of the banner, all through the glide.

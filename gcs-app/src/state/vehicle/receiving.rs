@@ -186,6 +186,7 @@ impl Vehicle {
         if let Some(text) = log::announced(event, text, self.names()) {
             self.announce(text, log::is_of_glide(event));
         }
+        self.why_safe.happened(event);
         if let Event::EmergencyStarted { cause, plan, from_leg } = event {
             self.raised = Some(Raised { cause: *cause, plan: plan.clone(), from_leg: from_leg.clone() });
         }
@@ -206,8 +207,12 @@ impl Vehicle {
 
     fn gateway_event(&mut self, event: &Numbered<GatewayEvent>, now_s: f64) {
         let Some((level, text)) = log::gateway_event(&event.event.value) else { return };
-        if self.gateway_events.is_new(event.sequence, event.event.time_s, &text) {
-            self.log.add(now_s, level, "gateway", &text);
+        if !self.gateway_events.is_new(event.sequence, event.event.time_s, &text) {
+            return;
+        }
+        self.log.add(now_s, level, "gateway", &text);
+        if let GatewayEvent::StateChanged { from, to, cause } = &event.event.value {
+            self.why_safe.state_changed(*from, *to, cause);
         }
     }
 }
