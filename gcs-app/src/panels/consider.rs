@@ -92,8 +92,8 @@ fn since(considered: &Considered, scene: &Scene<'_>) -> Vec<String> {
     let elsewhere = is_elsewhere.then(|| format!("The aircraft is on another leg by now{again}"));
     let state = vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
     let landing = (state == Some(GatewayState::Land)).then(|| {
-        let agl =
-            vehicle.watch.agl_m.map(|m| format!(", {} above the ground", scene.units().altitude().show(m)));
+        let (watch, unit) = (&vehicle.watch, scene.units().altitude());
+        let agl = watch.agl_m.map(|m| format!(", {} above {}", unit.show(m), watch.below()));
         format!("It is landing{}: it would go around", agl.unwrap_or_default())
     });
     old.into_iter().chain(elsewhere).chain(landing).collect()

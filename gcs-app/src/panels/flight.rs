@@ -185,10 +185,10 @@ fn above_home(ui: &mut Ui, scene: &Scene<'_>) {
 }
 
 fn above_ground(ui: &mut Ui, scene: &Scene<'_>) {
-    let agl_m = scene.vehicle.watch.agl_m;
-    let height = |m| format!("{} above the ground", scene.units().altitude().show(m));
+    let watch = &scene.vehicle.watch;
+    let height = |m| format!("{} above {}", scene.units().altitude().show(m), watch.below());
     // elevations are off by some: it stands on nothing else
-    let agl = if is_on_ground(scene) { Some("on the ground".to_owned()) } else { agl_m.map(height) };
+    let agl = if is_on_ground(scene) { Some("on the ground".to_owned()) } else { watch.agl_m.map(height) };
     let age = age_as_heard(&scene.vehicle.position, scene);
     value_with_age(ui, "AGL", agl.as_deref().unwrap_or("ground not known"), age);
 }

@@ -3,7 +3,7 @@
 mod attitude;
 mod tape;
 
-use super::{Scene, age_as_heard, value_with_age};
+use super::{Scene, age_as_heard, flight, value_with_age};
 use crate::state::Aged;
 use crate::theme::{self, Palette};
 use crate::units::{self, Unit};
@@ -50,7 +50,10 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, room: f32) {
     heads(&painter, scene, left, right, p);
     if let Some(agl_m) = agl_m {
         let at = right.center_bottom() - vec2(0.0, 4.0);
-        label(&painter, at, Align2::CENTER_BOTTOM, &format!("AGL {}", unit.number(agl_m)), 9.5);
+        // elevations are off by some: it stands on nothing else
+        let is_down = flight::is_on_ground(scene);
+        let height = if is_down { "on ground".to_owned() } else { format!("AGL {}", unit.number(agl_m)) };
+        label(&painter, at, Align2::CENTER_BOTTOM, &height, 9.5);
     }
     let told = heading(&painter, middle, level.map(|a| a.heading_deg));
     wind(&painter, middle, told, scene, level.map(|a| a.heading_deg));

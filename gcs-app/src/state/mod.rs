@@ -3,6 +3,7 @@
 //! same input.
 
 mod aged;
+mod ground_below;
 pub mod log;
 mod losses;
 mod names;

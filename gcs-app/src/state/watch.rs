@@ -2,6 +2,8 @@
 //! An alarm is raised when something has been wrong for a while, and cleared when it is clearly right again; not while the
 //! aircraft takes off, approaches or lands, or is flown by hand.
 
+use super::ground_below::GroundBelow;
+use flight_plan::{Id, Runway};
 use geometry::{LatLon, LocalFrame};
 use terrain::Terrain;
 use usal::contract::{Ahead, Alarm, GatewayState, Position, Severity, Token};
@@ -31,6 +33,8 @@ pub struct Sight<'a> {
     pub ahead: Option<&'a Ahead>,
     /// What the gateway does, and why.
     pub state: Option<(GatewayState, &'a str)>,
+    /// Those of its plan.
+    pub runways: &'a [Runway],
 }
 
 /// The watch over one aircraft.
@@ -38,6 +42,8 @@ pub struct Sight<'a> {
 pub struct Watch {
     /// Height above the ground, where both are known, metres.
     pub agl_m: Option<f64>,
+    /// The runway of the plan that says how high the ground is there; `None`: the elevations do.
+    pub over: Option<Id>,
     /// Where Safe mode leads it, in its gateway's words, or led it before it came down; `None`: something else led it last.
     pub safe_mode: Option<String>,
     altitude: Suspicion,
@@ -81,13 +87,19 @@ impl Suspicion {
 }
 
 impl Watch {
+    /// What the height is above: `the ground`, or `runway R05`.
+    pub fn below(&self) -> String {
+        self.over.as_ref().map_or_else(|| "the ground".to_owned(), |runway| format!("runway {runway}"))
+    }
+
     /// Looks once.
     pub fn look(&mut self, sight: Sight<'_>, terrain: &dyn Terrain, now_s: f64) {
         let position = sight.position.filter(|p| p.position.is_valid() && p.altitude_amsl_m.is_finite());
-        let above = |p: &Position| Some(p.altitude_amsl_m - terrain.elevation_m(p.position)?);
         // the last one is shown as old, as all that was heard
         if let Some(position) = &position {
-            self.agl_m = above(position);
+            let below = GroundBelow::at(position.position, sight.runways, terrain);
+            self.agl_m = below.as_ref().map(|below| position.altitude_amsl_m - below.amsl_m);
+            self.over = below.and_then(|below| below.runway);
         }
         if let Some((state, cause)) = sight.state {
             self.follow_safe_mode(state, cause);
@@ -212,6 +224,8 @@ mod tests {
 
     const HERE: LatLon = LatLon::new(36.3, -84.2);
 
+    const UNSEEN: Sight<'_> = Sight { position: None, ahead: None, state: None, runways: &[] };
+
     /// A hill that begins a kilometre north, 480 m high.
     struct Hill;
 
@@ -268,8 +282,8 @@ mod tests {
         now_s: f64,
         state: GatewayState,
     ) -> Vec<String> {
-        let sight =
-            Sight { position: Some(position(altitude_m)), ahead: Some(ahead), state: Some((state, "")) };
+        let (position, ahead, state) = (Some(position(altitude_m)), Some(ahead), Some((state, "")));
+        let sight = Sight { position, ahead, state, ..UNSEEN };
         watch.look(sight, terrain, now_s);
         watch.alarms().map(|alarm| alarm.id).collect()
     }
@@ -287,7 +301,7 @@ mod tests {
             (TakeOff, "taking off", None),
             (SafeApproach, "the landing comes next", Some("the landing comes next")),
         ] {
-            watch.look(Sight { position: None, ahead: None, state: Some((state, cause)) }, &Hill, 0.0);
+            watch.look(Sight { state: Some((state, cause)), ..UNSEEN }, &Hill, 0.0);
             assert_eq!(watch.safe_mode.as_deref(), expected, "{state:?}");
         }
     }
@@ -296,7 +310,7 @@ mod tests {
     fn no_news_clears_nothing_until_it_has_lasted() {
         let (mut watch, flat, at) = (Watch::default(), Flat(300.0), ahead(1, 500.0));
         look(&mut watch, 500.0, &at, &flat, 0.0);
-        let silent = Sight { position: None, ahead: None, state: None };
+        let silent = UNSEEN;
         // a link that drops a second of every two
         for second in 0..8 {
             let now_s = 1.0 + 2.0 * f64::from(second);
@@ -382,7 +396,7 @@ mod tests {
         let mut watch = Watch::default();
         look(&mut watch, 500.0, &ahead(1, 500.0), &Hill, 0.0);
         let known = watch.agl_m;
-        watch.look(Sight { position: None, ahead: None, state: None }, &Hill, 1.0);
+        watch.look(UNSEEN, &Hill, 1.0);
         assert!(known.is_some() && watch.agl_m == known, "the last one, as old as it is");
         for now_s in [0.0, 100.0] {
             assert!(look(&mut watch, 500.0, &ahead(1, 500.0), &Unknown, now_s).is_empty());

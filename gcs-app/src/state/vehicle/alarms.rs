@@ -32,6 +32,7 @@ impl Vehicle {
             position: live(&self.position, now_s).copied(),
             ahead: live(&self.ahead, now_s),
             state: live(&self.gateway, now_s).map(|status| (status.state, status.cause.as_str())),
+            runways: self.aboard.as_ref().map(|aboard| aboard.plan.runways.as_slice()).unwrap_or_default(),
         };
         self.watch.look(sight, terrain, now_s);
         for alarm in self.watch.alarms().filter(|alarm| !before.contains(&alarm.id)) {
