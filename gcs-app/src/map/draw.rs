@@ -5,8 +5,8 @@ use super::sheet::Sheet;
 use super::tools::{self, Canvas};
 use super::view::View;
 use super::{
-    MapState, aircraft, chips, clipboard, footprints, foreseen, furniture, graticule, kin, left_out, marks,
-    path, plan, variables, zones,
+    MapState, aircraft, chips, clipboard, footprints, foreseen, furniture, graticule, held, kin, left_out,
+    marks, path, plan, variables, zones,
 };
 use crate::command::Queue;
 use crate::panels::{Scene, start};
@@ -87,6 +87,7 @@ fn draw_plan(sheet: &Sheet<'_>, path: &mut path::Layer, aircraft: &mut aircraft:
     aircraft.draw_trail(sheet);
     foreseen::draw(sheet);
     aircraft::draw_ahead(sheet);
+    held::draw(sheet);
     path::draw_decision(sheet);
     plan::draw_runways(sheet);
     marks::draw_diversion(sheet);

@@ -14,6 +14,7 @@ pub mod furniture;
 pub mod graticule;
 mod ground;
 pub mod guard;
+mod held;
 mod items;
 mod kept;
 mod kin;

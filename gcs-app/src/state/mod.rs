@@ -3,6 +3,7 @@
 //! same input.
 
 mod aged;
+mod circling;
 mod ground_below;
 pub mod log;
 mod losses;
@@ -20,6 +21,7 @@ mod watch;
 mod why_safe;
 
 pub use aged::Aged;
+pub use circling::{Circle, Circling};
 pub use log::{Level, Line, Log};
 pub use losses::Losses;
 pub use names::Names;

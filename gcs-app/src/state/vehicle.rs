@@ -8,8 +8,8 @@ pub use alarms::{LINK_CAUTION_S, LINK_WARNING_S};
 
 use super::watch::Watch;
 use super::{
-    Aged, Log, Losses, Names, Outlook, RecentEvents, Repeats, Requests, Strangers, Told, Trail, Unanswered,
-    WhySafe,
+    Aged, Circling, Log, Losses, Names, Outlook, RecentEvents, Repeats, Requests, Strangers, Told, Trail,
+    Unanswered, WhySafe,
 };
 use crate::link::{LinkId, LinkState, Rows};
 use aircraft::Autopilot;
@@ -98,6 +98,8 @@ pub struct Vehicle {
     pub outlook: Outlook,
     /// Where it has been.
     pub trail: Trail,
+    /// The circle in which it is held.
+    pub circling: Circling,
     /// Commands on their way, and their answers.
     pub requests: Requests,
     /// What happened.

@@ -26,6 +26,7 @@ mod following;
 mod gestures;
 mod guarding;
 mod handles;
+mod holding;
 mod inspecting;
 mod interchange;
 mod large;

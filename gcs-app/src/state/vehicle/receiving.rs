@@ -5,7 +5,7 @@ use crate::link::{LinkEvent, LinkId, LinkState, Loss, Numbered, PlainEvent, Plai
 use crate::state::{Aged, Level, Names, RecentEvents, START, Strangers, log, losses};
 use flight_exec::{Event, Phase, Status};
 use std::sync::Arc;
-use usal::contract::{GatewayEvent, GatewayStatus, Recording, Stamped};
+use usal::contract::{GatewayEvent, GatewayState, GatewayStatus, Recording, Stamped};
 
 /// More announcements than these are read in the log.
 const MOST_UNREAD: usize = 3;
@@ -63,6 +63,7 @@ impl Vehicle {
         match telemetry {
             Telemetry::Position(p) => {
                 self.trail.add(p.value.position, p.time_s);
+                self.circling.fly(p.value.position, self.is_held() && !p.value.on_ground);
                 remember!(self.position, p, now_s);
                 self.note_end();
             }
@@ -154,6 +155,12 @@ impl Vehicle {
         if let Some(text) = self.strangers.text().filter(|_| is_news) {
             self.log.add(now_s, Level::Caution, "link", &text);
         }
+    }
+
+    /// Its gateway has it circle where it is.
+    fn is_held(&self) -> bool {
+        let state = self.gateway.as_ref().map(|gateway| gateway.value.state);
+        matches!(state, Some(GatewayState::Hold | GatewayState::SafeHold))
     }
 
     fn note_end(&mut self) {
