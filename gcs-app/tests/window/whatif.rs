@@ -1,5 +1,6 @@
 //! What if: other worlds for the preview, and alarms at its cursor.
 
+use super::painted::texts;
 use super::{SQUARE, Window};
 use aircraft::{Profile, Wind};
 use egui::accesskit::Role;
@@ -62,6 +63,27 @@ fn wind_changes_the_preview_and_not_the_document() {
     window.until("calm again", is_current);
     assert_eq!(duration_s(&window), calm_s);
     assert!(!window.shows("What if: wind"));
+}
+
+/// What came of an alarm stood below the fold: whoever asked saw nothing.
+#[test]
+fn in_a_small_window_what_comes_of_an_alarm_is_in_sight() {
+    let mut window = Window::open_with(SQUARE, vec2(960.0, 600.0), None);
+    window.until_analysed();
+    window.harness.get_all_by_label("What if").next().unwrap().click();
+    window.steps(3);
+    window.click("Engine failure");
+    window.until("the way out", |app| app.analysis().diversion().is_some());
+    let answer = "Engine failure: R05 is";
+    let lies = window.harness.query_all_by_label_contains(answer).next().unwrap().rect();
+    let panel =
+        window.harness.query_all_by_label_contains("Coverage of the whole path").next().unwrap().rect();
+    assert!(lies.bottom() < panel.top(), "before what is asked next: {lies} {panel}");
+    let shapes = window.harness.output().shapes.iter();
+    let painted =
+        shapes.filter(|clipped| texts(&clipped.shape).iter().any(|text| text.galley.text().contains(answer)));
+    let seen = painted.map(|clipped| clipped.clip_rect).next().unwrap();
+    assert!(seen.contains_rect(lies.shrink(1.0)), "{lies} in {seen}");
 }
 
 /// 10 m/s from behind changed the times, and nothing was said; Problems spoke of calm air as if it were this world's.

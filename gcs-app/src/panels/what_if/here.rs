@@ -31,6 +31,11 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.spacing_mut().item_spacing.x = 2.0;
         CAUSES.into_iter().for_each(|cause| alarm(ui, cause, scene, queue));
     });
+    // before all that may be asked, too: in a low window that is below the fold
+    ui.scope(|ui| {
+        ui.set_min_height(OUTCOME_HEIGHT);
+        outcome(ui, scene);
+    });
     let mut covered = scene.view.coverage;
     let hover = "Colours the path by the worst of these alarms at each of its points";
     if ui.checkbox(&mut covered, "Coverage of the whole path").on_hover_text(hover).changed() {
@@ -42,10 +47,6 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         }
         None => _ = ui.allocate_space(vec2(1.0, BAR_HEIGHT)),
     }
-    ui.scope(|ui| {
-        ui.set_min_height(OUTCOME_HEIGHT);
-        outcome(ui, scene);
-    });
 }
 
 /// Of the coverage's progress, screen points.
