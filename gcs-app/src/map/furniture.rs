@@ -49,7 +49,8 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, nam
     let map = view.rect.with_max_y(view.rect.bottom() - lift);
     let scale = scale(painter, view, map, scene.units(), p);
     let (toolbar, buttons) = (toolbar_at(view.rect, tools, scene), buttons_at(view.rect, scene));
-    for taken in [named, scale, toolbar, buttons] {
+    // also while the pointer is elsewhere: no name moves for it
+    for taken in [named, scale, toolbar, buttons, pointer_at(view.rect)] {
         names.keep_clear(taken);
     }
     let plate = legend_at(view.rect, lift, tools, scene);
@@ -106,15 +107,19 @@ fn north(painter: &Painter, at: Pos2, p: &Palette) {
     text::haloed(painter, at + vec2(0.0, -17.0), Align2::CENTER_BOTTOM, "N", 10.0, p.text, p);
 }
 
+/// Where what is below the pointer is told.
+fn pointer_at(map: Rect) -> Rect {
+    let corner = map.right_bottom() - vec2(6.0, 18.0);
+    Rect::from_min_max(corner - vec2(270.0, 16.0), corner)
+}
+
 /// Where the pointer is, and how high the ground is there.
 pub fn pointer(ui: &mut Ui, view: &View, at: Option<Pos2>, scene: &Scene<'_>) {
     let Some(at) = at.map(|at| view.geo(at)).filter(|at| at.is_valid()) else { return };
     let ground = scene.layers.ground().elevation_m(at).map(|m| scene.units().altitude().show(m));
     let ground = ground.map_or_else(|| "elevation unknown".into(), |m| format!("ground {m}"));
     let text = format!("{} · {ground}", units::position(at));
-    let size = vec2(270.0, 16.0);
-    let corner = view.rect.right_bottom() - vec2(6.0, 18.0);
-    let rect = Rect::from_min_max(corner - size, corner);
+    let rect = pointer_at(view.rect);
     let mut line = ui.new_child(
         egui::UiBuilder::new().max_rect(rect).layout(egui::Layout::right_to_left(egui::Align::Center)),
     );

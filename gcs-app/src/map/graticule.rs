@@ -1,7 +1,7 @@
 //! What lies over the map on request: lines of latitude and longitude, and rings of equal distance.
 
+use super::names::{Ground, Name, Rank, Spot};
 use super::sheet::Sheet;
-use super::text;
 use crate::theme::Palette;
 use crate::units::{Unit, Units};
 use egui::{Align2, Color32, Pos2, Shape, Stroke, pos2};
@@ -29,15 +29,22 @@ pub fn draw(sheet: &Sheet<'_>) {
         let x = view.place(LatLon::new(0.0, lon_s / 3600.0)).x;
         painter.vline(x, view.rect.y_range(), stroke);
         let name = arc(lon_s, step_s, ['E', 'W']);
-        text::haloed(painter, pos2(x, view.rect.top() + 2.0), Align2::CENTER_TOP, &name, 10.0, p.weak, p);
+        // the next one where something else lies on the edge
+        let from_top = |y: f32| (pos2(x, view.rect.top() + y), Align2::CENTER_TOP);
+        ask(sheet, [2.0, 18.0, 34.0, 50.0].map(from_top), name, p.weak);
     }
     for lat_s in lines(from.lat_deg, to.lat_deg, step_s) {
         let y = view.place(LatLon::new(lat_s / 3600.0, 0.0)).y;
         painter.hline(view.rect.x_range(), y, stroke);
         let name = arc(lat_s, step_s, ['N', 'S']);
-        let at = pos2(view.rect.left() + TOOLS, y);
-        text::haloed(painter, at, Align2::LEFT_CENTER, &name, 10.0, p.weak, p);
+        let from_left = |x: f32| (pos2(view.rect.left() + TOOLS + x, y), Align2::LEFT_CENTER);
+        ask(sheet, [0.0, 44.0, 96.0, 140.0].map(from_left), name, p.weak);
     }
+}
+
+/// Asks for a number of the grid.
+fn ask(sheet: &Sheet<'_>, spots: [Spot; 4], text: String, colour: Color32) {
+    sheet.ask(Name { rank: Rank::Grid, spots, text, size: 10.0, colour, ground: Ground::Halo });
 }
 
 fn faint(p: &Palette) -> Color32 {
@@ -92,7 +99,8 @@ pub fn draw_rings(sheet: &Sheet<'_>) {
         let line: Vec<Pos2> = (0..72).map(|i| at(f64::from(i) * 5.0)).collect();
         painter.add(Shape::closed_line(line, Stroke::new(1.0, p.text.gamma_multiply(0.5))));
         let name = format!("{} {}", step * f64::from(ring), unit.symbol);
-        text::haloed(painter, at(0.0), Align2::CENTER_CENTER, &name, 10.0, p.text, p);
+        let towards = |bearing: f64| (at(bearing), Align2::CENTER_CENTER);
+        ask(sheet, [0.0, 90.0, 180.0, 270.0].map(towards), name, p.text);
     }
 }
 

@@ -33,6 +33,8 @@ pub enum Rank {
     Way,
     /// A zone.
     Zone,
+    /// A line of the graticule, a ring.
+    Grid,
 }
 
 impl Rank {
@@ -217,6 +219,9 @@ fn placed(
         }
         let rects = rects(measure(index));
         let found = rects.into_iter().find(is_free);
+        let beside = || rects.iter().flat_map(|rect| slid(*rect, clear)).filter(is_free);
+        let nearest = || beside().min_by(|a, b| far_from(&rects, a).total_cmp(&far_from(&rects, b)));
+        let found = found.or_else(|| nearest().filter(|_| must_be_seen));
         let found = found.or_else(|| rects.into_iter().find(is_apart).filter(|_| must_be_seen));
         // a plate can be read over what else is there, too
         let is_never_left_out = name.rank <= Rank::Aircraft && name.ground == Ground::Plate;
@@ -226,6 +231,29 @@ fn placed(
     let places = wanted.iter().enumerate().map(&mut place).collect();
     clear.iter().for_each(|rect| names.take((*rect).into()));
     (places, names)
+}
+
+/// A name that is moved farther is taken for another thing's, screen points.
+const FARTHEST: f32 = 120.0;
+
+/// Where a name comes clear of what it covers on the map's edge: beside each of that, and not far away.
+fn slid(rect: Rect, clear: &[Rect]) -> impl Iterator<Item = Rect> + use<'_> {
+    let covered = clear.iter().filter(move |taken| taken.intersects(rect));
+    let moves = covered.flat_map(move |taken| {
+        let taken = taken.expand(GAP);
+        [
+            vec2(taken.right() - rect.left(), 0.0),
+            vec2(taken.left() - rect.right(), 0.0),
+            vec2(0.0, taken.top() - rect.bottom()),
+            vec2(0.0, taken.bottom() - rect.top()),
+        ]
+    });
+    moves.filter(|by| by.length() <= FARTHEST).map(move |by| rect.translate(by))
+}
+
+/// How far a place is from the best spot, screen points.
+fn far_from(spots: &[Rect], place: &Rect) -> f32 {
+    spots.first().map_or(0.0, |best| best.center().distance(place.center()))
 }
 
 #[cfg(test)]
@@ -297,6 +325,25 @@ mod tests {
         let all = Rect::from_center_size(at, vec2(300.0, 300.0));
         assert_eq!(places(vec![name(Rank::Place, at, 60.0)], &[all]), [None]);
         assert!(places(vec![name(Rank::Selected, at, 60.0)], &[all])[0].is_some());
+    }
+
+    /// What is selected may be much: its names lay over the legend.
+    #[test]
+    fn a_name_that_must_be_seen_is_moved_beside_what_lies_on_the_edge() {
+        let legend = Rect::from_min_size(pos2(10.0, 450.0), vec2(124.0, 116.0));
+        for rank in [Rank::Fault, Rank::Aircraft, Rank::Selected] {
+            for at in [pos2(70.0, 500.0), pos2(120.0, 460.0), pos2(20.0, 560.0)] {
+                let found = places(vec![name(rank, at, 60.0)], &[legend])[0].unwrap();
+                assert!(
+                    !found.intersects(legend) && found.center().distance(at) < 150.0,
+                    "{rank:?} {at}: {found}"
+                );
+            }
+        }
+        let found = places(vec![name(Rank::Leg, pos2(70.0, 500.0), 60.0)], &[legend]);
+        assert_eq!(found, [None], "what can be asked for is left out");
+        let found = places(vec![plate(pos2(70.0, 500.0))], &[legend])[0].unwrap();
+        assert!(!found.intersects(legend), "{found}");
     }
 
     #[test]
