@@ -34,6 +34,7 @@ pub mod panels;
 pub mod recent;
 pub mod recovery;
 pub mod report;
+mod runways;
 pub mod shelf;
 pub mod state;
 pub mod story;

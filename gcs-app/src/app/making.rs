@@ -3,11 +3,13 @@
 use super::{App, even};
 use crate::airfields::Ground;
 use crate::command::Selection;
+use crate::runways;
 use aircraft::Profile;
 use flight_plan::create::WayHome;
 use flight_plan::template::Outline;
 use flight_plan::{Altitude, AltitudeReference, Edit, FlightPlan, Id, Place, Thing, Value, create};
 use geometry::LatLon;
+use geometry::geodesy::normalise_180;
 
 impl App {
     /// A step that can be undone, like any other.
@@ -34,7 +36,7 @@ impl App {
         self.view.notice = Some(format!("The ground is {}", ground.words(self.view.units)));
     }
 
-    /// What is against a runway there, if something is.
+    /// What is against a runway there, if something is. Where one lies, that is selected, and gets the direction that it lacks.
     pub(super) fn add_runway(
         &mut self,
         threshold: LatLon,
@@ -43,6 +45,11 @@ impl App {
     ) -> Result<Option<String>, String> {
         let ways = [(threshold, end), (end, threshold)];
         let mut plan = self.document.plan().as_ref().clone();
+        if let Some(there) = create::lying_there(&plan, threshold, end) {
+            let against = normalise_180(there.heading_deg - threshold.bearing_deg(end)).abs() > 90.0;
+            let there = there.id.clone();
+            return self.lies_already(&there, both || against).map(Some);
+        }
         let mut edits = Vec::new();
         let mut made = None;
         for (threshold, end) in ways.into_iter().take(if both { 2 } else { 1 }) {
@@ -59,6 +66,19 @@ impl App {
         self.document.edit(&Edit::All(edits))?;
         self.view.select(made.map(Selection::Runway));
         Ok(even::objection(self.layers.ground().as_ref(), threshold, end, self.view.units))
+    }
+
+    fn lies_already(&mut self, there: &Id, both: bool) -> Result<String, String> {
+        let ground = self.layers.ground();
+        let lacks = runways::add_other_direction(self.document.plan(), there, ground.as_ref());
+        let Some((other, edit)) = lacks.ok().filter(|_| both) else {
+            self.view.select(Some(Selection::Runway(there.clone())));
+            return Ok(format!("Runway {there} lies there already: it is selected"));
+        };
+        self.document.edit(&edit)?;
+        let text = format!("Runway {there} lies there already: {other}, its other direction, was added");
+        self.view.select(Some(Selection::Runway(other)));
+        Ok(text)
     }
 
     /// What should be known of the plan that was made: that nothing names it, or that it climbs, if that is so.

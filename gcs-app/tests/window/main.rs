@@ -52,6 +52,7 @@ mod reading;
 mod recovering;
 mod recreating;
 mod replacing;
+mod runways;
 mod sheets;
 mod small;
 mod starting;

@@ -1,22 +1,21 @@
 //! The other direction of a runway: its threshold has an elevation of its own, for runways slope.
 
-use crate::command::Queue;
+use crate::command::{Queue, Selection, ViewCommand};
 use crate::panels::Scene;
+use crate::runways::{self, ADD_OTHER};
 use crate::theme;
 use egui::{RichText, Ui};
 use flight_plan::describe::{Change, Draft, Property, Row, Subject};
-use flight_plan::{FlightPlan, Id, Runway};
+use flight_plan::{Edit, FlightPlan, Id, Thing};
 
-/// So near to the end of one the other one's threshold lies, metres.
-const NEAR_M: f64 = 100.0;
-
-/// Says that the other direction begins at another elevation, and offers this one for it.
+/// Offers the other direction where there is none; else says that it begins at another elevation, and offers this one for it.
 pub fn other_direction(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) {
     let plan = scene.document.plan();
     let Some(runway) = plan.runway(id) else { return };
-    let Some(other) = opposite(plan, runway).filter(|o| o.elevation_amsl_m != runway.elevation_amsl_m) else {
+    let Some(other) = plan.opposite(runway) else { return add(ui, scene, id, queue) };
+    if other.elevation_amsl_m == runway.elevation_amsl_m {
         return;
-    };
+    }
     let unit = scene.units().altitude();
     let text = format!(
         "{}, the other direction, begins at {}: its threshold is at this one's far end.",
@@ -32,15 +31,17 @@ pub fn other_direction(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queu
     }
 }
 
-fn opposite<'a>(plan: &'a FlightPlan, runway: &Runway) -> Option<&'a Runway> {
-    let end = runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0));
-    let turned = |other: &Runway| (other.heading_deg - runway.heading_deg).to_radians().cos() < -0.9;
-    plan.runways
-        .iter()
-        .find(|other| other.id != runway.id && turned(other) && other.threshold.distance_m(end) < NEAR_M)
+fn add(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) {
+    let Ok(other) = runways::other_direction(scene.document.plan(), id, scene.ground.0) else { return };
+    let begins = format!("{}, from {}", other.id, scene.units().altitude().show(other.elevation_amsl_m));
+    if ui.button(ADD_OTHER).on_hover_text(begins).clicked() {
+        let made = Selection::Runway(other.id.clone());
+        queue.edit(Edit::Add(Box::new(Thing::Runway(other))));
+        queue.view(ViewCommand::Select(Some(made)));
+    }
 }
 
-fn level(plan: &FlightPlan, id: &Id, elevation_m: f64) -> Option<flight_plan::Edit> {
+fn level(plan: &FlightPlan, id: &Id, elevation_m: f64) -> Option<Edit> {
     let draft = Draft::of(plan, &Subject::Runway(id.clone()))?;
     let is_it = |row: &Row| match row {
         Row::Property(property) if property.attribute == "elevation" => Some(*property),

@@ -4,6 +4,7 @@ use super::{Renamed, alternates};
 use crate::command::{BranchId, Command, DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::footprints;
 use crate::panels::{Scene, binding, leading};
+use crate::runways;
 use aircraft::Profile;
 use egui::{Button, Ui};
 use flight_plan::create::{self, LegChoice, Shape};
@@ -201,6 +202,12 @@ pub fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
             let made = create::variable_of_fix(plan, fix);
             let bind = Entry::making("Make its place a variable", made, Selection::Variable, GONE);
             std::iter::once(bind).chain(of_thing(plan, fix)).collect()
+        }
+        Selection::Runway(runway) => {
+            let made = runways::add_other_direction(plan, runway, scene.ground.0);
+            let why_not = made.as_ref().err().copied().unwrap_or(GONE);
+            let other = Entry::making(runways::ADD_OTHER, made.ok(), Selection::Runway, why_not);
+            std::iter::once(other).chain(of_thing(plan, runway)).collect()
         }
         Selection::Procedure(procedure) => {
             of_thing(plan, procedure).into_iter().chain(own_places(plan, procedure)).collect()

@@ -13,6 +13,7 @@ mod kind;
 mod leave;
 mod leg;
 mod rearrange;
+mod runway;
 mod thing;
 mod trial;
 mod ways;
@@ -31,9 +32,9 @@ pub use leg::{Drawn, call, convert, leg};
 pub use rearrange::{
     StageSpot, into_branch, relocate, relocate_stage, relocate_thing, shift_legs, shift_thing,
 };
+pub use runway::{lying_there, other_direction, runway};
 pub use thing::{
-    add_stage, emergency_plan, fix, move_fix_into_legs, own_places, remove, runway, shift_stage, variable,
-    zone,
+    add_stage, emergency_plan, fix, move_fix_into_legs, own_places, remove, shift_stage, variable, zone,
 };
 pub(crate) use thing::{every_leg, legs_in};
 pub use trial::{RUN_UP_M, is_tried, trial};

@@ -3,49 +3,17 @@
 use crate::template::{self, WayHome};
 use crate::uses::SlotMut;
 use crate::{
-    Edit, EmergencyChoice, Fix, FlightPlan, Id, Leg, Place, Runway, Stage, StageKind, Thing, Turnaround,
-    Value, Variable, VariableValue, Zone, ZoneKind, ZoneShape,
+    Edit, EmergencyChoice, Fix, FlightPlan, Id, Leg, Place, Stage, StageKind, Thing, Turnaround, Value,
+    Variable, VariableValue, Zone, ZoneKind, ZoneShape,
 };
 use aircraft::Profile;
 use geometry::LatLon;
-use geometry::geodesy::normalise_360;
 use std::sync::Arc;
 use terrain::Terrain;
 
 /// A fix.
 pub fn fix(plan: &FlightPlan, position: LatLon) -> Fix {
     Fix { id: plan.fresh_id("FIX"), position, name: String::new(), description: String::new() }
-}
-
-/// A runway from its landing threshold to its other end, called by its direction.
-pub fn runway(plan: &FlightPlan, threshold: LatLon, end: LatLon, elevation_amsl_m: f64) -> Runway {
-    let way = threshold.inverse(end);
-    let heading_deg = normalise_360(way.bearing_start_deg.round());
-    let last = plan.runways.iter().map(|runway| runway.priority).max().unwrap_or(0);
-    Runway {
-        id: runway_id(plan, threshold, heading_deg),
-        threshold,
-        elevation_amsl_m: elevation_amsl_m.round(),
-        heading_deg,
-        length_m: way.distance_m.round(),
-        priority: last.saturating_add(1),
-        approach_entry: None,
-    }
-}
-
-/// Runways in one direction lie so far apart at most to be left and right of one another, metres.
-const PARALLEL_M: f64 = 2000.0;
-
-/// As runways are called: `R` and a tenth of the heading, 01 to 36; where that is taken, with a letter beside another one, else with a
-/// number.
-fn runway_id(plan: &FlightPlan, threshold: LatLon, heading_deg: f64) -> Id {
-    let tenth = (heading_deg / 10.0).round().rem_euclid(36.0);
-    let name = format!("R{:02}", if tenth < 1.0 { 36.0 } else { tenth });
-    let is_beside = |other: &Runway| other.threshold.distance_m(threshold) < PARALLEL_M;
-    let letters = if plan.runways.iter().any(is_beside) { &["", "L", "R", "C"][..] } else { &[""] };
-    let mut names = letters.iter().map(|letter| format!("{name}{letter}"));
-    let free = names.find(|name| plan.unique_id(name).as_str() == name);
-    free.map_or_else(|| plan.fresh_id(&format!("{name}-")), |name| Id::new(&name))
 }
 
 /// A zone at every altitude, at all times.

@@ -1,0 +1,79 @@
+//! Runways that are there already, and their other directions.
+
+use super::{SQUARE, Window};
+use egui::{Key, Pos2, vec2};
+use egui_kittest::kittest::Queryable;
+
+const OTHER: &str = "Add its other direction";
+
+fn opened() -> Window {
+    // all of the tree is in sight
+    let mut window = Window::open_with(SQUARE, vec2(1280.0, 1000.0), None);
+    window.until_analysed();
+    window
+}
+
+fn ids(window: &Window) -> Vec<String> {
+    window.plan().runways.iter().map(|runway| runway.id.to_string()).collect()
+}
+
+/// Where the runway begins on the screen, and where it ends.
+fn ends(window: &Window) -> [Pos2; 2] {
+    let along = vec2(52_f32.to_radians().sin(), -52_f32.to_radians().cos());
+    let threshold = window.harness.get_by_label("Runway R05").rect().center();
+    [threshold, threshold + along * 40.0]
+}
+
+/// It became R05L, over the runway that is there.
+#[test]
+fn a_runway_that_is_drawn_over_one_is_that_one_with_the_direction_that_it_lacks() {
+    let mut window = opened();
+    let [threshold, end] = ends(&window);
+    let draw = |window: &mut Window, from, to| {
+        window.press(Key::R);
+        window.click_at(from);
+        window.click_at(to);
+        window.press(Key::Escape);
+    };
+    draw(&mut window, threshold, end);
+    assert_eq!(ids(&window), ["R05", "R23"]);
+    assert!(window.shows("Runway R05 lies there already: R23, its other direction, was added"));
+    assert_eq!(window.selected(), "R23");
+    let (one, other) = (window.plan().runways[0].clone(), window.plan().runways[1].clone());
+    assert!(one.from_other_end().threshold.distance_m(other.threshold) < 1.0, "however it was drawn");
+    // no double click
+    window.steps(40);
+    draw(&mut window, end + vec2(3.0, 2.0), threshold + vec2(3.0, 2.0));
+    assert_eq!(ids(&window), ["R05", "R23"], "nothing is lacking");
+    assert!(window.shows("Runway R23 lies there already: it is selected") && window.selected() == "R23");
+    window.click("Undo");
+    assert_eq!(ids(&window), ["R05"], "one step");
+}
+
+#[test]
+fn the_other_direction_of_a_runway_is_added_in_inspector_menu_and_palette() {
+    let ground = gcs_app::assets::demo_terrain();
+    for how in 0..3 {
+        let mut window = opened();
+        window.select_row(("RWY R05", 0));
+        window.steps(3);
+        match how {
+            0 => window.click(OTHER),
+            1 => window.row_menu(("RWY R05", 0), OTHER),
+            _ => {
+                window.ask_for("add its other direction");
+                window.press(Key::Enter);
+            }
+        }
+        assert_eq!(
+            (ids(&window), window.selected().as_str()),
+            (vec!["R05".to_owned(), "R23".to_owned()], "R23")
+        );
+        let other = window.plan().runways[1].clone();
+        let is_m = ground.elevation_m(other.threshold).unwrap();
+        assert!((other.elevation_amsl_m - is_m).abs() < 2.0, "{} {is_m}", other.elevation_amsl_m);
+        assert!(!window.shows(OTHER), "it has one now");
+        window.ask_for("add its other direction");
+        assert!(window.shows("Its other direction is in the plan already"));
+    }
+}
