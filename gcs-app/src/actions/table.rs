@@ -8,6 +8,7 @@ use crate::guide::Answer;
 use crate::help::topic_of;
 use crate::map::furniture::Edge;
 use crate::panels::tree::Renamed;
+use crate::panels::tree::menu::NOT_ONE_LIST;
 use crate::panels::{Scene, bar, flight as panel, start};
 use crate::theme::Scale;
 use crate::units::Units;
@@ -310,11 +311,20 @@ fn rename(scene: &Scene<'_>) -> Asked {
     if let Some(branch) = scene.selected_branch() {
         return view(ViewCommand::Rename(Renamed::Branch(branch)));
     }
+    alone(scene)?;
     view(ViewCommand::Rename(Renamed::Part(scene.view.selection.clone().ok_or(NOTHING)?)))
 }
 
+/// Of a set only the first one would be meant, and nobody sees which that is.
+fn alone(scene: &Scene<'_>) -> Result<(), &'static str> {
+    if scene.selected_set().len() > 1 { Err(SEVERAL) } else { Ok(()) }
+}
+
+const SEVERAL: &str = "Several are selected: select one alone";
+
 /// A leg of the flight, alone.
 fn one_leg<'a>(scene: &'a Scene<'_>) -> Result<&'a Id, &'static str> {
+    alone(scene)?;
     match &scene.view.selection {
         Some(Selection::Leg(leg)) if scene.document.plan().leg(leg).is_some() => Ok(leg),
         _ => Err("Select a leg first"),
@@ -341,12 +351,14 @@ fn shift(scene: &Scene<'_>, offset: isize) -> Asked {
         let moved = create::shift_branch(plan, &fork, &branch, offset).ok_or(NO_NEIGHBOUR)?;
         return document(DocumentCommand::Edit(moved));
     }
+    let (set, legs) = (scene.selected_set(), scene.selected_legs());
+    if set.len() > 1 && (set.len() > legs.len() || !create::are_neighbours(plan, &legs)) {
+        return Err(NOT_ONE_LIST);
+    }
     let moved = match &scene.view.selection {
         Some(Selection::Stage(stage)) => create::shift_stage(plan, stage, offset),
-        Some(Selection::Leg(leg)) => match scene.selected_legs() {
-            legs if legs.len() > 1 => create::shift_legs(plan, &legs, offset),
-            _ => create::shift(plan, leg, offset),
-        },
+        Some(Selection::Leg(_)) if legs.len() > 1 => create::shift_legs(plan, &legs, offset),
+        Some(Selection::Leg(leg)) => create::shift(plan, leg, offset),
         Some(other) => create::shift_thing(plan, other.id(), offset),
         None => return Err(NOTHING),
     };

@@ -130,6 +130,45 @@ fn what_cannot_be_done_with_legs_together_says_why() {
     assert!(window.paints("They do not follow each other"));
 }
 
+/// A leg of the main plan and one of an emergency plan: some commands took only the first of them, without a word.
+#[test]
+fn what_cannot_be_done_with_legs_of_several_plans_says_why_and_all_stay_selected() {
+    let mut window = opened();
+    let before = window.plan();
+    window.click("TF side2");
+    window.select_row_with(("DF r1", 0), Modifiers::COMMAND);
+    window.steps(3);
+    assert!(window.shows("side2, r1 of return"));
+    let several = "Several are selected: select one alone";
+    let apart = "They are in several stages or loops: select legs of one";
+    for (letters, why) in [
+        ("rename what is selected", several),
+        ("draw a new way from the selected leg", several),
+        ("move what is selected up", apart),
+        ("put them into a loop", apart),
+        ("make a procedure of them", apart),
+    ] {
+        window.ask_for(letters);
+        assert!(window.paints(why), "{letters}");
+        window.press(Key::Escape);
+        assert!(window.shows("2 legs"), "{letters}");
+    }
+    window.press(Key::B);
+    assert!(window.app().view().palette.is_none(), "nor is one of them bound to a variable");
+    assert_eq!(window.plan(), before);
+    window.select_row_with(("FIX C", 0), Modifiers::COMMAND);
+    window.steps(3);
+    window.ask_for("move what is selected up");
+    assert!(window.paints(apart), "a fix with them");
+    window.press(Key::Escape);
+    window.press(Key::Delete);
+    let plan = window.plan();
+    assert!(plan.leg(&"side2".into()).is_none() && plan.leg(&"r1".into()).is_none());
+    assert!(plan.fix(&"C".into()).is_none(), "what can be done is done with all");
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
+}
+
 #[test]
 fn what_leaves_out_an_altitude_of_several_legs_keeps_away_from_the_edge_of_the_window() {
     let mut window = opened();

@@ -26,7 +26,8 @@ pub struct Entry {
 const NO_NEIGHBOUR: &str = "It has no neighbour there";
 const GONE: &str = "It is no longer in the plan";
 const IS_FORK: &str = "It is a fork: draw a new way from it (W)";
-const NOT_ONE_LIST: &str = "They are in several stages or loops: select legs of one";
+/// Why several can't be moved, or put into something, together.
+pub const NOT_ONE_LIST: &str = "They are in several stages or loops: select legs of one";
 const NOT_IN_A_ROW: &str = "They do not follow each other in one list: select legs that do";
 
 /// What lets the fixes of a procedure move with it.
@@ -186,9 +187,13 @@ pub fn other_kinds(scene: &Scene<'_>, leg: &Leg) -> Vec<(LegChoice, Option<Edit>
 /// What can be done to it by one edit.
 pub fn entries(scene: &Scene<'_>, of: &Selection) -> Vec<Entry> {
     let plan = scene.document.plan();
-    let together = scene.selected_legs();
+    let (together, set) = (scene.selected_legs(), scene.selected_set());
+    let is_of_set = set.len() > 1 && scene.is_selected(of);
     match of {
-        Selection::Leg(_) if together.len() > 1 && scene.is_selected(of) => of_legs(plan, &together),
+        _ if is_of_set && set.len() > together.len() => {
+            vec![Entry::new("Delete them", "Del", create::delete_set(plan, &set))]
+        }
+        Selection::Leg(_) if is_of_set => of_legs(plan, &together),
         Selection::Leg(leg) => {
             let more = pictures(scene, leg).into_iter().chain(own_places(plan, leg));
             of_leg(plan, leg).into_iter().chain(more).collect()

@@ -30,7 +30,7 @@ pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
 pub use leg::{Drawn, call, convert, leg};
 pub use rearrange::{
-    StageSpot, into_branch, relocate, relocate_stage, relocate_thing, shift_legs, shift_thing,
+    StageSpot, are_neighbours, into_branch, relocate, relocate_stage, relocate_thing, shift_legs, shift_thing,
 };
 pub use runway::{lying_there, other_direction, runway};
 pub use thing::{

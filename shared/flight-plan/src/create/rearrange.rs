@@ -167,6 +167,13 @@ pub fn shift_legs(plan: &FlightPlan, legs: &[Id], by: isize) -> Option<Edit> {
     relocate(plan, legs, &if by < 0 { Spot::Before(neighbour) } else { Spot::After(neighbour) }).ok()?
 }
 
+/// Legs that can be moved among their neighbours together: all of them are in one stage, loop or procedure.
+pub fn are_neighbours(plan: &FlightPlan, legs: &[Id]) -> bool {
+    let moved = in_order(plan, legs);
+    let list = moved.first().and_then(|first| list_of(plan, &first.id));
+    list.is_some_and(|(list, _)| moved.iter().all(|leg| list.iter().any(|other| other.id == leg.id)))
+}
+
 /// Takes a stage elsewhere. `None`: it is there already.
 pub fn relocate_stage(plan: &FlightPlan, stage: &Id, at: &StageSpot) -> Option<Edit> {
     let mut lists = std::iter::once(&plan.stages).chain(plan.emergency_plans.iter().map(|e| &e.stages));
