@@ -223,9 +223,11 @@ impl App {
         &self.analysis
     }
 
-    /// Something that was asked for is being done in the background, and a frame will bring it soon.
+    /// Something that was asked for is being done in the background, and a frame will bring it soon. A panel that is not drawn takes
+    /// nothing.
     pub fn is_busy(&self) -> bool {
-        self.map.is_busy() || !self.pushes.is_empty() || self.panels.iter().any(|panel| panel.is_busy())
+        let drawn = || self.panels.iter().filter(|panel| self.dock.draws(panel.id()));
+        self.map.is_busy() || !self.pushes.is_empty() || drawn().any(|panel| panel.is_busy())
     }
 
     /// The path of the plan aboard the vehicle that is shown, if it was asked for and is known.

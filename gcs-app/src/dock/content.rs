@@ -29,6 +29,7 @@ pub struct Content<'a> {
     /// What the panels of the plan take.
     plan_rect: Option<Rect>,
     stops: Vec<Stop>,
+    drawn: BTreeSet<PanelId>,
 }
 
 impl<'a> Content<'a> {
@@ -50,6 +51,7 @@ impl<'a> Content<'a> {
             map_rect: None,
             plan_rect: None,
             stops: Vec::new(),
+            drawn: BTreeSet::new(),
         }
     }
 
@@ -67,6 +69,10 @@ impl<'a> Content<'a> {
 
     pub(super) fn take_stops(&mut self) -> Vec<Stop> {
         std::mem::take(&mut self.stops)
+    }
+
+    pub(super) fn take_drawn(&mut self) -> BTreeSet<PanelId> {
+        std::mem::take(&mut self.drawn)
     }
 
     pub(super) fn map_rect(&self) -> Option<Rect> {
@@ -166,6 +172,7 @@ impl Behavior<PanelId> for Content<'_> {
             None => ("Map", self.map.keyboard()),
         };
         self.stops.push(Stop::new(ui, name, keyboard));
+        self.drawn.insert(id);
         if id == MAP {
             self.map_rect = Some(ui.max_rect());
             self.map.show(ui, self.scene, self.queue);

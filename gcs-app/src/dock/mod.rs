@@ -40,6 +40,8 @@ pub struct Dock {
     grown: Option<f32>,
     /// The map and the panels that were drawn last.
     stops: Vec<Stop>,
+    /// Those that were drawn last: neither hidden nor behind another one.
+    drawn: BTreeSet<PanelId>,
     /// What the panels of the plan took beside the map when they were drawn last, screen points; `None`: they stand elsewhere.
     beside_map: Option<f32>,
 }
@@ -58,6 +60,7 @@ impl Dock {
             wanted: Default::default(),
             grown: None,
             stops: Vec::new(),
+            drawn: BTreeSet::new(),
             beside_map: None,
         };
         // a test shows that it is sound
@@ -72,7 +75,8 @@ impl Dock {
         let tree = stored.tree(&known)?;
         // what is no factor of ours is nobody's
         let grown = stored.grown.filter(|grown| (1.0..=grow::MOST).contains(grown));
-        Some(Self { tree, hidden, wanted: Default::default(), grown, stops: Vec::new(), beside_map: None })
+        let (wanted, stops, drawn) = Default::default();
+        Some(Self { tree, hidden, wanted, grown, stops, drawn, beside_map: None })
     }
 
     /// Stores the layout for the next run.
@@ -90,6 +94,11 @@ impl Dock {
     /// Is this panel shown, as far as the operator is concerned?
     pub fn shows(&self, panel: PanelId) -> bool {
         !self.hidden.contains(panel)
+    }
+
+    /// Was the panel drawn in the last frame?
+    pub fn draws(&self, panel: PanelId) -> bool {
+        self.drawn.contains(panel)
     }
 
     /// Shows a panel, in front of others, or hides it.
@@ -130,6 +139,7 @@ impl Dock {
             self.show_panel(panel, false);
         }
         self.stops = content.take_stops();
+        self.drawn = content.take_drawn();
         if !is_read {
             let beside =
                 content.map_rect().zip(content.plan_rect()).filter(|(map, plan)| plan.right() <= map.left());
