@@ -449,6 +449,35 @@ fn what_the_gateway_would_refuse_is_told_with_what_to_do() {
     assert!(told.message.starts_with("divide this leg"), "{told}");
 }
 
+/// A rise where the final approach of the square's runway begins.
+struct BeforeRunway;
+impl Terrain for BeforeRunway {
+    fn elevation_m(&self, at: LatLon) -> Option<f64> {
+        let begins = LatLon::new(36.3190, -84.1730).destination(232.0, 700.0);
+        Some(if at.distance_m(begins) < 150.0 { 395.0 } else { 349.0 })
+    }
+}
+
+/// It was to be raised, and nobody can.
+#[test]
+fn a_landing_too_near_to_the_ground_is_not_to_be_raised() {
+    let document = std::fs::read(assets().join("plans/square.xml")).unwrap();
+    let ground: Arc<dyn Terrain> = Arc::new(BeforeRunway);
+    let program = Arc::new(compile_document(&document, &Profile::default(), ground.as_ref()).unwrap());
+    let found = review(&program, &Profile::default(), &ground, Conditions::default());
+    for landing in ["land", "r-land"] {
+        let is_it = |p: &&Problem| p.code == "gateway-refuses" && p.subject == Some(landing.into());
+        let told = found.iter().find(is_it).unwrap_or_else(|| panic!("{landing}: {:?}", shown(&found)));
+        assert!(!told.message.contains("raise"), "{told}");
+        assert!(
+            told.message.starts_with(
+                "land on another runway or in the other direction, or correct the elevation of `R05`"
+            ),
+            "{told}"
+        );
+    }
+}
+
 #[test]
 fn a_turn_that_the_wind_carries_into_a_zone() {
     // fly-over at A, from the north: the turn goes beyond the corner, farther with the wind

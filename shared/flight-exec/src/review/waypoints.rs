@@ -13,6 +13,8 @@ use geometry::geodesy;
 const NEAR_POLE: &str = "near-pole";
 /// Too steep.
 const GRADIENT: &str = "gradient";
+/// Too near to the ground.
+const BELOW_TERRAIN: &str = "below-terrain";
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     let context = Context {
@@ -34,16 +36,41 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
                     problems.push(Problem::error(NEAR_POLE, message).of(&waypoint.leg));
                     continue;
                 }
-                let advice = match before_landing(view, flown, (at(1), waypoint)) {
-                    Some(advice) if fault.code == GRADIENT => advice,
-                    _ => advice(fault.code, view.program.leg(&waypoint.leg).map(|leg| &leg.kind)),
+                let message = match fault.code {
+                    GRADIENT => before_landing(view, flown, (at(1), waypoint))
+                        .map(|advice| refused(&advice, &fault.sentence)),
+                    BELOW_TERRAIN => low_landing(view, waypoint),
+                    _ => None,
                 };
-                let message =
-                    format!("{advice}: the gateway would refuse a waypoint of it: {}", fault.sentence);
+                let advice = || advice(fault.code, view.program.leg(&waypoint.leg).map(|leg| &leg.kind));
+                let message = message.unwrap_or_else(|| refused(&advice(), &fault.sentence));
                 problems.push(Problem::error("gateway-refuses", message).of(&waypoint.leg));
             }
         }
     }
+}
+
+fn refused(advice: &str, why: &str) -> String {
+    format!("{advice}: the gateway would refuse a waypoint of it: {why}")
+}
+
+/// A waypoint of a landing too near to the ground: it lies above the runway by what a landing is, and nobody raises that.
+fn low_landing(view: &View, waypoint: &Waypoint) -> Option<String> {
+    let path = view
+        .program
+        .path(&waypoint.leg)
+        .filter(|_| view.stage_kind(&waypoint.leg) == Some(StageKind::Land))?;
+    let runway = view.program.plan.runway(view.program.stage(&path)?.runway.as_ref()?)?;
+    let ground_m = view.terrain.elevation_m(waypoint.position)?;
+    let advice = format!(
+        "land on another runway or in the other direction, or correct the elevation of `{}`, if it is not {:.0} m AMSL",
+        runway.id, runway.elevation_amsl_m
+    );
+    let why = format!(
+        "{:.0} m AMSL, as high as a landing is there, is too low over ground of {ground_m:.0} m.",
+        waypoint.altitude_amsl_m
+    );
+    Some(refused(&advice, &why))
 }
 
 /// What to do about a landing that is come to too high or too low. It has no length and no altitude of its own to be changed.
@@ -79,7 +106,7 @@ fn advice(code: &str, kind: Option<&LegKind>) -> String {
     let advice = match code {
         "too-far" => "divide this leg by a place on its way",
         "altitude" => "give this leg another altitude",
-        "below-terrain" => "raise this leg",
+        BELOW_TERRAIN => "raise this leg",
         "speed" => "give this leg another speed",
         "loiter-radius" => "widen the circles of this leg",
         GRADIENT => return room_to_climb(kind),
