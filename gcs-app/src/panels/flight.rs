@@ -366,8 +366,9 @@ fn nothing_to_do(scene: &Scene<'_>) -> Option<&'static str> {
 }
 
 const NO_PLAN: &str = "No plan aboard: push one";
-const IS_OVER: &str = "The flight is over: rewind the plan before the next start";
-const WAS_FLOWN: &str = "The plan was flown: rewind it before the next start";
+// what is to be done comes first: in a small window the rest is behind a button
+const IS_OVER: &str = "Rewind first: the flight is over";
+const WAS_FLOWN: &str = "Rewind first: the plan was flown";
 
 /// Why a vehicle that stands on the ground is not started, and what comes first; its autopilot may have reasons of its own.
 pub fn no_start(scene: &Scene<'_>) -> Option<&'static str> {
@@ -379,7 +380,7 @@ pub fn no_start(scene: &Scene<'_>) -> Option<&'static str> {
         return Some(NO_PLAN);
     }
     if emergency::has_come_down(scene) {
-        return Some("An emergency plan was flown: rewind the plan before the next start");
+        return Some("Rewind first: an emergency plan was flown");
     }
     match (scene.vehicle.phase(), state) {
         (Phase::Finished, _) => Some(IS_OVER),

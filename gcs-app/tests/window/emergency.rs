@@ -287,7 +287,7 @@ fn flight_that_did_not_end_as_planned_says_how_it_ended() {
         (Some("return"), home, format!("{instead}, landed on R05"), otherwise),
         (Some("return"), far, format!("{instead}, came down 11.1 km from R05"), otherwise),
         (None, far, "Landed 11.1 km from R05, where the plan ends".into(), otherwise),
-        (None, home, "The plan was flown".into(), "◆ flown"),
+        (None, home, "the plan was flown".into(), "◆ flown"),
     ] {
         let mut window = flying_its_plan();
         let mut value = status(Phase::Flying);
@@ -329,7 +329,7 @@ fn flight_that_safe_mode_brought_down_was_not_flown_to_its_end() {
     window.receive_gateway_state(GatewayState::Stop);
     value.phase = Phase::Finished;
     window.receive_status(value);
-    assert!(window.shows("The plan was flown"), "that of the next flight is its own");
+    assert!(window.shows("the plan was flown"), "that of the next flight is its own");
 }
 
 /// The cause, the runway and the time were in the agent's log only, and a click left Safe mode in the glide.

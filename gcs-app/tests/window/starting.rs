@@ -14,7 +14,7 @@ fn a_start_that_is_not_possible_says_why_in_sight_and_at_the_button() {
     let start = "Start and take off (hold)";
     for (plan, phase, state, why) in [
         (None, Phase::Idle, GatewayState::Stop, "No plan aboard: push one"),
-        (Some(&hash), Phase::Finished, GatewayState::Stop, "The flight is over: rewind the plan"),
+        (Some(&hash), Phase::Finished, GatewayState::Stop, "Rewind first: the flight is over"),
         (Some(&hash), Phase::Flying, GatewayState::TakeOff, "It was started: the take-off is under way"),
         (
             Some(&hash),
@@ -31,7 +31,7 @@ fn a_start_that_is_not_possible_says_why_in_sight_and_at_the_button() {
         window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value: gateway }.into()));
         window.receive_position(true);
         // a plan that was flown to its end is said to be
-        let said = if phase == Phase::Finished { "The plan was flown: rewind it" } else { why };
+        let said = if phase == Phase::Finished { "Rewind first: the plan was flown" } else { why };
         assert!(window.paints(said), "{why}");
         let start = if plan.is_some() { start } else { "Start and take off with the plan aboard (hold)" };
         assert!(!window.is_enabled(start), "{why}");
