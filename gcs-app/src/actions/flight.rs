@@ -4,7 +4,9 @@ use super::table::Asked;
 use super::{Action, Group, Kind};
 use crate::command::{Command, FlyCommand, LinkCommand};
 use crate::connections::{self, Connection};
-use crate::panels::{Scene, decision, emergency as banner, flight as panel, in_force, leading, link, push};
+use crate::panels::{
+    Scene, decision, emergency as banner, flight as panel, in_force, leading, link, no_start, push,
+};
 use flight_exec::{Command as PlanCommand, Phase};
 use flight_plan::{Cause, Id};
 use std::borrow::Cow;
@@ -196,7 +198,7 @@ pub(super) fn start(scene: &Scene<'_>) -> Asked {
     if scene.vehicle.unfit().is_some() {
         return Err("Its autopilot is not set up for it: the bar of the commands says what to do");
     }
-    panel::no_start(scene).map_or(Ok(Command::Fly(FlyCommand::Launch)), Err)
+    no_start::why(scene).map_or(Ok(Command::Fly(FlyCommand::Launch)), Err)
 }
 
 /// Why there is nothing to fly where no alternate is in force.

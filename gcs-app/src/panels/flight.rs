@@ -2,7 +2,7 @@
 
 use super::{
     Panel, PanelId, Place, Scene, age_as_heard, age_of, alarms, emergency, ended, field, in_force, leading,
-    pfd, profile, reach, value_with_age,
+    no_start, pfd, profile, reach, value_with_age,
 };
 use crate::actions::{flight as actions, written};
 use crate::command::{Command, Queue};
@@ -334,7 +334,7 @@ pub fn remark(scene: &Scene<'_>) -> Option<(String, bool)> {
     let unfit = unfit.map(|why| format!("⚠ Can't be started. {why}"));
     let another = another_aboard(scene).filter(|_| can_launch(scene)).map(str::to_owned);
     let ended = ended::otherwise(scene).map(|how| format!("⚠ {how}"));
-    let rest = nothing_to_do(scene).map(str::to_owned);
+    let rest = no_start::nothing_to_do(scene).map(str::to_owned);
     let cautions: Vec<String> = [heard, dead, unfit, another, ended].into_iter().flatten().collect();
     let is_caution = !cautions.is_empty();
     let all: Vec<String> = cautions.into_iter().chain(rest).collect();
@@ -346,54 +346,6 @@ pub fn another_aboard(scene: &Scene<'_>) -> Option<&'static str> {
     let shown = scene.analysis.hash_of(scene.document.version())?;
     let is_another = scene.vehicle.active_hash().as_deref() != Some(shown);
     is_another.then_some("⚠ What is shown is not aboard and would not be flown: push it first")
-}
-
-/// Why there is nothing to command.
-fn nothing_to_do(scene: &Scene<'_>) -> Option<&'static str> {
-    let is_flown = scene.vehicle.phase() == Phase::Finished && ended::otherwise(scene).is_none();
-    if stands(scene) {
-        return no_start(scene).map(|why| if is_flown && why == IS_OVER { WAS_FLOWN } else { why });
-    }
-    if scene.vehicle.active_hash().is_none() {
-        return Some(NO_PLAN);
-    }
-    match scene.vehicle.phase() {
-        Phase::Finished if is_flown => Some("The plan was flown"),
-        Phase::Grounded => Some("Landed: the next flight waits for its start"),
-        Phase::Idle => Some("The plan aboard was not started"),
-        _ => None,
-    }
-}
-
-const NO_PLAN: &str = "No plan aboard: push one";
-// what is to be done comes first: in a small window the rest is behind a button
-const IS_OVER: &str = "Rewind first: the flight is over";
-const WAS_FLOWN: &str = "Rewind first: the plan was flown";
-
-/// Why a vehicle that stands on the ground is not started, and what comes first; its autopilot may have reasons of its own.
-pub fn no_start(scene: &Scene<'_>) -> Option<&'static str> {
-    let state = scene.vehicle.gateway.as_ref().map(|gateway| gateway.value.state);
-    if !stands(scene) {
-        return Some("It does not stand on the ground, as far as is known");
-    }
-    if scene.vehicle.active_hash().is_none() {
-        return Some(NO_PLAN);
-    }
-    if emergency::has_come_down(scene) {
-        return Some("Rewind first: an emergency plan was flown");
-    }
-    match (scene.vehicle.phase(), state) {
-        (Phase::Finished, _) => Some(IS_OVER),
-        // nothing may have come of an earlier start: the arming was refused, or somebody held it
-        (Phase::Idle | Phase::Grounded, _) | (_, Some(GatewayState::Stop)) => None,
-        (_, None | Some(GatewayState::Off)) => {
-            Some("The plan was begun, and what its autopilot does is not known")
-        }
-        (_, Some(GatewayState::Manual)) => Some("The plan was begun, and the pilot has the aircraft"),
-        (_, Some(GatewayState::Terminate)) => Some("The flight was ended by force"),
-        (_, Some(GatewayState::TakeOff)) => Some("It was started: the take-off is under way"),
-        _ => Some("The plan is being flown: it has not stopped yet"),
-    }
 }
 
 /// The plan holds, or is not what leads the aircraft: the gateway holds or follows a direct command, or a pilot flies.
@@ -409,11 +361,11 @@ pub fn can_resume(scene: &Scene<'_>) -> bool {
 
 /// The vehicle stands on the ground, with a plan to be flown.
 pub fn can_launch(scene: &Scene<'_>) -> bool {
-    no_start(scene).is_none()
+    no_start::why(scene).is_none()
 }
 
 /// On the ground, as far as was ever heard.
-fn stands(scene: &Scene<'_>) -> bool {
+pub fn stands(scene: &Scene<'_>) -> bool {
     scene.vehicle.position.as_ref().is_some_and(|position| position.value.on_ground)
 }
 

@@ -24,6 +24,7 @@ pub mod leading;
 pub mod link;
 pub mod log;
 pub mod maps;
+pub mod no_start;
 mod other_end;
 pub mod palette;
 pub mod pfd;

@@ -31,7 +31,7 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
         window.receive_gateway(vec![Alarm { id, severity: Severity::Caution, source, advice, cause: None }]);
         window.steps(20);
         let bottom = window.harness.get_by_label("⏸ Hold").rect().top();
-        let vital = ["ENERGY LOW", "Arrival ▸ r1", "above the ground", "71 % · 24.1 V"];
+        let vital = ["ENERGY LOW", "Arrival ▸ r1", "above runway R05", "71 % · 24.1 V"];
         for text in vital {
             let rect = window.harness.get_by_label_contains(text).rect();
             assert!(rect.bottom() < bottom, "{size}: {text} is at {rect}, the panel ends at {bottom}");
