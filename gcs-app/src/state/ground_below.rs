@@ -60,7 +60,11 @@ mod tests {
             (ground.amsl_m.round(), ground.runway.map(|id| id.to_string()))
         };
         let of = |id: &str| Some(id.to_owned());
-        assert_eq!(below(along(300.0), &[one.clone()]), (350.0, of("R05")), "nothing says that it slopes");
+        assert_eq!(
+            below(along(300.0), std::slice::from_ref(&one)),
+            (350.0, of("R05")),
+            "nothing says that it slopes"
+        );
         assert_eq!(below(along(300.0), &both), (353.0, of("R05")));
         assert_eq!(below(along(640.0), &both), (356.0, of("R05")), "just behind its end");
         assert_eq!(below(along(300.0).destination(142.0, 80.0), &both), (372.0, None), "beside it");

@@ -33,7 +33,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     });
     // before all that may be asked, too: in a low window that is below the fold
     ui.scope(|ui| {
-        ui.set_min_height(OUTCOME_HEIGHT);
+        ui.set_min_height(if scene.view.alarm.is_some() { OUTCOME_HEIGHT } else { 0.0 });
         outcome(ui, scene);
     });
     let mut covered = scene.view.coverage;
@@ -51,7 +51,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 
 /// Of the coverage's progress, screen points.
 const BAR_HEIGHT: f32 = 6.0;
-/// Room for what there usually is to say of an alarm, so that what stands below stays under the pointer when one is raised.
+/// Room for what there usually is to say of an alarm that is raised, so that what stands below stays where it is when that comes.
 const OUTCOME_HEIGHT: f32 = 120.0;
 
 fn alarm(ui: &mut Ui, cause: Cause, scene: &Scene<'_>, queue: &mut Queue) {
