@@ -162,7 +162,6 @@ impl Control {
     /// The autopilot is in the wanted mode.
     pub fn confirm(&mut self, now: Time) {
         self.confirmed = true;
-        self.disobeys_since = None;
         let since = *self.confirmed_at.get_or_insert(now);
         if self.mode.is_none() && now.saturating_sub(since) > OVERTAKEN {
             self.ordered = None;
@@ -228,7 +227,10 @@ impl Gateway {
             return;
         }
         if flies && self.flies_what_is_not_ours(now) {
-            return self.order_steer(Aim::Hold, out);
+            if self.control.mode.is_none() {
+                self.order_steer(Aim::Hold, out);
+            }
+            return;
         }
         let due = self.telemetry.mode != Some(wanted) || (wanted == Mode::Direct && self.control.direct_due);
         if due
@@ -246,8 +248,8 @@ impl Gateway {
     }
 
     /// For so long that it will not change by itself: it started anew in flight, or another station's list is to be replaced.
-    fn flies_what_is_not_ours(&mut self, now: Time) -> bool {
-        if !self.flies_waypoints() || self.buffer.course().aboard || self.control.mode.is_some() {
+    pub(super) fn flies_what_is_not_ours(&mut self, now: Time) -> bool {
+        if !self.flies_waypoints() || self.buffer.course().aboard {
             self.control.strays_since = None;
             return false;
         }

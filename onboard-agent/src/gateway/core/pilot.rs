@@ -38,6 +38,11 @@ impl Gateway {
         };
         if mode == wanted {
             self.control.confirm(now);
+            // it is to fly its waypoints, but those aboard are not ours: it was told to circle, and flies on
+            match self.flies_what_is_not_ours(now) {
+                true => self.note_disobedience(now),
+                false => self.control.disobeys_since = None,
+            }
         } else if self.control.ordered == Some(mode) {
             // an order of ours that has been overtaken: what is wanted is ordered again
             self.control.overtaken(mode);

@@ -42,3 +42,25 @@ fn a_list_that_is_flown_is_a_takeover() {
     assert_eq!(core.gateway.state(), GatewayState::Manual);
     assert!(core.was_ordered(&Order::HandsOff(true)) && !core.raised("list-replaced"));
 }
+
+/// Refused each second, it was held for one that circles.
+#[test]
+fn one_that_does_not_circle_instead_of_flying_a_list_that_is_not_ours_is_told() {
+    let mut core = replaced(Mode::Hold);
+    core.step(Input::Request(5, GatewayRequest::Resume));
+    for second in 0..8 {
+        assert_eq!(core.raised("autopilot-disobeys"), second > 6, "after {second} s");
+        core.run(1, &flying(25.0, 25.0));
+        for (id, order) in core.orders() {
+            if matches!(order, Order::Steer(_)) {
+                core.step(Input::Report(Report::Failed(id, "denied".into())));
+            }
+        }
+        core.out.clear();
+    }
+    assert_eq!(core.gateway.state(), GatewayState::Hold);
+    assert!(core.raised("autopilot-disobeys"));
+    core.step(Input::Report(Report::Course(course(true))));
+    core.run(1, &flying(25.0, 25.0));
+    assert!(!core.raised("autopilot-disobeys"), "it is ours again");
+}
