@@ -93,6 +93,8 @@ pub struct Alarms {
     ignored: u64,
     /// What the autopilot no longer says.
     stopped: Vec<&'static str>,
+    /// It is known to be on the ground.
+    stands: bool,
 }
 
 impl Alarms {
@@ -135,6 +137,9 @@ impl Alarms {
     /// What is down has to be found: that alarm says where. What is ignored is counted.
     fn alarm(&self, watch: Watch) -> Alarm {
         let mut alarm = watch.alarm();
+        if let Some(advice) = watch.advice_on_ground().filter(|_| self.stands) {
+            alarm.advice = advice.into();
+        }
         if let (Watch::StandsStill, Some(place)) = (watch, self.stands_at) {
             alarm.advice += &format!(" It is at {:.5}, {:.5}.", place.lat_deg, place.lon_deg);
         }
@@ -160,6 +165,7 @@ impl Alarms {
             self.stands_at = t.fix.map(|(_, fix)| fix.position);
         }
         self.ignored = inputs.other_fp_manager;
+        self.stands = t.stands(now);
         self.stopped.clone_from(&t.stopped);
         self.climb.take(now, t);
         let is_up = t.is_up(now);

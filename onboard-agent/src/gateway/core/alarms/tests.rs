@@ -76,6 +76,29 @@ fn each_fault_raises_its_alarm_in_time_and_clears_it() {
     }
 }
 
+/// It was told to land at the nearest runway, and stood on it.
+#[test]
+fn what_is_raised_asks_on_the_ground_for_nothing_that_is_done_in_the_air() {
+    let (mut alarms, mut telemetry) = (Alarms::default(), Telemetry::default());
+    let mut advice = |on_ground: bool, from_s: u64| {
+        for second in from_s..from_s + 10 {
+            let now = Duration::from_secs(second);
+            let mut reports = good(second as i64);
+            reports[1] = Report::OnGround(on_ground);
+            reports[3] = Report::Gps(Gps { fix_3d: false, satellites: 0, hdop: 99.0, unix_s: None });
+            reports[4] = Report::Engine(Engine { rpm: 0.0, temperature_c: 80.0, throttle: 0.9 });
+            reports[5] = Report::Power(Power { voltage_v: 20.0, current_a: 12.0, battery: 0.1, fuel: None });
+            reports.iter().for_each(|r| telemetry.take(now, r));
+            alarms.update(now, &telemetry, AlarmInputs::default(), &mut vec![]);
+        }
+        alarms.raised().into_iter().map(|alarm| alarm.advice).collect::<String>()
+    };
+    let [up, down] = [(false, 0), (true, 10)].map(|(on_ground, from_s)| advice(on_ground, from_s));
+    for asked in ["Land at the nearest runway", "Return and land", "fly the emergency plan"] {
+        assert!(up.contains(asked) && !down.contains(asked), "{asked}: {down}");
+    }
+}
+
 /// Events while these inputs and reports go on for so many tenths of a second each.
 fn story(parts: &[(i64, AlarmInputs, Report)]) -> Vec<(i64, String)> {
     let (mut alarms, mut telemetry, mut events, mut tenth) =

@@ -349,6 +349,18 @@ impl Watch {
         }
     }
 
+    /// What is to be done of it on the ground, where what is to be done in the air would be wrong.
+    pub fn advice_on_ground(self) -> Option<&'static str> {
+        Some(match self {
+            Watch::GpsLost => "Position is not known. Do not take off.",
+            Watch::EngineOut | Watch::EngineSuspected => {
+                "It is down, and its engine failed in the air. Look at the engine before another start."
+            }
+            Watch::EnergyLow => "Little energy is left. Charge it before another start.",
+            _ => return None,
+        })
+    }
+
     /// How long it has to be wrong before the alarm is raised.
     pub fn patience(self) -> Duration {
         self.words().patience
