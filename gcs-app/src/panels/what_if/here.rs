@@ -31,11 +31,19 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.spacing_mut().item_spacing.x = 2.0;
         CAUSES.into_iter().for_each(|cause| alarm(ui, cause, scene, queue));
     });
-    // before all that may be asked, too: in a low window that is below the fold
+    if ui.clip_rect().height() < LOW {
+        // what was asked for comes before what may be asked, too: that would be below the fold
+        outcome(ui, scene);
+        return coverage(ui, scene, queue);
+    }
+    coverage(ui, scene, queue);
     ui.scope(|ui| {
-        ui.set_min_height(if scene.view.alarm.is_some() { OUTCOME_HEIGHT } else { 0.0 });
+        ui.set_min_height(OUTCOME_HEIGHT);
         outcome(ui, scene);
     });
+}
+
+fn coverage(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let mut covered = scene.view.coverage;
     let hover = "Colours the path by the worst of these alarms at each of its points";
     if ui.checkbox(&mut covered, "Coverage of the whole path").on_hover_text(hover).changed() {
@@ -49,9 +57,11 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
 }
 
+/// In a panel that is lower there is no room for both, screen points.
+const LOW: f32 = 220.0;
 /// Of the coverage's progress, screen points.
 const BAR_HEIGHT: f32 = 6.0;
-/// Room for what there usually is to say of an alarm that is raised, so that what stands below stays where it is when that comes.
+/// Room for what there usually is to say of an alarm, so that what stands below stays under the pointer when one is raised.
 const OUTCOME_HEIGHT: f32 = 120.0;
 
 fn alarm(ui: &mut Ui, cause: Cause, scene: &Scene<'_>, queue: &mut Queue) {
