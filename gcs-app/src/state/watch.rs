@@ -35,6 +35,8 @@ pub struct Sight<'a> {
     pub state: Option<(GatewayState, &'a str)>,
     /// Those of its plan.
     pub runways: &'a [Runway],
+    /// Its engine is out, or seems to be: it neither climbs nor holds.
+    pub engine_out: bool,
 }
 
 /// The watch over one aircraft.
@@ -116,10 +118,10 @@ impl Watch {
         if enroute.is_some() && ahead.is_none() && state == Some(GatewayState::Nav) {
             self.altitude.unknown(now_s);
         } else {
-            let off = enroute.and_then(|p| self.off_altitude(&p, ahead?));
+            let off = enroute.and_then(|p| self.off_altitude(&p, ahead?, sight.engine_out));
             self.altitude.follow(off, PATIENCE_S.0, now_s);
         }
-        let near = enroute.and_then(|p| self.near_ground(&p, ahead, terrain));
+        let near = enroute.and_then(|p| self.near_ground(&p, ahead, sight.engine_out, terrain));
         self.ground.follow(near, PATIENCE_S.1, now_s);
     }
 
@@ -144,7 +146,7 @@ impl Watch {
     }
 
     /// It is outside of what lies between the altitudes of the waypoint before and the one steered to.
-    fn off_altitude(&mut self, position: &Position, ahead: &Ahead) -> Option<String> {
+    fn off_altitude(&mut self, position: &Position, ahead: &Ahead, engine_out: bool) -> Option<String> {
         let next = ahead.waypoints.first()?;
         let to_m = next.altitude_amsl_m;
         let from_m = match self.target {
@@ -157,9 +159,12 @@ impl Watch {
         let (low_m, high_m) = (from_m.min(to_m), from_m.max(to_m));
         let at_m = position.altitude_amsl_m;
         let (off_m, side) = if at_m < low_m { (low_m - at_m, "below") } else { (at_m - high_m, "above") };
-        (off_m > self.altitude.limit(OFF_ALTITUDE_M)).then(|| {
-            format!("It flies {off_m:.0} m {side} the altitudes of its leg. Look at airspeed and engine; hold, or be ready to take over.")
-        })
+        let advice = match engine_out {
+            true => "Without its engine it keeps none: look at its airspeed, and be ready to take over.",
+            false => "Look at airspeed and engine; hold, or be ready to take over.",
+        };
+        (off_m > self.altitude.limit(OFF_ALTITUDE_M))
+            .then(|| format!("It flies {off_m:.0} m {side} the altitudes of its leg. {advice}"))
     }
 
     /// The least height above the ground now and on the way ahead, where that is too little.
@@ -167,6 +172,7 @@ impl Watch {
         &self,
         position: &Position,
         ahead: Option<&Ahead>,
+        engine_out: bool,
         terrain: &dyn Terrain,
     ) -> Option<String> {
         let limit_m = self.ground.limit(NEAR_GROUND_M);
@@ -174,9 +180,11 @@ impl Watch {
         let heights = heights.filter_map(|(s, at, amsl_m)| Some((s, amsl_m - terrain.elevation_m(at)?)));
         let (in_s, height_m) =
             heights.filter(|(_, height_m)| *height_m < limit_m).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some(format!(
-            "Only {height_m:.0} m above the ground in {in_s:.0} s. Climb, go to another leg, or be ready to take over."
-        ))
+        let advice = match engine_out {
+            true => "The engine is out: turn to lower ground, or be ready to take over.",
+            false => "Climb, go to another leg, or be ready to take over.",
+        };
+        Some(format!("Only {height_m:.0} m above the ground in {in_s:.0} s. {advice}"))
     }
 }
 
@@ -224,7 +232,8 @@ mod tests {
 
     const HERE: LatLon = LatLon::new(36.3, -84.2);
 
-    const UNSEEN: Sight<'_> = Sight { position: None, ahead: None, state: None, runways: &[] };
+    const UNSEEN: Sight<'_> =
+        Sight { position: None, ahead: None, state: None, runways: &[], engine_out: false };
 
     /// A hill that begins a kilometre north, 480 m high.
     struct Hill;
@@ -373,6 +382,31 @@ mod tests {
         // higher, but not yet clearly
         assert_eq!(look(&mut watch, 520.0, &ahead(1, 520.0), &Hill, 3.0), ["terrain-ahead"]);
         assert!(look(&mut watch, 530.0, &ahead(1, 530.0), &Hill, 4.0).is_empty());
+    }
+
+    /// It said *Climb* to one that could not.
+    #[test]
+    fn an_aircraft_without_its_engine_is_not_told_to_climb_or_to_hold() {
+        for (altitude_m, at_m) in [(340.0, 340.0), (500.0, 600.0)] {
+            let at = ahead(1, at_m);
+            let advice = [false, true].map(|engine_out| {
+                let mut watch = Watch::default();
+                look(&mut watch, at_m, &at, &Hill, 0.0);
+                for now_s in [1.0, 10.0] {
+                    let sight = Sight {
+                        ahead: Some(&at),
+                        state: Some((GatewayState::Nav, "")),
+                        engine_out,
+                        position: Some(position(altitude_m)),
+                        ..UNSEEN
+                    };
+                    watch.look(sight, &Hill, now_s);
+                }
+                watch.alarms().map(|alarm| alarm.advice).collect::<String>()
+            });
+            let asks_for_power = |advice: &String| advice.contains("Climb") || advice.contains("hold,");
+            assert_eq!(advice.each_ref().map(asks_for_power), [true, false], "{advice:?}");
+        }
     }
 
     #[test]

@@ -33,6 +33,7 @@ impl Vehicle {
             ahead: live(&self.ahead, now_s),
             state: live(&self.gateway, now_s).map(|status| (status.state, status.cause.as_str())),
             runways: self.aboard.as_ref().map(|aboard| aboard.plan.runways.as_slice()).unwrap_or_default(),
+            engine_out: self.is_engine_out(),
         };
         self.watch.look(sight, terrain, now_s);
         for alarm in self.watch.alarms().filter(|alarm| !before.contains(&alarm.id)) {
