@@ -181,13 +181,30 @@ fn a_glide_reaches_the_runway_from_near_and_high_and_not_from_afar() {
     for diversion in &all {
         let Some(glide) = &diversion.glide else { continue };
         assert!(glide.path.windows(2).all(|w| w[1].altitude_amsl_m < w[0].altitude_amsl_m));
-        if reach(diversion) == Reach::Good {
+        if glide.reach(15.0) == Reach::Good {
             let runway = plan.runway(&diversion.plan.as_ref().unwrap().1).unwrap();
             let end = glide.path.last().unwrap();
             assert!(end.position.distance_m(runway.threshold) < 1.0);
             assert!((end.altitude_amsl_m - runway.elevation_amsl_m - glide.margin_m).abs() < 1e-6);
         }
     }
+}
+
+/// A plan that can't be glided along whole was called just reached, with 60 m and more above the threshold.
+#[test]
+fn a_part_of_a_plan_is_reached_with_what_a_straight_glide_has_to_spare() {
+    let all = ["fire-watch", "search", "alternates"].into_iter().flat_map(|name| {
+        let rehearsal = rehearsed(&plan(name), &WhatIf::default());
+        let duration_s = rehearsal.preview().unwrap().time_s;
+        (1..40).map(move |n| rehearsal.divert(duration_s * f64::from(n) / 40.0, Cause::Engine).unwrap())
+    });
+    let is_part = |d: &Diversion| {
+        let (Some(glide), Some(glided)) = (&d.glide, &d.glided) else { return false };
+        glided.missed_m == 0.0 && glide.reach(15.0) < Reach::Good
+    };
+    let (good, tight): (Vec<_>, Vec<_>) = all.filter(is_part).partition(|d| d.straight_m >= Some(15.0));
+    assert!(!good.is_empty() && good.iter().all(|d| reach(d) == Reach::Good));
+    assert!(tight.iter().all(|d| reach(d) == Reach::Tight));
 }
 
 #[test]

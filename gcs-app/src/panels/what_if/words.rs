@@ -280,6 +280,7 @@ mod tests {
             }),
             glide: Some(glide),
             glided: Some(Glided { track, time_s: 90.0, missed_m: 0.0 }),
+            straight_m: None,
         }
     }
 
@@ -307,6 +308,9 @@ mod tests {
                 "Not flown, for comparison: a glide along all of the plan: ends before the runway, 480 m too low.",
             ]
         );
+        let straight = words(&Diversion { straight_m: Some(61.0), ..found.clone() });
+        assert!(straight[0].starts_with("Engine failure: R05 is reached without the engine on a part of"));
+        assert!(!straight.iter().any(|line| line.starts_with("Just")), "{straight:?}");
         if let Some(glided) = &mut found.glided {
             let runway = &plan().runways[0];
             let along = |along_m: f64, amsl_m| TrackPoint {

@@ -44,6 +44,9 @@ pub struct Diversion {
     pub glide: Option<Glide>,
     /// After an engine failure: the plan as it is flown without the engine.
     pub glided: Option<Glided>,
+    /// Then: height above the threshold with which a straight glide arrives at an end of its runway, metres, at the end where that is more;
+    /// what is lacking, if it is negative.
+    pub straight_m: Option<f64>,
 }
 
 /// An emergency plan, flown with an engine.
@@ -169,8 +172,10 @@ impl<'a> Here<'a> {
         let glide = answer.filter(|_| powered.is_ok()).map(|answer| self.glide(answer));
         let fails = answer.filter(|_| cause == Cause::Engine && powered.is_ok());
         let glided = fails.and_then(|(_, runway)| self.glided(runway));
+        let straight_m = fails.and_then(|(_, runway)| self.straight_m(runway));
         let plan = answer.map(|(plan, runway)| (plan.id.clone(), runway.id.clone()));
-        Some(Diversion { time_s: self.time_s, cause, leg: self.leg.clone(), plan, powered, glide, glided })
+        let (time_s, leg) = (self.time_s, self.leg.clone());
+        Some(Diversion { time_s, cause, leg, plan, powered, glide, glided, straight_m })
     }
 
     /// As it is flown with an engine, or why it is not.
@@ -203,6 +208,23 @@ impl<'a> Here<'a> {
         let (winds, options) = (self.rehearsal.winds, &self.rehearsal.options);
         let given = Circumstances { winds, scenario: &scenario, options };
         Some(judge(self.flown.resumed_before(self.time_s, given)?))
+    }
+
+    /// Over the ground, to the end at which there is more to spare.
+    fn straight_m(&self, named: &Runway) -> Option<f64> {
+        let Rehearsal { profile, winds, terrain, .. } = self.rehearsal;
+        let plan = &self.flown.program.plan;
+        let wind = winds.at(named.elevation_amsl_m);
+        let drawn = plan.runways.iter().map(end_of);
+        let other = end_of(named).other(profile, wind, drawn, |place| terrain.elevation_m(place));
+        let other =
+            other.map(|end| Runway { elevation_amsl_m: end.elevation_amsl_m, ..named.from_other_end() });
+        let arrives_m = |runway: &Runway| {
+            let points = glide(profile, *winds, self.start, &[runway.threshold], runway.heading_deg);
+            let glide = Glide::of(false, points, runway, terrain.as_ref());
+            glide.hill.is_none().then_some(glide.margin_m).filter(|metres| metres.is_finite())
+        };
+        [Some(named), other.as_ref()].into_iter().flatten().filter_map(arrives_m).reduce(f64::max)
     }
 
     fn glide(&self, (plan, runway): Answer) -> Glide {
@@ -280,8 +302,9 @@ impl Diversion {
     /// threshold, metres, and share of the energy when landed.
     pub fn reach(&self, glide_m: f64, energy_share: f64) -> Reach {
         if self.cause == Cause::Engine {
-            let calculated = self.glide.as_ref().map_or(Reach::Out, |glide| glide.reach(glide_m));
-            return reach_glided(calculated, self.glided.as_ref());
+            let along = self.glide.as_ref().map_or(Reach::Out, |glide| glide.reach(glide_m));
+            let straight = self.straight_m.map_or(Reach::Out, |metres| reach_by_height(metres, glide_m));
+            return reach_glided(along.max(straight), self.glided.as_ref());
         }
         reach_powered(&self.powered, energy_share)
     }
@@ -307,7 +330,7 @@ impl Diversion {
 }
 
 /// What counts is where it comes down; how much there was to spare is calculated. Where not all of the plan can be glided along, a part is
-/// left out in flight: then nothing is to spare.
+/// left out in flight: to spare is what a straight glide would have.
 fn reach_glided(calculated: Reach, glided: Option<&Glided>) -> Reach {
     match glided {
         Some(glided) if glided.missed_m <= 0.0 => calculated.max(Reach::Tight),
@@ -339,12 +362,16 @@ impl Glide {
 
     /// How it ends; the reserve is a height above the threshold, metres.
     pub fn reach(&self, reserve_m: f64) -> Reach {
-        match self.margin_m {
-            _ if self.hill.is_some() => Reach::Out,
-            margin_m if margin_m >= reserve_m => Reach::Good,
-            margin_m if margin_m >= 0.0 => Reach::Tight,
-            _ => Reach::Out,
-        }
+        if self.hill.is_some() { Reach::Out } else { reach_by_height(self.margin_m, reserve_m) }
+    }
+}
+
+/// By the height above the threshold, and the reserve of that, metres.
+fn reach_by_height(over_m: f64, reserve_m: f64) -> Reach {
+    match over_m {
+        over_m if over_m >= reserve_m => Reach::Good,
+        over_m if over_m >= 0.0 => Reach::Tight,
+        _ => Reach::Out,
     }
 }
 
