@@ -1,18 +1,24 @@
 //! How a glide comes in to a runway: at which of its ends, and by how long a final approach. An emergency plan and Safe mode choose by the
 //! same rule: when the one takes over from the other, a glide does not turn round.
 
-use crate::glide::{GlidePoint, GlideStart, glide, may_land_unnamed, reserve_m};
+use crate::glide::{Circle, GlidePoint, GlideStart, glide, may_land_unnamed, reserve_m, turn_rad};
 use crate::{Profile, Strip, Wind};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
-use geometry::near::distance_m;
+use geometry::near::{distance_and_course, distance_m};
 
 /// Length of a whole final approach, metres.
 pub const FINAL_M: f64 = 700.0;
 /// Final approaches that a glide may fly, as shares of the whole one.
-const FINALS: [f64; 3] = [1.0, 0.5, 0.3];
+const FINALS: [f64; 6] = [1.0, 0.8, 0.65, 0.5, 0.4, 0.3];
+/// However far it turns onto a final, it is in line after so many radii: it passes the line, and comes back to it.
+const LINES_UP_WITHIN_RADII: f64 = 3.0;
 /// Off the runway's heading by more than this a path is not on the final approach, which then gets a point to line up at first, degrees.
 pub const ALIGNED_DEG: f64 = 30.0;
+/// Off by no more than this it is lined up, degrees.
+const LINED_UP_DEG: f64 = 10.0;
+/// On the final approach a shorter one is ahead, if it is turned onto by no more than this, degrees.
+const AHEAD_DEG: f64 = 45.0;
 /// The other end of a runway, of which only the place is known, may be so much higher or lower by the elevation model, metres.
 const LEVEL_M: f64 = 8.0;
 /// A runway that begins so near to another one's end, metres, and leads back by its heading to so many degrees, is the same one.
@@ -73,17 +79,31 @@ impl End {
 
     /// Nearer to the threshold than where the final approach begins, and on the runway's line.
     pub fn is_on_final(&self, here: LatLon, begins: LatLon) -> bool {
-        let Strip { threshold, heading_deg, .. } = self.strip;
-        let off_deg = normalise_180(here.bearing_deg(threshold) - heading_deg);
-        distance_m(here, threshold) <= distance_m(begins, threshold) && off_deg.abs() <= ALIGNED_DEG
+        let threshold = self.strip.threshold;
+        distance_m(here, threshold) <= distance_m(begins, threshold) && self.off_deg(here) <= ALIGNED_DEG
     }
 
-    /// Lengths of the final approaches that may be flown from a place, the longest first; `None`: straight, as it is on one. Nobody goes
-    /// back to where a final begins from nearer on the runway's line.
+    /// So far off the runway's heading one flies straight to its threshold, degrees.
+    fn off_deg(&self, here: LatLon) -> f64 {
+        normalise_180(here.bearing_deg(self.strip.threshold) - self.strip.heading_deg).abs()
+    }
+
+    /// Lengths of the final approaches that may be flown from a place, the longest first, and `None`: straight, as it is on one. Nobody goes
+    /// back to where a final begins from nearer on the runway's line: what begins ahead there lines it up.
     fn finals(&self, here: LatLon, whole_m: f64) -> impl Iterator<Item = Option<f64>> + use<> {
-        let is_there = self.is_on_final(here, self.final_begins_at(whole_m));
-        let shares = FINALS.into_iter().filter(move |_| !is_there).map(move |share| Some(share * whole_m));
-        shares.chain(is_there.then_some(None))
+        let end = *self;
+        let is_there = end.is_on_final(here, end.final_begins_at(whole_m));
+        let is_lined_up = is_there && end.off_deg(here) <= LINED_UP_DEG;
+        let is_ahead = move |metres: &f64| end.turn_onto_rad(here, *metres) <= AHEAD_DEG.to_radians();
+        let lengths_m = FINALS.into_iter().map(move |share| share * whole_m);
+        let flown_m = lengths_m.filter(move |metres| !is_there || !is_lined_up && is_ahead(metres));
+        flown_m.map(Some).chain(is_there.then_some(None))
+    }
+
+    /// How far it turns onto a final approach of a length to which it flies straight, radians.
+    fn turn_onto_rad(&self, here: LatLon, final_m: f64) -> f64 {
+        let (metres, course_deg) = distance_and_course(here, self.final_begins_at(final_m));
+        if metres < 1.0 { 0.0 } else { turn_rad(course_deg, self.strip.heading_deg) }
     }
 }
 
@@ -121,6 +141,8 @@ pub struct WayIn {
     pub final_m: Option<f64>,
     /// In line with the runway at last.
     is_in_line: bool,
+    /// Its final has room for the turn onto it. The whole one is there for that.
+    has_room: bool,
     /// From where the glide is to the threshold; empty: the wind does not let it get there.
     pub points: Vec<GlidePoint>,
     /// `None`: the wind does not let it get there.
@@ -131,13 +153,21 @@ impl WayIn {
     /// All ways in to some ends of a runway, the end that is wanted most first: in line with it by longer and shorter finals, then those
     /// straight to the threshold from wherever the glide is.
     pub fn all((profile, wind): (&Profile, Wind), from: GlideStart, ends: &[End], whole_m: f64) -> Vec<Self> {
+        let radius_m = Circle::smallest(profile, wind).radius_m;
         let way = |index: usize, end: &End, final_m: Option<f64>, is_in_line: bool| {
+            let Strip { threshold, heading_deg, .. } = end.strip;
             let gate = final_m.map(|metres| end.final_begins_at(metres));
-            let places: Vec<LatLon> = gate.into_iter().chain([end.strip.threshold]).collect();
-            let points =
-                glide(profile, wind.into(), from, &places, end.strip.heading_deg).unwrap_or_default();
+            let places: Vec<LatLon> = gate.into_iter().chain([threshold]).collect();
+            // across a runway nobody turns
+            let lands_deg = if is_in_line { heading_deg } else { from.position.bearing_deg(threshold) };
+            let points = glide(profile, wind.into(), from, &places, lands_deg).unwrap_or_default();
             let arrival = Arrival::along(&points, end.elevation_amsl_m);
-            Self { end: index, final_m, is_in_line, points, arrival }
+            let is_short = |metres: f64| {
+                let radii = (0.5 * end.turn_onto_rad(from.position, metres)).tan();
+                metres < whole_m && metres < radius_m * radii.min(LINES_UP_WITHIN_RADII)
+            };
+            let has_room = !final_m.is_some_and(is_short);
+            Self { end: index, final_m, is_in_line, has_room, points, arrival }
         };
         let numbered = || ends.iter().enumerate();
         let in_line = numbered()
@@ -146,10 +176,11 @@ impl WayIn {
         in_line.chain(numbered().map(|(i, end)| way(i, end, None, false))).collect()
     }
 
-    /// The best of these that is no way through the ground: in line with the runway and with the whole reserve, else what has most of that,
-    /// else straight.
+    /// The best of these that is no way through the ground: in line with the runway and with the whole reserve, with room for its last turn
+    /// if one has that, else what has most of the reserve, else straight.
     pub fn best(ways: &[Self], clears: impl Fn(&Self) -> bool) -> Option<&Self> {
-        let whole = ways.iter().find(|way| way.is_in_line && way.keeps_reserve() && clears(way));
+        let keeps = |way: &&Self| way.is_in_line && way.keeps_reserve() && clears(way);
+        let whole = ways.iter().filter(|way| way.has_room).find(keeps).or_else(|| ways.iter().find(keeps));
         let most = |in_line: bool| {
             let is_good = |way: &&Self| way.is_in_line == in_line && way.gets_there() && clears(way);
             let most_m = ways.iter().filter(is_good).map(Self::spare_m).fold(f64::NEG_INFINITY, f64::max);
@@ -158,13 +189,15 @@ impl WayIn {
         whole.or_else(|| most(true)).or_else(|| most(false))
     }
 
-    /// The last leg as low as it may be told, where height that is too much was lost before: with the reserve where it begins, down to the
-    /// threshold, which is so high, metres AMSL.
+    /// The last leg as low as it may be told, down to the threshold, which is so high, metres AMSL: in line with the runway from where height
+    /// that is too much was lost, with the reserve, else from where it is.
     pub fn lowest_end(&self, elevation_amsl_m: f64) -> Option<[GlidePoint; 2]> {
         let [.., from, end] = self.points.as_slice() else { return None };
         let takes_m = from.altitude_amsl_m - end.altitude_amsl_m;
         let needed_m = elevation_amsl_m + takes_m + reserve_m(takes_m);
-        let from = GlidePoint { altitude_amsl_m: from.altitude_amsl_m.min(needed_m), ..*from };
+        let lowest_m =
+            if self.is_in_line { from.altitude_amsl_m.min(needed_m) } else { from.altitude_amsl_m };
+        let from = GlidePoint { altitude_amsl_m: lowest_m, ..*from };
         Some([from, GlidePoint { altitude_amsl_m: elevation_amsl_m, ..*end }])
     }
 
@@ -221,7 +254,7 @@ mod tests {
             WayIn::best(&ways, |_| true).map(|way| way.final_m.map(f64::round))
         };
         assert_eq!(final_m(260.0), Some(Some(700.0)));
-        assert_eq!(final_m(210.0), Some(Some(350.0)), "the whole one has no reserve");
+        assert_eq!(final_m(210.0), Some(Some(560.0)), "the whole one has no reserve");
         assert_eq!(final_m(140.0), Some(Some(210.0)), "none has the reserve");
         assert_eq!([final_m(110.0), final_m(80.0)], [Some(None), None]);
     }
@@ -243,7 +276,7 @@ mod tests {
         let ways = ways(90.0, 1000.0, 400.0, &[named(), other]);
         let best = |clears: fn(&WayIn) -> bool| WayIn::best(&ways, clears).map(|way| (way.end, way.final_m));
         assert_eq!(best(|_| true), Some((0, Some(700.0))));
-        assert_eq!(best(|way| way.final_m != Some(700.0)), Some((0, Some(350.0))));
+        assert_eq!(best(|way| way.final_m != Some(700.0)), Some((0, Some(560.0))));
         assert_eq!(best(|way| way.end == 1), Some((1, Some(700.0))));
         assert_eq!(best(|_| false), None);
     }
@@ -261,6 +294,36 @@ mod tests {
                 "{bearing_deg}° {metres} m"
             );
         }
+    }
+
+    /// All finals were dropped there, those that begin ahead too: it turned onto the runway over its threshold.
+    #[test]
+    fn beside_the_runways_line_a_shorter_final_that_begins_ahead_lines_it_up() {
+        let finals = |bearing_deg: f64, metres: f64| {
+            let ways = ways(bearing_deg, metres, 300.0, &[named()]);
+            ways.iter()
+                .filter(|way| way.is_in_line())
+                .map(|way| way.final_m.map(f64::round))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(finals(205.0, 650.0), [Some(280.0), Some(210.0), None]);
+        assert_eq!(
+            finals(180.0 + 31.0, 650.0).last(),
+            Some(&Some(210.0)),
+            "too far beside it to go straight"
+        );
+    }
+
+    /// It passed the runway's line by more than it had room to come back to it, with the other end straight ahead.
+    #[test]
+    fn a_final_that_is_too_short_for_the_turn_onto_it_comes_behind_the_other_end() {
+        let other = named().other(&Profile::default(), Wind::CALM, [], |_| None).unwrap();
+        let chosen = |ends: &[End]| {
+            let ways = ways(0.0, 2000.0, 285.0, ends);
+            WayIn::best(&ways, |_| true).map(|way| (way.end, way.final_m.map(f64::round)))
+        };
+        assert_eq!(chosen(&[named()]), Some((0, Some(210.0))));
+        assert_eq!(chosen(&[named(), other]), Some((1, Some(700.0))));
     }
 
     #[test]
