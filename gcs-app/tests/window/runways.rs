@@ -77,3 +77,22 @@ fn the_other_direction_of_a_runway_is_added_in_inspector_menu_and_palette() {
         assert!(window.paints("Its other direction is in the plan already"));
     }
 }
+
+/// It led to the direction that was drawn first, and its places lay on the wrong side.
+#[test]
+fn an_emergency_plan_leads_to_the_direction_that_begins_where_the_runway_was_clicked() {
+    for (runway, nearer) in [("R05", 0), ("R23", 1)] {
+        let mut window = opened();
+        let drawn = ends(&window);
+        window.press(Key::R);
+        drawn.into_iter().for_each(|at| window.click_at(at));
+        window.press(Key::Escape);
+        // no double click
+        window.steps(40);
+        let middle = window.harness.get_by_label("Runway R05").rect().center();
+        let along = (drawn[1] - drawn[0]).normalized() * 12.0;
+        window.press(Key::E);
+        window.click_at([middle - along, middle + along][nearer]);
+        assert!(window.shows(&format!("Emergency plan to {runway}: click its places")), "{runway}");
+    }
+}

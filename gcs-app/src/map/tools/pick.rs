@@ -71,13 +71,15 @@ fn without_repeats(things: Vec<Selection>) -> Vec<Selection> {
     once
 }
 
-/// The runway under the pointer.
+/// The runway under the pointer; of its two directions, the one that begins nearer to it.
 pub fn runway_near<'a>(at: Pos2, canvas: &Canvas<'a>) -> Option<&'a Runway> {
     let view = canvas.view;
-    canvas.scene.document.plan().runways.iter().find(|runway| {
+    let far = |runway: &Runway| view.place(runway.threshold).distance(at);
+    let near = canvas.scene.document.plan().runways.iter().filter(|runway| {
         let (from, to) = (view.place(runway.threshold), view.place(end_of(runway)));
-        is_near(at, from, to) || from.distance(at) < 2.0 * REACH
-    })
+        is_near(at, from, to) || far(runway) < 2.0 * REACH
+    });
+    near.min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
 fn end_of(runway: &Runway) -> LatLon {
