@@ -44,7 +44,8 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
     if report.entry_needed {
         entry(ui, scene, proposal, queue);
     }
-    ui.horizontal(|ui| buttons(ui, scene, proposal, queue));
+    // with the third one they are wider than the panel
+    ui.horizontal_wrapped(|ui| buttons(ui, scene, proposal, queue));
     ui.separator();
     if scene.path_aboard().is_some() {
         let shown =

@@ -50,6 +50,8 @@ fn a_proposal_says_how_old_it_is_and_whose_path_is_on_the_map() {
     assert!(window.shows("on the map: this plan"));
     window.steps(60 * 11);
     assert!(window.shows("ago, looking again") && window.shows("Push again"));
+    let rect = |name: &str| window.harness.get_by_label(name).rect();
+    assert!(rect("Keep as draft").top() > rect("Commit").bottom(), "three have no room side by side");
     let accent = gcs_app::theme::palette(true).accent;
     let fill = |window: &Window, button| window.fill_around(window.harness.get_by_label(button).rect());
     assert_eq!(
