@@ -50,15 +50,21 @@ fn of_many_problems_those_near_the_view_are_drawn() {
     assert!((10..60).contains(&rows), "{rows}");
 }
 
-/// What a panel that was hidden waited for never came: the window was said to be busy for ever.
-#[test]
-fn a_panel_that_is_hidden_while_a_very_large_plan_is_looked_through_is_not_waited_for() {
+/// A window with a small plan, and the file of a very large one beside it.
+fn with_a_very_large_one() -> (tempfile::TempDir, Window, std::path::PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("large.xml");
     let leg = |i: usize| format!(r#"<TF id="w{i}" lat="{:.4}" lon="-84.2"/>"#, 36.31 + 1e-4 * i as f64);
     std::fs::write(&path, SQUARE.replacen(SIDE, &(0..25_000).map(leg).collect::<String>(), 1)).unwrap();
     let mut window = window_on(&folder.path().join("square.xml"), SQUARE);
     window.until_analysed();
+    (folder, window, path)
+}
+
+/// What a panel that was hidden waited for never came: the window was said to be busy for ever.
+#[test]
+fn a_panel_that_is_hidden_while_a_very_large_plan_is_looked_through_is_not_waited_for() {
+    let (_folder, mut window, path) = with_a_very_large_one();
     let before = window.app().document().id();
     drop_file(&mut window, &path);
     while window.app().document().id() == before {
@@ -72,12 +78,7 @@ fn a_panel_that_is_hidden_while_a_very_large_plan_is_looked_through_is_not_waite
 /// In no frame it waits for a very large plan to be looked through, and the one before is not taken for it meanwhile.
 #[test]
 fn of_a_very_large_plan_map_and_tree_come_when_they_are_ready() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("large.xml");
-    let leg = |i: usize| format!(r#"<TF id="w{i}" lat="{:.4}" lon="-84.2"/>"#, 36.31 + 1e-4 * i as f64);
-    std::fs::write(&path, SQUARE.replacen(SIDE, &(0..25_000).map(leg).collect::<String>(), 1)).unwrap();
-    let mut window = window_on(&folder.path().join("square.xml"), SQUARE);
-    window.until_analysed();
+    let (_folder, mut window, path) = with_a_very_large_one();
     assert!(window.shows("TF side2") && window.shows("Fix A"));
     let before = window.app().document().id();
     drop_file(&mut window, &path);
