@@ -19,7 +19,7 @@ const TROUBLE_MPS: f64 = 1.0;
 const OFF_M: f64 = 50.0;
 const CLOSING_SHARE: f64 = 0.5;
 const CLOSING_MPS: f64 = 1.0;
-/// Lower above the take-off place it is rolling, or has just left the ground, metres.
+/// Lower above the place that it takes off from it is rolling, or has just left the ground, metres.
 const ROLLING_M: f64 = 20.0;
 /// A circle is level: it does not sink faster than this, m/s.
 const LEVEL_MPS: f64 = 2.0;
@@ -62,7 +62,8 @@ impl Gateway {
         let Some(wanted_m) = self.commanded_m() else { return Some(false) };
         let fix = self.fix()?;
         let is_steered = self.is_on_its_way() || matches!(self.state, TakeOff | SafeApproach);
-        let flies = is_steered && self.telemetry.is_up(now) && fix.altitude_home_m > ROLLING_M;
+        let rolls = self.state == TakeOff && fix.altitude_home_m <= ROLLING_M;
+        let flies = is_steered && self.telemetry.is_up(now) && !rolls;
         let missing_m = wanted_m - fix.altitude_amsl_m;
         let closing_mps = -fix.down_mps * missing_m.signum();
         let left_s = self.seconds_to_target().unwrap_or(0.0).max(1.0);

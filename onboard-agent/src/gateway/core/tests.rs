@@ -410,6 +410,17 @@ fn far_above_or_below_its_altitude_and_no_nearer_is_told_and_a_lag_is_not() {
     }
 }
 
+/// It fell back to the height of its runway after the take-off, or flies over a valley: it rolls no more.
+#[test]
+fn far_too_low_is_told_where_that_is_no_higher_than_the_runway_too() {
+    let mut core = Core::in_nav();
+    let Report::Fix(fix) = fix(25.0) else { panic!() };
+    let mut low = flying(25.0, 25.0);
+    low[2] = Report::Fix(Fix { altitude_amsl_m: fix.altitude_amsl_m - 120.0, altitude_home_m: 0.0, ..fix });
+    core.run(12, &low);
+    assert!(core.raised("off-altitude"));
+}
+
 #[test]
 fn far_faster_than_it_was_told_is_told_unless_it_slows_down() {
     let mut core = Core::in_nav();
