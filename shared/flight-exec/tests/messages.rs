@@ -441,3 +441,34 @@ fn a_scan_is_flown_on_its_heading_in_the_middle_of_its_area() {
     // half a spacing aside at the most
     assert!(off_deg.abs() < 0.04, "{off_deg}");
 }
+
+/// A hill beside a place.
+struct Hill(LatLon, f64);
+
+impl Terrain for Hill {
+    fn elevation_m(&self, p: LatLon) -> Option<f64> {
+        Some(if p.distance_m(self.0) < 60.0 { self.1 } else { 300.0 })
+    }
+}
+
+/// The autopilot flies both by the runway's elevation: nothing that they ask for keeps them over a hill.
+#[test]
+fn a_hill_in_the_way_in_or_out_of_a_runway_is_told_where_it_matters() {
+    // short, so that the climb goes on behind it
+    let square =
+        include_str!("../../../assets/plans/square.xml").replace(r#"length="600""#, r#"length="150""#);
+    let plan = flight_plan::read(square.as_bytes()).plan;
+    let runway = plan.runways.first().unwrap();
+    let level_m = runway.elevation_amsl_m;
+    let told = |along_m: f64, hill_m: f64| {
+        let hill = Hill(runway.threshold.destination(runway.heading_deg, along_m), level_m + hill_m);
+        let found = found_over(&square, Arc::new(hill), Conditions::default());
+        found.into_iter().filter(|p| p.code == "ground-by-runway").map(|p| p.message).collect::<Vec<_>>()
+    };
+    let landing = told(-400.0, 60.0);
+    assert!(landing[0].starts_with("land in the other direction"), "{landing:?}");
+    let climb = told(runway.length_m + 180.0, 70.0);
+    assert!(climb[0].starts_with("take off in the other direction"), "{climb:?}");
+    assert_eq!(told(-400.0, 5.0), [""; 0]);
+    assert_eq!(told(-60.0, 60.0), [""; 0], "elevations are coarse");
+}

@@ -21,6 +21,7 @@ mod alternates;
 mod altitudes;
 mod arcs;
 mod beginning;
+mod by_runway;
 mod ceiling;
 mod emergency_coverage;
 mod emergency_routes;
@@ -130,13 +131,14 @@ struct View<'a> {
 type Rule = fn(&View, &mut Vec<Problem>);
 
 /// Every rule; the order is that of the problems.
-const RULES: [Rule; 21] = [
+const RULES: [Rule; 22] = [
     refused::check,
     unseen::check,
     wind::check,
     zones::check,
     unknown_terrain::check,
     terrain_clearance::check,
+    by_runway::check,
     ceiling::check,
     altitudes::check,
     turns::check,
