@@ -14,7 +14,7 @@ pub use event::Event;
 pub use foresight::{Foresight, PathPoint};
 pub use place::{BranchOption, Branching, DecisionRequest, IterationPlace, Phase, PlacePointer, Status};
 pub use proposal::{EntryReport, ProposalReport};
-pub use waypoint::{Action, AircraftState, FARTHEST_M, TERRAIN_MARGIN_M, Token, Waypoint};
+pub use waypoint::{Action, AircraftState, FARTHEST_M, TERRAIN_MARGIN_M, TURN_HEIGHT_M, Token, Waypoint};
 
 use flight_plan::Id;
 use serde::{Deserialize, Serialize};

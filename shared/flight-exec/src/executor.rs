@@ -7,6 +7,7 @@ mod acting;
 mod commands;
 mod emergency;
 mod gliding;
+mod go_around;
 mod plan_before;
 mod progress;
 mod proposal;

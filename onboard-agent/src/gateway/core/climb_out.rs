@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use usal::contract::{Action, Feed, GatewayEvent, GatewayRequest, GatewayState, Token};
 
-/// Height above the take-off place from which a climbing aircraft may circle, metres.
-pub(super) const CLEAR_M: f64 = 40.0;
+/// Height above the take-off place from which a climbing aircraft may circle, metres: as behind a landing that is broken off.
+pub(super) const CLEAR_M: f64 = flight_exec::TURN_HEIGHT_M;
 /// Faster than this downwards it sinks, m/s, and for so long: a gust is over by then.
 const SINKING_MPS: f64 = 1.0;
 const SINKS_FOR: Duration = Duration::from_secs(3);

@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 pub const FARTHEST_M: f64 = 50_000.0;
 /// Height that an en-route waypoint keeps above the ground, metres: the gateway takes none that is lower.
 pub const TERRAIN_MARGIN_M: f64 = 20.0;
+/// Height above a runway and the ground from which a climbing aircraft may turn, metres.
+pub const TURN_HEIGHT_M: f64 = 40.0;
 
 /// Number of a waypoint of this flight: counts up from 1 and is never used twice, across plan
 /// updates, emergencies and restarts.

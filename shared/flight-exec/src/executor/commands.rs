@@ -306,6 +306,7 @@ impl Executor {
         self.check_taken_off()?;
         let section = self.flight.horizon.tail().and_then(|t| t.section);
         let cursor = self.cursor_at(leg, section)?;
+        self.check_may_turn(&cursor)?;
         self.jump(cursor, out);
         Ok(())
     }

@@ -62,6 +62,7 @@ impl Executor {
             return Err(refusal("no-emergency", "the main plan is being flown: use go-to for another leg"));
         }
         let cursor = self.cursor_at(leg, None)?;
+        self.check_may_turn(&cursor)?;
         self.flight.emergencies.end();
         self.jump(cursor, out);
         Ok(())

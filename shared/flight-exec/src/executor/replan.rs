@@ -122,8 +122,10 @@ impl Executor {
         horizon.front().zip(first).is_some_and(|(old, new)| !old.is_where(new))
     }
 
-    /// Goes from here to wherever `cursor` is: everything not flown is cancelled.
+    /// Goes from here to wherever `cursor` is, near the ground by a climb straight ahead: everything not flown is cancelled.
     pub(super) fn jump(&mut self, mut cursor: Cursor, out: &mut Vec<Output>) {
+        // without an engine, or with a hill ahead, there is no climb
+        let climb = self.go_around(&cursor).ok().flatten();
         cursor.passage = self.life.numbers.passage();
         // a count belongs to an activation: that of a loop which is left is forgotten
         let around = cursor.loop_ids(&self.world());
@@ -140,9 +142,16 @@ impl Executor {
         self.flight.questions.forget_defaults();
         // somebody has asked for the way ahead: what is wrong with it is reported, reported before or not
         self.flight.reported.clear();
+        let before = cursor.clone();
+        if let Some(climb) = climb {
+            cursor.climb_first(climb);
+        }
         let more = self.asks_for_more(0, cursor.path.time_s);
         let stretch = lay_out(&cursor, &self.world(), false, false, more);
         self.append(stretch, out);
+        if let Some(climb) = climb {
+            self.flight.horizon.climb_first(&climb, before, &mut self.life.numbers);
+        }
         self.flight.acting.abandon_but_around(self.flight.horizon.front());
         self.flight.overrides.abandon_wait();
         // until another leg is entered, a loop on the way out may be gone back to: by a count, or a condition

@@ -1,9 +1,9 @@
 //! The waypoints issued and not flown yet, and where the path goes on behind them.
 
 use super::{Numbers, Offset, all_equivalent, both_or_none};
-use crate::api::{PlacePointer, Token, Waypoint};
+use crate::api::{Action, PlacePointer, Token, Waypoint};
 use crate::layout::cursor::{Cursor, LayoutError};
-use crate::layout::path::distance_and_course;
+use crate::layout::path::{PathState, distance_and_course};
 use crate::layout::stretch::{Continuation, IssuedWaypoint, Stretch};
 use crate::value::Choice;
 use flight_plan::Id;
@@ -267,6 +267,32 @@ impl Horizon {
             }
         }
         self.issued.push_front(rejoin);
+    }
+
+    /// A climb comes before the way, which begins behind it: `before` is where the climb begins. What is decided and passed where that leg
+    /// begins is decided there, as it would be without a climb.
+    pub fn climb_first(&mut self, climb: &PathState, before: Cursor, numbers: &mut Numbers) {
+        let Some(next) = self.issued.front_mut() else { return };
+        let mut first = IssuedWaypoint { before, wait_s: None, sealed: None, pinned: true, ..next.clone() };
+        if next.waits_for_decision() {
+            (first.choices, next.silent_legs) = (Vec::new(), Vec::new());
+        } else {
+            (first.choices, first.silent_legs) = next.seal();
+        }
+        let PathState { last, commanded_amsl_m, distance_m, time_s, .. } = climb;
+        first.waypoint = Waypoint {
+            position: last.position,
+            altitude_amsl_m: *commanded_amsl_m,
+            airspeed_mps: last.airspeed_mps,
+            action: Action::Fly,
+            fly_over: true,
+            on_arc: false,
+            end_of_plan: false,
+            ..first.waypoint
+        };
+        (first.end_m, first.end_s) = (*distance_m, *time_s);
+        self.issued.push_front(first);
+        self.renumber(numbers);
     }
 
     /// In another plan: the cursors behind the choices that led to each waypoint.

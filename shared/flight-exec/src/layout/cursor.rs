@@ -18,7 +18,7 @@ use crate::layout::expand::trail::Trail;
 use crate::layout::expand::{Expansion, Point};
 use crate::layout::path::{Level, PathEnd, PathState};
 use crate::layout::world::World;
-use flight_plan::{Id, Leg, Stage};
+use flight_plan::{AltitudeReference, Id, Leg, Stage};
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -313,6 +313,15 @@ impl Cursor {
     pub fn move_path_to(&mut self, here: PathState) {
         self.path = here;
         self.rejoined = None;
+    }
+
+    /// The same at the end of a climb: what legs without an altitude and a speed of their own inherit stays, but not what lies below.
+    pub fn climb_first(&mut self, climb: PathState) {
+        let mut last = PathEnd { position: climb.last.position, ..self.path.last };
+        if last.level.reference == AltitudeReference::Amsl {
+            last.level.metres = last.level.metres.max(climb.commanded_amsl_m);
+        }
+        self.move_path_to(PathState { last, ..climb });
     }
 
     /// The same, the way to its next point beginning at `here`, though its leg is laid out from where the path comes from.

@@ -7,6 +7,7 @@ mod damaged;
 mod endings;
 mod flights;
 mod gliding;
+mod go_around;
 #[path = "../common/grid.rs"]
 mod grid;
 mod kept;
