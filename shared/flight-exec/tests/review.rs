@@ -5,7 +5,9 @@
 mod field;
 
 use aircraft::{Profile, Wind};
-use flight_exec::{Conditions, compile_and_review, leave_zones_out, put_remedies, review, review_extremes};
+use flight_exec::{
+    Conditions, Margins, compile_and_review, leave_zones_out, put_remedies, review, review_extremes,
+};
 use flight_plan::{
     Altitude, AltitudeReference, Edit, FlightPlan, Id, Problem, Program, Spot, Value, check, compile,
     compile_document,
@@ -626,6 +628,31 @@ fn an_alternate_that_is_named_says_how_it_would_count_unnamed() {
     let along = "by a glide along all of it";
     let straight = format!("by a glide straight to the runway it is {share} %");
     assert!(named.contains(along) && named.contains(&straight), "{unnamed}\n{named}");
+}
+
+/// The same margin is the same word as in What if: the greater it is asked to be, the first ones to lose theirs are just reached.
+#[test]
+fn a_glide_that_only_lacks_its_margin_is_just_reached() {
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let glider = Profile { glide_ratio: 60.0, ..Profile::default() };
+    let document = String::from_utf8(rectangle("", "")).unwrap();
+    let named = document.replace(
+        r#"<mainPlan emergency="home">"#,
+        r#"<mainPlan emergency="home"><emergency cause="engine" plan="home"/>"#,
+    );
+    for document in [&document, &named] {
+        let program = compile_document(document.as_bytes(), &glider, flat.as_ref());
+        let program = Arc::new(program.unwrap_or_else(|p| panic!("{:?}", shown(&p))));
+        let told = |glide_m: f64| {
+            let margins = Margins { glide_m, ..Margins::default() };
+            let found = review(&program, &glider, &flat, Conditions { margins, ..Conditions::default() });
+            found.into_iter().find(|p| p.code.starts_with("glide-"))
+        };
+        assert_eq!(told(15.0), None);
+        let just = (2..60).find_map(|tens| told(10.0 * f64::from(tens))).unwrap();
+        assert_eq!(just.code, "glide-just-reached", "{just}");
+        assert!(just.message.contains("m above its threshold, and "), "{just}");
+    }
 }
 
 #[test]

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use terrain::{Flat, Terrain, Tile, Tiles};
 
 /// An engine failure far out of low flight has no runway: the review says so, and the planner decides.
-const ALLOWED: [&str; 1] = ["glide-out-of-reach"];
+const ALLOWED: [&str; 2] = ["glide-out-of-reach", "glide-just-reached"];
 
 fn outline(template: Template, threshold: LatLon, elevation_amsl_m: f64, heading_deg: f64) -> Outline {
     let runway = Runway {

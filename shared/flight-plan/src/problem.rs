@@ -18,10 +18,11 @@ pub enum Severity {
 const CAUSE: &str = "far-away";
 /// Warnings that stand before others, the gravest first: how the flight ends, what becomes of it after a failure, and what
 /// was not looked at.
-const GRAVE: [&str; 6] = [
+const GRAVE: [&str; 7] = [
     "no-landing",
     "glide-out-of-reach",
     "glide-into-terrain",
+    "glide-just-reached",
     "no-emergency-plan",
     "low-clearance",
     "not-reviewed",

@@ -1,5 +1,6 @@
 //! `glide-out-of-reach`: if the engine fails at some point, the glide along the emergency plan that answers there ends before its
-//! runway; `glide-into-terrain`: it ends in a hill on the way to where that plan is entered. The worst point is named.
+//! runway; `glide-just-reached`: it gets there, with less height to spare than its margin; `glide-into-terrain`: it ends in a hill on the
+//! way to where that plan is entered. The worst point is named.
 //!
 //! A plan that is named for an engine failure promises that all of it is within the glide. The fallback does not: it is reported where
 //! its runway is so far away that even a glide straight there ends before it (the operator may leave out the rest of the plan),
@@ -47,16 +48,30 @@ fn glides(
     from: &[&Origin],
 ) -> Option<Problem> {
     let missing = from.iter().map(|from| (missing_m(view, alternate, way, from), *from));
-    let short: Vec<(f64, &Origin)> = missing.filter(|(missing_m, _)| *missing_m > 0.0).collect();
-    let Some(worst) = short.iter().max_by(|(a, _), (b, _)| a.total_cmp(b)) else {
+    let missing: Vec<(f64, &Origin)> = missing.collect();
+    let count = |is_meant: fn(f64, &View) -> bool| {
+        let count = missing.iter().filter(|(missing_m, _)| is_meant(*missing_m, view)).count();
+        percent(count, from.len())
+    };
+    let worst = missing.iter().max_by(|(a, _), (b, _)| a.total_cmp(b)).filter(|(worst_m, _)| *worst_m > 0.0);
+    let Some(worst) = worst else {
         let samples = from.iter().filter(|_| named).step_by(SAMPLE_EVERY);
         return samples.into_iter().find_map(|from| hill(view, alternate, from));
     };
+    if !is_short(worst.0, view) {
+        let percent = count(|missing_m, _| missing_m > 0.0);
+        return Some(just_reached(view, alternate, *worst, (named, percent)));
+    }
     let counted = Counted {
-        percent: percent(short.len(), from.len()),
+        percent: count(is_short),
         straight_percent: named.then(|| straight_percent(view, alternate, from)),
     };
     Some(out_of_reach(view, alternate, *worst, counted))
+}
+
+/// It ends before the runway, and not only with less to spare than it should have.
+fn is_short(missing_m: f64, view: &View) -> bool {
+    missing_m > view.conditions.margins.glide_m
 }
 
 /// On how much of the flight a plan is out of reach.
@@ -75,7 +90,7 @@ fn percent(part: usize, all: usize) -> f64 {
 fn straight_percent(view: &View, alternate: &Alternate, from: &[&Origin]) -> f64 {
     let far: Vec<_> = from.iter().filter(|from| !is_near_runway(view, from)).collect();
     let straight = [alternate.runway.threshold];
-    let short = far.iter().filter(|from| missing_m(view, alternate, &straight, from) > 0.0);
+    let short = far.iter().filter(|from| is_short(missing_m(view, alternate, &straight, from), view));
     percent(short.count(), far.len())
 }
 
@@ -93,7 +108,7 @@ fn is_near_runway(view: &View, from: &Origin) -> bool {
     view.stage_kind(&from.leg).is_some_and(|kind| near.contains(&kind))
 }
 
-/// Height that is lacking at a point to glide to the runway, metres; infinite if the wind does not let it.
+/// Height that is lacking at a point to glide to the runway with the margin to spare, metres; infinite if the wind does not let it.
 fn missing_m(view: &View, alternate: &Alternate, way: &[LatLon], from: &Origin) -> f64 {
     let available_m =
         from.altitude_amsl_m - alternate.runway.elevation_amsl_m - view.conditions.margins.glide_m;
@@ -109,13 +124,31 @@ fn height_m(view: &View, alternate: &Alternate, way: &[LatLon], from: &Origin) -
     Some(altitude_amsl_m - path.last()?.altitude_amsl_m)
 }
 
+/// As What if calls it: it gets there, but what it has to spare is less than it should be.
+fn just_reached(
+    view: &View,
+    alternate: &Alternate,
+    (missing_m, from): (f64, &Origin),
+    (named, percent): (bool, f64),
+) -> Problem {
+    let margin_m = view.conditions.margins.glide_m;
+    let (plan, runway, over_m) = (&alternate.plan.id, &alternate.runway.id, margin_m - missing_m);
+    let way = if named { format!("a glide along all of `{plan}`") } else { "a glide straight to it".into() };
+    let message = format!(
+        "engine failure: runway `{runway}` is just reached on {percent:.0} % of the flight. At worst, from {from}, {way} comes {over_m:.0} m above its threshold, and {margin_m:.0} m are to be spare: fly {:.0} m higher there",
+        missing_m.ceil()
+    );
+    let subject = if named { &from.leg } else { plan };
+    Problem::warning("glide-just-reached", message).of(subject).with_place(from.position)
+}
+
 fn out_of_reach(
     view: &View,
     alternate: &Alternate,
     (missing_m, from): (f64, &Origin),
     Counted { percent, straight_percent }: Counted,
 ) -> Problem {
-    let short_m = missing_m * view.profile.glide_ratio;
+    let short_m = (missing_m - view.conditions.margins.glide_m) * view.profile.glide_ratio;
     let what = if missing_m.is_finite() {
         format!(
             "ends {short_m:.0} m before the runway `{}`: fly {missing_m:.0} m higher there",

@@ -11,7 +11,7 @@ use flight_plan::{Id, Problem};
 /// What is wrong.
 const CODE: &str = "wind-too-strong";
 /// What follows from it.
-const FOLLOWS: [&str; 7] = [
+const FOLLOWS: [&str; 8] = [
     "energy",
     "open-ended",
     "low-reserve",
@@ -19,6 +19,7 @@ const FOLLOWS: [&str; 7] = [
     "emergency-endless",
     "alternate-out-of-reach",
     "glide-out-of-reach",
+    "glide-just-reached",
 ];
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
