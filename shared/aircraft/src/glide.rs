@@ -106,6 +106,46 @@ impl Circle {
     }
 }
 
+/// Circles of one size, one after the other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Laps {
+    /// Each of them.
+    pub circle: Circle,
+    /// So many.
+    pub count: u32,
+}
+
+impl Laps {
+    /// In which circles a glide loses the height that its way can't lose, wide ones first: as many as `steep_mps` down needs for `too_much_m`,
+    /// and no more than a glide has height for, `there_is_m`; what is left of it in the smallest ones. Emergency plans and Safe mode choose
+    /// alike: none is too high for a place where the other one lands.
+    pub fn losing(
+        (profile, wind): (&Profile, Wind),
+        steep_mps: f64,
+        (mut too_much_m, mut there_is_m): (f64, f64),
+    ) -> [Self; 2] {
+        [Circle::of(profile, wind), Circle::smallest(profile, wind)].map(|circle| {
+            let lap_m = steep_mps * circle.time_s;
+            // a cast of a negative number gives 0
+            let needed = (too_much_m / lap_m).ceil() as u32;
+            let count = needed.min(circle.most(there_is_m));
+            too_much_m -= f64::from(count) * lap_m;
+            there_is_m -= f64::from(count) * circle.kept_m();
+            Self { circle, count }
+        })
+    }
+
+    /// Height that a glide around all of them takes, metres.
+    pub fn height_m(&self) -> f64 {
+        f64::from(self.count) * self.circle.height_m
+    }
+
+    /// How long that takes, seconds.
+    pub fn time_s(&self) -> f64 {
+        f64::from(self.count) * self.circle.time_s
+    }
+}
+
 /// The wind's speed, as far as an autopilot circles in it, m/s.
 fn bounded_mps(wind: Wind, profile: &Profile) -> f64 {
     wind.speed_mps().min(MOST_WIND * profile.cruise_airspeed_mps)

@@ -11,7 +11,7 @@
 use super::Situation;
 use super::gates::{Circles, Gate, is_over_ground};
 use super::way::TOUCHDOWN;
-use aircraft::glide::{Circle, GlidePoint, GlideStart, reserve_m};
+use aircraft::glide::{GlidePoint, GlideStart, Laps, reserve_m};
 use aircraft::glide_in::{End, FINAL_M, WayIn};
 use flight_exec::{clears_ground, clears_way_in};
 use geometry::LatLon;
@@ -87,7 +87,7 @@ impl Glide {
         let right = normalise_180(course_deg - s.position.bearing_deg(place)) >= 0.0;
         // it is there
         let first = usize::from(way.final_m.is_none());
-        let gates = |told: &Told, right: bool| told.circled(place, course_deg, right, s).split_off(first);
+        let gates = |told: &Told, right: bool| told.circled(place, course_deg, right).split_off(first);
         let told = Told::of(end.elevation_amsl_m, s, [over, threshold]);
         let is_clear = |gates: &Vec<Gate>| {
             is_over_ground(gates, s, |_| SPARE_M)
@@ -95,7 +95,7 @@ impl Glide {
         };
         let circled = [right, !right].into_iter().map(|right| gates(&told, right)).find(is_clear);
         let is_too_high = told.is_too_high || circled.is_none();
-        let gates = circled.unwrap_or_else(|| gates(&Told::as_it_glides(over), right));
+        let gates = circled.unwrap_or_else(|| gates(&told.as_it_glides(), right));
         Some(Self {
             gates,
             end,
@@ -110,8 +110,8 @@ impl Glide {
 
 /// What it is told where the final approach begins.
 struct Told {
-    /// So many circles first.
-    circles: u32,
+    /// These circles first.
+    circles: [Laps; 2],
     /// What it has there before them, metres AMSL.
     has_m: f64,
     /// And after them.
@@ -123,26 +123,22 @@ struct Told {
 impl Told {
     /// From there on it keeps the reserve of the way.
     fn of(elevation_m: f64, s: &Situation, [over, threshold]: [&GlidePoint; 2]) -> Self {
-        let (circle, has_m) = (Circle::of(s.profile, s.wind()), over.altitude_amsl_m);
+        let has_m = over.altitude_amsl_m;
         let takes_m = over.altitude_amsl_m - threshold.altitude_amsl_m;
         let needed_m = elevation_m + takes_m + reserve_m(takes_m);
-        let falls_m = STEEP * s.profile.max_descent_mps * (threshold.time_s - over.time_s);
-        let most_m = needed_m.max(elevation_m + falls_m);
-        let circles = if has_m > most_m { circle.most(has_m - needed_m) } else { 0 };
-        let in_circles_s = f64::from(circles) * circle.time_s;
-        let lowest_m = s.altitude_amsl_m - s.profile.max_descent_mps * (threshold.time_s + in_circles_s);
-        Self {
-            circles,
-            has_m,
-            begins_m: (has_m - f64::from(circles) * circle.height_m).min(most_m),
-            is_too_high: lowest_m > elevation_m,
-        }
+        let steep_mps = STEEP * s.profile.max_descent_mps;
+        let most_m = needed_m.max(elevation_m + steep_mps * (threshold.time_s - over.time_s));
+        let circles = Laps::losing((s.profile, s.wind()), steep_mps, (has_m - most_m, has_m - needed_m));
+        let height_m: f64 = circles.iter().map(Laps::height_m).sum();
+        // the smallest circles are flown the least exactly: another way comes before one that needs them
+        let [wide, _] = circles;
+        let lowest_m = s.altitude_amsl_m - s.profile.max_descent_mps * (threshold.time_s + wide.time_s());
+        Self { circles, has_m, begins_m: (has_m - height_m).min(most_m), is_too_high: lowest_m > elevation_m }
     }
 
     /// What the glide has there, and nothing of it is lost before.
-    fn as_it_glides(over: &GlidePoint) -> Self {
-        let has_m = over.altitude_amsl_m;
-        Self { circles: 0, has_m, begins_m: has_m, is_too_high: true }
+    fn as_it_glides(&self) -> Self {
+        Self { circles: self.circles.map(|laps| Laps { count: 0, ..laps }), begins_m: self.has_m, ..*self }
     }
 
     /// From the last gate, or from where it is, it is led straight down to the threshold, however high it is: above the ground.
@@ -159,9 +155,22 @@ impl Told {
         s.terrain.is_none_or(|terrain| clears_ground(terrain, &[from, down]))
     }
 
-    fn circled(&self, at: LatLon, course_deg: f64, right: bool, s: &Situation) -> Vec<Gate> {
-        let radius_m = Circle::of(s.profile, s.wind()).radius_m;
-        Circles { count: self.circles, radius_m, right }.gates(at, course_deg, (self.has_m, self.begins_m))
+    /// By circles of each size, each taking its share of the height; without any, one place.
+    fn circled(&self, at: LatLon, course_deg: f64, right: bool) -> Vec<Gate> {
+        let all_m: f64 = self.circles.iter().map(Laps::height_m).sum();
+        let mut gates = vec![Gate {
+            position: at,
+            altitude_amsl_m: if all_m > 0.0 { self.has_m } else { self.begins_m },
+            on_arc: all_m > 0.0,
+        }];
+        let mut from_m = self.has_m;
+        for laps in self.circles.iter().filter(|laps| laps.count > 0) {
+            let to_m = from_m - (self.has_m - self.begins_m) * laps.height_m() / all_m;
+            let circles = Circles { count: laps.count, radius_m: laps.circle.radius_m, right };
+            gates.extend(circles.gates(at, course_deg, (from_m, to_m)).into_iter().skip(1));
+            from_m = to_m;
+        }
+        gates
     }
 }
 
@@ -171,6 +180,7 @@ mod tests {
     use super::super::{choose, path};
     use super::*;
     use aircraft::autopilot::{Action as Does, Guidance, Target};
+    use aircraft::glide::Circle;
     use aircraft::{Aircraft, Profile, Strip, Wind};
     use terrain::Terrain;
     use usal::contract::{Action, Air, SafeParameters, Waypoint};
@@ -268,6 +278,25 @@ mod tests {
         assert!((needed_m..1.5 * needed_m).contains(&(last.altitude_amsl_m - 322.0)), "{glide:?}");
         let turned = glide.gates.windows(2).all(|pair| pair[0].altitude_amsl_m > pair[1].altitude_amsl_m);
         assert!(turned, "nothing is level: {glide:?}");
+    }
+
+    /// As in an emergency plan: what a wide circle would take too much of is lost in the smallest one.
+    #[test]
+    fn what_is_too_little_for_a_wide_circle_is_lost_in_a_small_one() {
+        let profile = Profile::default();
+        let runway = runway("it", 0.0, 2.0, 0.0, 1);
+        let strip = Strip { threshold: runway.threshold, heading_deg: 0.0, length_m: LENGTH_M };
+        let radii_m = |height_m: f64| -> Vec<f64> {
+            let s = Situation { glides: true, altitude_amsl_m: 322.0 + height_m, ..situation(&profile) };
+            let [glide, _] = glides_in(End { strip, elevation_amsl_m: 322.0 }, &s);
+            let gates = glide.map_or_else(Vec::new, |glide| glide.gates);
+            let across = gates.windows(5).filter(|gates| gates.iter().all(|gate| gate.on_arc));
+            across.map(|gates| 0.5 * gates[0].position.distance_m(gates[4].position)).collect()
+        };
+        let all: Vec<f64> = (10..120).flat_map(|tens| radii_m(10.0 * f64::from(tens))).collect();
+        for circle in [Circle::of(&profile, Wind::CALM), Circle::smallest(&profile, Wind::CALM)] {
+            assert!(all.iter().any(|radius_m| (radius_m - circle.radius_m).abs() < 1.0), "{circle:?}");
+        }
     }
 
     /// Where the executor says that a runway is reached, and leaves its glide to Safe mode, Safe mode lands on it: also over ground that

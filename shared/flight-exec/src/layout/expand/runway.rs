@@ -8,7 +8,7 @@ use crate::layout::homeward::{GlideIn, end_of, needed_amsl_m};
 use crate::layout::path::{Level, PathState, distance_m};
 use crate::layout::world::World;
 use aircraft::Wind;
-use aircraft::glide::{Circle, GlideStart};
+use aircraft::glide::{GlideStart, Laps};
 use aircraft::glide_in::ALIGNED_DEG;
 use aircraft::power::glide_sink_mps;
 use flight_plan::{AltitudeReference, Runway, Stage};
@@ -119,21 +119,15 @@ fn losing_height(
     let wanted_m =
         needed_m.unwrap_or(runway.elevation_amsl_m).max(gate.level.map_or(f64::NEG_INFINITY, |l| l.metres));
     let (steep_mps, glide_mps) = (profile.max_descent_mps, glide_sink_mps(profile, mps, 1.0));
-    let mut too_much_m = path.predicted_amsl_m - steep_mps * way_s - wanted_m;
-    let mut there_is_m = path.predicted_amsl_m - glide_mps * way_s - wanted_m;
-    let circles = [Circle::of(profile, wind), Circle::smallest(profile, wind)].map(|circle| {
-        let needed = (too_much_m / (steep_mps * circle.time_s)).ceil().max(0.0);
-        let laps = needed.min(f64::from(circle.most(there_is_m)));
-        too_much_m -= laps * steep_mps * circle.time_s;
-        there_is_m -= laps * circle.kept_m();
-        (circle, laps)
-    });
-    let mut left_m: f64 = circles.iter().map(|(circle, laps)| laps * circle.height_m).sum();
+    let [too_much_m, there_is_m] =
+        [steep_mps, glide_mps].map(|mps| path.predicted_amsl_m - mps * way_s - wanted_m);
+    let laps = Laps::losing((profile, wind), steep_mps, (too_much_m, there_is_m));
+    let mut left_m: f64 = laps.iter().map(Laps::height_m).sum();
     let at_least = |metres: f64| Some(Level { metres, reference: AltitudeReference::Amsl });
     let mut points = vec![Point { level: at_least(wanted_m + left_m), ..gate }];
-    for (circle, laps) in circles.into_iter().filter(|(_, laps)| *laps > 0.0) {
-        let corners = around(gate.position, circle.radius_m, laps, path, runway, world);
-        let takes_m = laps * circle.height_m / (corners.len() as f64).max(1.0);
+    for laps in laps.into_iter().filter(|laps| laps.count > 0) {
+        let corners = around(gate.position, laps, path, runway, world);
+        let takes_m = laps.height_m() / (corners.len() as f64).max(1.0);
         points.extend(corners.into_iter().map(|corner| {
             left_m -= takes_m;
             Point { level: at_least(wanted_m + left_m.max(0.0)), ..corner }
@@ -143,18 +137,12 @@ fn losing_height(
 }
 
 /// So many times around, from a place on the runway's line and back to it in line with the runway, on the side that it comes from.
-fn around(
-    at: LatLon,
-    radius_m: f64,
-    laps: f64,
-    path: &PathState,
-    runway: &Runway,
-    world: &World,
-) -> Vec<Point> {
+fn around(at: LatLon, laps: Laps, path: &PathState, runway: &Runway, world: &World) -> Vec<Point> {
+    let radius_m = laps.circle.radius_m;
     let side = if normalise_180(runway.heading_deg - path.course_deg) < 0.0 { -1.0 } else { 1.0 };
     let centre = at.destination(runway.heading_deg + side * 90.0, radius_m);
     let start_bearing_deg = normalise_360(runway.heading_deg - side * 90.0);
-    let sweep_deg = side * 360.0 * laps;
+    let sweep_deg = side * 360.0 * f64::from(laps.count);
     let arc = PathElement::Arc { centre, radius_m, start_bearing_deg, sweep_deg };
     vertices(&[arc], world.config.arc_tolerance_m)
 }
