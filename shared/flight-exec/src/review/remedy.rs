@@ -37,7 +37,7 @@ pub(super) fn room_to_climb(kind: Option<&LegKind>) -> String {
         }
         Some(LegKind::Ha(_)) => format!("lengthen its straight legs (`length` or `time`), or {before}"),
         Some(LegKind::Rf { .. }) => format!("widen its radius, or {before}"),
-        _ => "lengthen this leg, change its altitude or hold to altitude (HA)".into(),
+        _ => "change its altitude, lengthen this leg or hold to altitude (HA)".into(),
     }
 }
 

@@ -5,7 +5,7 @@ use super::path::SHORTEST_M;
 use super::remedy::relevelled;
 use super::step::Step;
 use crate::legible::told_apart;
-use crate::{Edit, IterativeForm, LegKind, Problem};
+use crate::{Edit, Id, IterativeForm, LegKind, Problem};
 
 /// So much does rounding make of it, metres: what another program writes has four decimals.
 const ROUNDED_M: f64 = 0.1;
@@ -26,16 +26,19 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
             // in whole metres that it reaches
             let reached_m =
                 if gain_m > 0.0 { (from_m + possible_m).floor() } else { (from_m - possible_m).ceil() };
-            format!(", end it at {reached_m:.0} m AMSL")
+            format!("end it at {reached_m:.0} m AMSL, ")
         });
+        let cause = beginning(view, step, limit);
+        let begins = cause.as_ref().map_or_else(String::new, |begins| begins.told());
         let message = format!(
-            "lengthen this leg from {at_most}{:.0} m to {:.0} m{ends} or hold to {what} before it (HA): it takes {at_least}{takes} m/s, the aircraft does {does} m/s",
+            "{begins}{ends}lengthen this leg from {at_most}{:.0} m to {:.0} m or hold to {what} before it (HA): it takes {at_least}{takes} m/s, the aircraft does {does} m/s",
             length_m.floor(),
             (gain_m.abs() / limit * step.speed_mps).ceil()
         );
         let say = if lacking_m > GRANTED_M { Problem::error } else { Problem::warning };
         let problem = say("too-steep", message).of(&step.leg.id);
-        problems.push(problem.perhaps_fixed_by(gentler(view, step, limit)));
+        let fix = cause.map(|begins| begins.edit).or_else(|| gentler(view, step, limit));
+        problems.push(problem.perhaps_fixed_by(fix));
     }
 }
 
@@ -48,6 +51,40 @@ fn limit_mps(view: &Inspection, step: &Step, gain_m: f64) -> f64 {
         (false, true) => climb,
         (false, false) => descent,
     }
+}
+
+/// Another altitude for the leg before.
+struct Beginning<'a> {
+    leg: &'a Id,
+    /// Metres AMSL: whole ones from which this leg is flown.
+    altitude_amsl_m: f64,
+    is_higher: bool,
+    edit: Edit,
+}
+
+impl Beginning<'_> {
+    fn told(&self) -> String {
+        let verb = if self.is_higher { "raise" } else { "lower" };
+        format!("{verb} `{}` to {:.0} m AMSL, ", self.leg, self.altitude_amsl_m)
+    }
+}
+
+/// The leg before has an altitude of its own, and this one only goes back to that of its stage: there lies the cause. `None`: it does not, or
+/// the leg before can't be flown to another one.
+fn beginning<'a>(view: &'a Inspection, step: &Step, most_mps: f64) -> Option<Beginning<'a>> {
+    let before =
+        view.before(step).filter(|before| step.leg.altitude.is_none() && before.leg.altitude.is_some())?;
+    let (from_m, to_m) = (step.start?.altitude_amsl_m?, step.end?.altitude_amsl_m?);
+    let possible_m = step.path?.length_m() / step.speed_mps * most_mps;
+    let is_higher = to_m > from_m;
+    let altitude_amsl_m = if is_higher { (to_m - possible_m).ceil() } else { (to_m + possible_m).floor() };
+    let edit = relevelled(view, &before.leg.id, before.altitude(), from_m, altitude_amsl_m - from_m)?;
+    let is_flown = before.entry_altitude_amsl_m().is_none_or(|entry_m| {
+        let gain_m = altitude_amsl_m - entry_m;
+        let most_m = longest_m(before).map(|m| m / before.speed_mps * limit_mps(view, before, gain_m));
+        most_m.is_none_or(|most_m| gain_m.abs() <= most_m)
+    });
+    is_flown.then_some(Beginning { leg: &before.leg.id, altitude_amsl_m, is_higher, edit })
 }
 
 /// The altitude that is reached at the end of the leg; not where that only makes the next one too steep.
@@ -129,11 +166,12 @@ mod tests {
             let (advice, why) = message.split_once(": ").unwrap();
             assert!(why.starts_with(&format!("it takes {takes} m/s, the aircraft does 4.0")), "{message}");
             let reached: f64 =
-                advice.split("end it at ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+                advice.strip_prefix("end it at ").unwrap().split(' ').next().unwrap().parse().unwrap();
             check_legs(&[(&with(reached), &[])]);
             check_legs(&[(&with(reached + 1.0), &["too-steep"])]);
             let length: f64 = advice
-                .strip_prefix("lengthen this leg from 2694 m to ")
+                .split("lengthen this leg from 2694 m to ")
+                .nth(1)
                 .unwrap()
                 .split(' ')
                 .next()
@@ -144,6 +182,25 @@ mod tests {
             let longer = with(altitude_m).replace(r#"fix="B""#, &format!(r#"lat="36.3" lon="{lon}""#));
             check_legs(&[(&longer, &[])]);
         }
+    }
+
+    /// The leg before was raised by itself, and this one goes back to its stage's altitude.
+    #[test]
+    fn the_altitude_of_the_leg_before_is_named_first_where_it_is_the_cause() {
+        let raised = |metres: f64| {
+            format!(
+                r#"<IF id="a" fix="A" altitude="{metres}" altitudeReference="amsl"/><TF id="b" fix="B"/>"#
+            )
+        };
+        let message = message_of(&raised(1100.0), "too-steep");
+        let rest = message.strip_prefix("lower `a` to ").unwrap_or_else(|| panic!("{message}"));
+        let highest: f64 = rest.split(' ').next().unwrap().parse().unwrap();
+        check_legs(&[(&raised(highest), &[]), (&raised(highest + 2.0), &["too-steep"])]);
+        let found = check(&read(plan_with(&raised(1100.0))).plan, &Profile::default(), &Flat(300.0));
+        let fix = found.iter().find_map(|problem| problem.fix.as_ref()).unwrap();
+        assert!(format!("{fix:?}").contains("\"a\""), "the fix is what is named first: {fix:?}");
+        let both = r#"<IF id="a" fix="A" altitude="1100" altitudeReference="amsl"/><TF id="b" fix="B" altitude="500" altitudeReference="amsl"/>"#;
+        assert!(message_of(both, "too-steep").starts_with("end it at "), "its own altitude is asked for");
     }
 
     /// What is written with four decimals is a hair steeper than what it was written from.
