@@ -3,6 +3,7 @@
 use super::{SQUARE, Window};
 use egui::{Key, Pos2, vec2};
 use egui_kittest::kittest::Queryable;
+use flight_plan::FlightPlan;
 
 const OTHER: &str = "Add its other direction";
 
@@ -95,4 +96,35 @@ fn an_emergency_plan_leads_to_the_direction_that_begins_where_the_runway_was_cli
         window.click_at([middle - along, middle + along][nearer]);
         assert!(window.shows(&format!("Emergency plan to {runway}: click its places")), "{runway}");
     }
+}
+
+/// They stayed before the other end, and the landing was another one.
+#[test]
+fn the_approach_goes_with_an_emergency_plan_that_lands_on_the_other_direction() {
+    let mut window = opened();
+    window.row_menu(("RWY R05", 0), OTHER);
+    window.press(Key::Escape);
+    let [middle, towards] = ends(&window);
+    window.press(Key::E);
+    window.click_at(middle - (towards - middle).normalized() * 12.0);
+    window.press(Key::Enter);
+    window.press(Key::Escape);
+    let before = window.plan();
+    let id = before.emergency_plans.last().unwrap().id.clone();
+    assert_eq!((id.as_str(), window.selected()), ("return2", id.to_string()), "what was made is selected");
+    assert_eq!(before.emergency_plan(&id).unwrap().runway.as_str(), "R05");
+    let last_leg_at = |plan: &FlightPlan| {
+        let stages = &plan.emergency_plan(&id).unwrap().stages;
+        let leg = stages.iter().rev().find_map(|stage| stage.legs.last()).unwrap();
+        flight_plan::transform::places(plan, leg)[0]
+    };
+    window.choose_option("Lands on", "R23");
+    let plan = window.plan();
+    let at = last_leg_at(&plan);
+    let [old, new] = &plan.runways[..] else { panic!("two") };
+    assert_eq!(plan.emergency_plan(&id).unwrap().runway, new.id);
+    assert!(at.distance_m(new.threshold) < at.distance_m(old.threshold), "before the other end");
+    assert_eq!(plan.stages, before.stages);
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step");
 }

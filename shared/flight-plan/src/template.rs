@@ -12,7 +12,7 @@ mod mission;
 pub use extent::Extent;
 pub(crate) use frame::{GLIDE_SLOPE, climb_out};
 pub use home::WayHome;
-pub(crate) use home::bring_home;
+pub(crate) use home::{before_threshold_m, bring_home, return_name, returns_to};
 
 use crate::figures;
 use crate::uses::SlotMut;

@@ -1,10 +1,12 @@
-//! What is said of a landing that no approach leads to.
+//! What is said of a landing that no approach leads to, and what goes with it to another runway.
 
+use super::page::Page;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::panels::Scene;
 use crate::theme;
 use egui::{Label, RichText, Ui};
-use flight_plan::{FlightPlan, Id, Stage, StageKind, create};
+use flight_plan::describe::Subject;
+use flight_plan::{Edit, FlightPlan, Id, Stage, StageKind, create};
 
 const ADD: &str = "Add an approach stage";
 
@@ -21,6 +23,14 @@ pub fn without_approach(ui: &mut Ui, scene: &Scene<'_>, stage: &Id, queue: &mut 
         let (made, edit) = create::add_stage(plan, StageKind::Approach);
         queue.edit(edit);
         queue.view(ViewCommand::Select(Some(Selection::Stage(made))));
+    }
+}
+
+/// What lets a landing or an emergency plan end on this runway, with the approach that leads there. `None`: it is neither.
+pub fn on(page: &Page<'_, '_>, runway: &str) -> Option<Edit> {
+    match page.subject() {
+        Subject::Stage(of) | Subject::EmergencyPlan(of) => create::land_on(page.plan(), of, &runway.into()),
+        _ => None,
     }
 }
 

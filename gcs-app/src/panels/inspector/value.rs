@@ -3,7 +3,7 @@
 use super::formula::{self, Typing};
 use super::inherited::Inherited;
 use super::page::Page;
-use super::{bind, inherited, together};
+use super::{bind, inherited, landing, together};
 use crate::coordinates;
 use crate::panels::field;
 use crate::theme;
@@ -188,8 +188,10 @@ fn reference(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, sort: So
     let now = options.iter().position(|(_, id)| id.as_deref() == given);
     let labels: Vec<&str> = options.iter().map(|(label, _)| label.as_str()).collect();
     let chosen = field::choice(ui, &page.name(property.label), &labels, now);
-    if let Some((_, id)) = chosen.and_then(|chosen| options.get(chosen)) {
-        page.set(property, id.clone());
+    let Some((_, id)) = chosen.and_then(|chosen| options.get(chosen)) else { return };
+    match id.as_deref().filter(|_| sort == Sort::Runway).and_then(|id| landing::on(page, id)) {
+        Some(edit) => page.queue.edit(edit),
+        None => page.set(property, id.clone()),
     }
 }
 

@@ -10,6 +10,7 @@ mod course;
 mod descent;
 mod gather;
 mod kind;
+mod land_on;
 mod leave;
 mod leg;
 mod rearrange;
@@ -28,6 +29,7 @@ pub use binding::{Binding, bindings, has_bindings, place_binding, place_name};
 pub use branch::{Way, begin_way, delete_leg, insert};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
+pub use land_on::land_on;
 pub use leg::{Drawn, call, convert, leg};
 pub use rearrange::{
     StageSpot, are_neighbours, into_branch, relocate, relocate_stage, relocate_thing, shift_legs, shift_thing,

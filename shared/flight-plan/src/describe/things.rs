@@ -281,7 +281,12 @@ const EMERGENCY_PLAN: Description = element(
     "Another way down: stages of its own that end on a runway.",
     &[
         HEAD,
-        &[P(property("runway", "Lands on", "The runway on which it ends.", Kind::Reference(Sort::Runway)))],
+        &[P(property(
+            "runway",
+            "Lands on",
+            "The runway on which it ends. Its approach goes with it to another one.",
+            Kind::Reference(Sort::Runway),
+        ))],
     ],
 );
 

@@ -78,30 +78,40 @@ pub(crate) fn bring_home(
         lead_through(arrival, id, outwards.get(over.len()..).unwrap_or_default());
     }
     stages.iter_mut().for_each(|stage| raise(stage, runway.elevation_amsl_m - datum_m, reference));
-    let name = name(plan, runway);
+    let name = return_name(plan, runway);
     (made, EmergencyPlan { id: id.clone(), name, runway: runway.id.clone(), stages })
 }
 
-/// Another one to the same runway is told from the first by its number.
-fn name(plan: &FlightPlan, runway: &Runway) -> String {
+/// What a way home is called: another one to the same runway is told from the first by its number.
+pub(crate) fn return_name(plan: &FlightPlan, runway: &Runway) -> String {
     let first = format!("Return to {}", runway.id);
     let is_free = |name: &String| plan.emergency_plans.iter().all(|other| other.name != *name);
     let others = (2..).map(|number| format!("{first} ({number})"));
     std::iter::once(first.clone()).chain(others).find(is_free).unwrap_or_default()
 }
 
+/// A way home to this runway is called so, or would be beside others.
+pub(crate) fn returns_to(name: &str, runway: &Runway) -> bool {
+    let number = name.strip_prefix("Return to ").and_then(|rest| rest.strip_prefix(runway.id.as_str()));
+    number.is_some_and(|rest| rest.is_empty() || (rest.starts_with(" (") && rest.ends_with(')')))
+}
+
 /// The first of some places that are drawn outwards, as far as they are on the centre line and nearer than the final begins, with their
 /// distances to the threshold, metres.
 fn on_the_final(plan: &FlightPlan, runway: &Runway, outwards: &[Place], final_m: f64) -> Vec<(f64, Place)> {
-    let frame = LocalFrame::new(runway.threshold);
-    let ahead = Vec2::from_bearing_rad(runway.heading_deg.to_radians());
     let on_it = |place: &Place| {
-        let from_threshold = frame.to_local(position(plan, place)?);
-        let (before_m, beside_m) = (-from_threshold.dot(ahead), from_threshold.cross(ahead).abs());
-        let is_on_line = beside_m <= BESIDE_M + BESIDE_SHARE * before_m;
-        ((0.0..final_m).contains(&before_m) && is_on_line).then(|| (before_m, place.clone()))
+        let before_m = before_threshold_m(runway, position(plan, place)?)?;
+        (before_m < final_m).then(|| (before_m, place.clone()))
     };
     outwards.iter().map_while(on_it).collect()
+}
+
+/// How far before the threshold a place on the centre line is, metres; `None`: it is beside it, or behind the threshold.
+pub(crate) fn before_threshold_m(runway: &Runway, at: LatLon) -> Option<f64> {
+    let ahead = Vec2::from_bearing_rad(runway.heading_deg.to_radians());
+    let from_threshold = LocalFrame::new(runway.threshold).to_local(at);
+    let (before_m, beside_m) = (-from_threshold.dot(ahead), from_threshold.cross(ahead).abs());
+    (before_m >= 0.0 && beside_m <= BESIDE_M + BESIDE_SHARE * before_m).then_some(before_m)
 }
 
 fn position(plan: &FlightPlan, place: &Place) -> Option<LatLon> {
