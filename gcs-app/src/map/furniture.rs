@@ -300,7 +300,7 @@ pub fn toolbar(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut 
         }
     }
     tour::mark(ui.ctx(), tour::TOOLS, shown);
-    tool_chip::show(ui, tools, &columns, scene);
+    tool_chip::show(ui, tools, &columns, scene, queue);
 }
 
 /// A tool's card, and whether it is in use.

@@ -4,6 +4,7 @@
 use super::chips;
 use super::furniture::NARROW;
 use super::tools::Toolbox;
+use crate::command::Queue;
 use crate::panels::{Scene, start};
 use crate::theme;
 use egui::{
@@ -29,11 +30,11 @@ const ENDING: &str = " Esc ends it.";
 const CLEAR: f32 = 40.0;
 
 /// Draws it. `columns`: what the tools take of the map.
-pub fn show(ui: &mut Ui, tools: &mut Toolbox, columns: &[Rect], scene: &Scene<'_>) {
+pub fn show(ui: &mut Ui, tools: &mut Toolbox, columns: &[Rect], scene: &Scene<'_>, queue: &mut Queue) {
     let map = ui.min_rect();
     let shown = tools.status(scene).map(|status| match map.width() < NARROW {
-        true => line(ui, tools, &status, columns, scene),
-        false => whole(ui, tools, status, columns, scene),
+        true => line(ui, tools, &status, columns, (scene, queue)),
+        false => whole(ui, tools, status, columns, (scene, queue)),
     });
     let takes_places = tools.takes_places();
     ui.data_mut(|data| data.insert_temp(places_id(), takes_places));
@@ -44,7 +45,13 @@ pub fn show(ui: &mut Ui, tools: &mut Toolbox, columns: &[Rect], scene: &Scene<'_
 }
 
 /// Everything, in as many lines as that takes.
-fn whole(ui: &mut Ui, tools: &mut Toolbox, status: String, columns: &[Rect], scene: &Scene<'_>) -> Rect {
+fn whole(
+    ui: &mut Ui,
+    tools: &mut Toolbox,
+    status: String,
+    columns: &[Rect],
+    (scene, queue): (&Scene<'_>, &mut Queue),
+) -> Rect {
     let map = ui.min_rect();
     // beside the card for a new mission, where that lies on the map
     let card = if start::is_wanted(scene) && start::is_on(map) { start::WIDTH + 36.0 } else { 0.0 };
@@ -54,7 +61,7 @@ fn whole(ui: &mut Ui, tools: &mut Toolbox, status: String, columns: &[Rect], sce
     theme::card(&chip).show(&mut chip, |ui| {
         // above what is said, which takes one line or two: nothing moves under the pointer
         if tools.has_options() {
-            ui.horizontal_wrapped(|ui| tools.options(ui, scene));
+            ui.horizontal_wrapped(|ui| tools.options(ui, scene, queue));
         }
         ui.add(Label::new(status).selectable(false).wrap());
     });
@@ -66,7 +73,13 @@ fn opaque(room: Rect) -> UiBuilder {
     UiBuilder::new().max_rect(room).id_salt("tool status").sense(Sense::click_and_drag())
 }
 
-fn line(ui: &mut Ui, tools: &mut Toolbox, status: &str, columns: &[Rect], scene: &Scene<'_>) -> Rect {
+fn line(
+    ui: &mut Ui,
+    tools: &mut Toolbox,
+    status: &str,
+    columns: &[Rect],
+    (scene, queue): (&Scene<'_>, &mut Queue),
+) -> Rect {
     let map = ui.min_rect();
     let text = status.strip_suffix(ENDING).unwrap_or(status);
     let with_choices = tools.has_options() && tools.takes_places();
@@ -86,7 +99,7 @@ fn line(ui: &mut Ui, tools: &mut Toolbox, status: &str, columns: &[Rect], scene:
         ui.horizontal(|ui| {
             ui.spacing_mut().button_padding.x = 3.0;
             if with_choices {
-                choices(ui, tools, scene);
+                choices(ui, tools, scene, queue);
             }
             ui.add(Label::new(letters).selectable(false)).on_hover_text(status);
         });
@@ -121,7 +134,7 @@ fn beside(map: Rect, (top, tall): (f32, f32), right: f32, columns: &[Rect]) -> R
 }
 
 /// The choices, behind a button.
-fn choices(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>) {
+fn choices(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>, queue: &mut Queue) {
     let open_id = Id::unique("choices of the tool");
     let mut open = ui.data(|data| data.get_temp::<bool>(open_id)).unwrap_or(false);
     let button = ui.small_button("⏷").on_hover_text("What is drawn, and where");
@@ -132,7 +145,7 @@ fn choices(ui: &mut Ui, tools: &mut Toolbox, scene: &Scene<'_>) {
     let popup = Popup::menu(&button).open_bool(&mut open);
     popup.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
         ui.set_max_width(CHOICES);
-        ui.horizontal_wrapped(|ui| tools.options(ui, scene));
+        ui.horizontal_wrapped(|ui| tools.options(ui, scene, queue));
     });
     ui.data_mut(|data| data.insert_temp(open_id, open));
 }

@@ -128,3 +128,23 @@ fn the_approach_goes_with_an_emergency_plan_that_lands_on_the_other_direction() 
     window.click("Undo");
     assert_eq!(window.plan(), before, "one step");
 }
+
+/// It led to the one direction, and nobody said that the other one has to be in the plan first.
+#[test]
+fn an_emergency_plan_offers_the_direction_that_lacks_where_the_runway_was_clicked_at_its_end() {
+    let mut window = opened();
+    let [middle, towards] = ends(&window);
+    let along = (towards - middle).normalized() * 12.0;
+    window.press(Key::E);
+    window.click_at(middle - along);
+    assert!(window.shows("Emergency plan to R05: click its places") && !window.shows(OTHER));
+    window.press(Key::Escape);
+    window.steps(40);
+    window.click_at(middle + along);
+    assert!(window.shows("You clicked the end of it, where no runway of the plan begins"));
+    window.click(OTHER);
+    assert_eq!(ids(&window), ["R05", "R23"]);
+    assert!(window.shows("Emergency plan to R23: click its places") && !window.shows(OTHER));
+    window.press(Key::Enter);
+    assert_eq!(window.plan().emergency_plans.last().unwrap().runway.as_str(), "R23");
+}

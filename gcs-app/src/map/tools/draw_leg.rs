@@ -123,7 +123,7 @@ impl Tool for DrawLeg {
         })
     }
 
-    fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
+    fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
         if self.pen.len() > 0 {
             return;
         }

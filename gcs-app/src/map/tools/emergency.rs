@@ -4,16 +4,17 @@
 use super::bands::{self, Band};
 use super::new_leg::{self, Aim};
 use super::pen::{Figure, Mark, Pen};
-use super::pick::runway_near;
+use super::pick::{is_nearer_to_end, runway_near};
 use super::snap::snap;
 use super::trial::Trials;
 use super::{Canvas, Card, Pointer, Tool, Touch};
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::panels::Scene;
+use crate::runways::{self, ADD_OTHER};
 use crate::theme::Palette;
-use egui::{CursorIcon, Key, Painter, Pos2};
+use egui::{CursorIcon, Key, Painter, Pos2, Ui};
 use flight_plan::create::{Approach, Drawn, LegChoice};
-use flight_plan::{Id, Place, Spot};
+use flight_plan::{Edit, Id, Place, Runway, Spot, Thing};
 use geometry::LatLon;
 
 /// The tool.
@@ -21,6 +22,10 @@ use geometry::LatLon;
 pub struct DrawEmergency {
     pen: Pen,
     runway: Option<Id>,
+    /// The runway was clicked where it ends, and begins there in no direction of the plan.
+    is_at_end: bool,
+    /// The other direction of the runway, as soon as the plan has it.
+    other: Option<Id>,
     /// From where it would be flown.
     raised: Option<Raised>,
     /// The way from there to where it begins.
@@ -58,7 +63,14 @@ fn raised(scene: &Scene<'_>) -> Option<Raised> {
 
 impl Default for DrawEmergency {
     fn default() -> Self {
-        Self { pen: Pen::new(Figure::Line), runway: None, raised: None, trials: Trials::default() }
+        Self {
+            pen: Pen::new(Figure::Line),
+            runway: None,
+            is_at_end: false,
+            other: None,
+            raised: None,
+            trials: Trials::default(),
+        }
     }
 }
 
@@ -72,6 +84,27 @@ impl DrawEmergency {
             queue.document(DocumentCommand::BringHome { runway, outwards, from });
         }
         self.pen.clear();
+    }
+
+    fn begin(&mut self, runway: &Runway, canvas: &Canvas<'_>) {
+        self.pen.clear();
+        self.runway = Some(runway.id.clone());
+        let _ = self.pen.put(Mark::at(runway.threshold), canvas);
+    }
+
+    /// Goes over to the other direction once the plan has it.
+    fn turn(&mut self, canvas: &Canvas<'_>) {
+        let plan = canvas.scene.document.plan();
+        if let Some(other) = self.other.as_ref().and_then(|id| plan.runway(id)) {
+            self.begin(other, canvas);
+            (self.other, self.is_at_end) = (None, false);
+        }
+    }
+
+    /// The other direction of its runway, where that was meant and is lacking.
+    fn lacking(&self, scene: &Scene<'_>) -> Option<Runway> {
+        let runway = self.runway.as_ref().filter(|_| self.is_at_end)?;
+        runways::other_direction(scene.document.plan(), runway, scene.ground.0).ok()
     }
 
     /// Where it begins, as it is drawn so far.
@@ -119,6 +152,9 @@ impl Tool for DrawEmergency {
                 "Emergency plan: draw a runway first, it lands on one.".into()
             }
             None => "Emergency plan: click the runway it leads to. Esc ends it.".into(),
+            Some(runway) if self.lacking(scene).is_some() => format!(
+                "Emergency plan to {runway}. You clicked the end of it, where no runway of the plan begins: “{ADD_OTHER}” lets it land from there. Or click its places from {runway} outwards; Enter ends it, Escape gives it up."
+            ),
             Some(runway) => format!(
                 "Emergency plan to {runway}: click its places from there outwards, it is flown inwards. Enter or a double click ends it, Escape gives it up; without places it comes straight home.{}",
                 self.way_in(scene)
@@ -126,7 +162,17 @@ impl Tool for DrawEmergency {
         })
     }
 
+    fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        let Some(other) = self.lacking(scene) else { return };
+        let lands = format!("The emergency plan leads to {} then", other.id);
+        if ui.button(ADD_OTHER).on_hover_text(lands).clicked() {
+            self.other = Some(other.id.clone());
+            queue.edit(Edit::Add(Box::new(Thing::Runway(other))));
+        }
+    }
+
     fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {
+        self.turn(canvas);
         self.pen.hover(at, canvas);
         let gone = |id: &Id| canvas.scene.document.plan().runway(id).is_none();
         if self.pen.len() == 0 || self.runway.as_ref().is_some_and(gone) {
@@ -141,8 +187,8 @@ impl Tool for DrawEmergency {
         }
         match runway_near(pointer.at, canvas) {
             Some(runway) => {
-                self.runway = Some(runway.id.clone());
-                self.pen.put(Mark::at(runway.threshold), canvas);
+                self.is_at_end = is_nearer_to_end(pointer.at, runway, canvas);
+                self.begin(runway, canvas);
             }
             None => queue.view(ViewCommand::Notice("Click a runway: the emergency plan leads there.".into())),
         }
@@ -175,7 +221,7 @@ impl Tool for DrawEmergency {
     fn leave(&mut self) {
         self.pen.clear();
         self.trials.clear();
-        (self.runway, self.raised) = (None, None);
+        (self.runway, self.raised, self.other, self.is_at_end) = (None, None, None, false);
     }
 
     fn is_busy(&self) -> bool {

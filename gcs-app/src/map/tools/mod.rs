@@ -148,7 +148,7 @@ pub trait Tool: std::fmt::Debug {
     }
 
     /// Choices about what it draws, beside its status.
-    fn options(&mut self, _ui: &mut Ui, _scene: &Scene<'_>) {}
+    fn options(&mut self, _ui: &mut Ui, _scene: &Scene<'_>, _queue: &mut Queue) {}
 
     /// What can be grabbed now.
     fn grips(&self, _canvas: &Canvas<'_>) -> Vec<Grip> {

@@ -82,6 +82,12 @@ pub fn runway_near<'a>(at: Pos2, canvas: &Canvas<'a>) -> Option<&'a Runway> {
     near.min_by(|a, b| far(a).total_cmp(&far(b)))
 }
 
+/// The pointer is nearer to where a runway ends than to where it begins.
+pub fn is_nearer_to_end(at: Pos2, runway: &Runway, canvas: &Canvas<'_>) -> bool {
+    let far = |place: LatLon| canvas.view.place(place).distance(at);
+    far(end_of(runway)) < far(runway.threshold)
+}
+
 fn end_of(runway: &Runway) -> LatLon {
     runway.threshold.destination(runway.heading_deg, runway.length_m.clamp(1.0, 10_000.0))
 }

@@ -113,7 +113,7 @@ impl Tool for PlaceProcedure {
         Some(format!("Procedure {} {place}: {next}.{trial}", name(procedure)))
     }
 
-    fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
+    fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
         if self.pen.len() > 0 {
             return;
         }

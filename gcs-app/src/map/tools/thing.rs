@@ -94,7 +94,7 @@ impl Tool for DrawRunway {
         Some(format!("Runway: {next}. Esc ends it."))
     }
 
-    fn options(&mut self, ui: &mut Ui, _scene: &Scene<'_>) {
+    fn options(&mut self, ui: &mut Ui, _scene: &Scene<'_>, _queue: &mut Queue) {
         ui.checkbox(&mut self.both, "Both directions")
             .on_hover_text("Make two runways of it, one for each landing direction");
     }
@@ -228,7 +228,7 @@ impl Tool for DrawZone {
         });
     }
 
-    fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
+    fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
         let above_ground =
             |metres| Altitude { metres: Value::Constant(metres), reference: AltitudeReference::Agl };
         for (figure, name) in [(Figure::Ring, "outline"), (Figure::Circle, "circle")] {

@@ -119,9 +119,9 @@ impl Toolbox {
     }
 
     /// Draws the choices that the tool in use offers.
-    pub fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>) {
+    pub fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         if let Some(tool) = self.tools.get_mut(self.current) {
-            tool.options(ui, scene);
+            tool.options(ui, scene, queue);
             if let Some(from) = tool.typed_from()
                 && self.typed.show(ui, scene, from)
             {
