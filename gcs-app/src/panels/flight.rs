@@ -391,7 +391,7 @@ pub fn can_rewind(scene: &Scene<'_>) -> bool {
 /// Least width of the emergency's button, screen points: most names fit, and what is beside it stays in its place.
 const EMERGENCY: f32 = 290.0;
 
-/// `Return to R34 · 0.8 km, 120 m to spare`.
+/// `Return to R34 · 0.8 km, 120 m to spare at the threshold`.
 fn label(scene: &Scene<'_>, plan: &EmergencyPlan) -> String {
     let runway = scene.vehicle.aboard.as_ref().and_then(|aboard| aboard.plan.runway(&plan.runway));
     let reach = runway.and_then(|runway| reach::in_words(scene, runway)).map(|reach| format!(" · {reach}"));

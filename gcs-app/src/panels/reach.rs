@@ -75,24 +75,27 @@ impl Start {
         Some(Arrives { above_m, spare_m: above_m - reserve_m(self.from.altitude_amsl_m - arrives_m) })
     }
 
-    /// `2.9 km`; without an engine `2.9 km, 120 m to spare`, `2.9 km, just reached: 20 m above it` or `2.9 km, not reached: 220 m too low`.
+    /// `2.9 km`; without an engine `2.9 km, 120 m to spare at the threshold` (besides the reserve), `2.9 km, just reached: 20 m high over the
+    /// threshold` or `2.9 km, not reached: 220 m too low at the threshold`.
     fn in_words(&self, runway: &Runway, plan: &FlightPlan, units: Units) -> String {
         let Seen { away_m, arrives } = self.seen(runway, plan);
         let (away, height) = (units.distance().show(away_m), units.altitude());
         match arrives {
             Some(Arrives { above_m, .. }) if above_m < 0.0 => {
-                format!("{away}, not reached: {} too low", height.show(-above_m))
+                format!("{away}, not reached: {} too low at the threshold", height.show(-above_m))
             }
             Some(Arrives { above_m, spare_m }) if spare_m < 0.0 => {
-                format!("{away}, just reached: {} above it", height.show(above_m))
+                format!("{away}, just reached: {} high over the threshold", height.show(above_m))
             }
-            Some(Arrives { spare_m, .. }) => format!("{away}, {} to spare", height.show(spare_m)),
+            Some(Arrives { spare_m, .. }) => {
+                format!("{away}, {} to spare at the threshold", height.show(spare_m))
+            }
             None if self.without_engine.is_some() => format!("{away}, not reached against the wind"),
             None => away,
         }
     }
 
-    /// Another runway than this that is reached, the one with the most to spare: `R34 0.8 km, 120 m to spare`.
+    /// Another runway than this that is reached, the one with the most to spare: `R34 0.8 km, 120 m to spare at the threshold`.
     fn another(&self, plan: &FlightPlan, than: &Runway, units: Units) -> Option<String> {
         let others = plan.runways.iter().filter(|other| other.id != than.id);
         let reached =
@@ -116,7 +119,7 @@ pub fn in_words(scene: &Scene<'_>, runway: &Runway) -> Option<String> {
     Some(Start::now(scene)?.in_words(runway, &scene.vehicle.aboard.as_ref()?.plan, scene.units()))
 }
 
-/// Another runway of the plan aboard that the aircraft reaches: `R34 0.8 km, 120 m to spare`.
+/// Another runway of the plan aboard that the aircraft reaches: `R34 0.8 km, 120 m to spare at the threshold`.
 pub fn another(scene: &Scene<'_>, than: &Runway) -> Option<String> {
     Start::now(scene)?.another(&scene.vehicle.aboard.as_ref()?.plan, than, scene.units())
 }
@@ -161,13 +164,19 @@ mod tests {
             "nothing is to spare with an engine"
         );
         let (said, another) = words(800.0, 500.0, false, Wind::CALM);
-        assert!(said.starts_with("0.8 km, ") && said.ends_with(" m to spare"), "{said}");
+        assert!(said.starts_with("0.8 km, ") && said.ends_with(" m to spare at the threshold"), "{said}");
         assert_eq!(another, Some(format!("R05 {said}")));
         let (said, another) = words(2800.0, 500.0, false, Wind::CALM);
-        assert!(said.starts_with("2.8 km, not reached: ") && said.ends_with(" too low"), "{said}");
+        assert!(
+            said.starts_with("2.8 km, not reached: ") && said.ends_with(" m too low at the threshold"),
+            "{said}"
+        );
         assert_eq!(another, None);
         let (said, another) = words(1300.0, 420.0, false, Wind::CALM);
-        assert!(said.starts_with("1.3 km, just reached: ") && said.ends_with(" above it"), "{said}");
+        assert!(
+            said.starts_with("1.3 km, just reached: ") && said.ends_with(" m high over the threshold"),
+            "{said}"
+        );
         assert_eq!(another, None, "without its reserve it is not offered");
         let storm = Wind::from_direction(90.0, 60.0);
         assert_eq!(words(800.0, 500.0, false, storm).0, "0.8 km, not reached against the wind");

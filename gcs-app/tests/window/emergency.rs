@@ -504,7 +504,10 @@ fn engine_failure_says_at_once_what_is_in_reach_and_the_list_of_plans_does() {
     window.receive(Telemetry::Position(here));
     window.answer(*way, Ok(Reply::Foresight(Box::new(short))));
     window.steps(20);
-    assert!(window.shows("2000 m from runway “R05” · reached straight: R34 0.4 km, 81 m to spare"));
+    assert!(
+        window
+            .shows("2000 m from runway “R05” · reached straight: R34 0.4 km, 81 m to spare at the threshold")
+    );
 }
 
 /// The map had been moved to a push, and the aircraft flew out of it.

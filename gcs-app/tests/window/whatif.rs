@@ -216,7 +216,7 @@ fn an_engine_failure_at_the_cursor_leads_to_the_runway_of_the_plan_as_without_a_
     let analysis = window.app().analysis().clone();
     let found = analysis.diversion().unwrap();
     let first = "Engine failure: R05 is reached without the engine on return, ";
-    assert!(window.shows(first) && window.shows(" above the threshold, after "), "how high, and when");
+    assert!(window.shows(first) && window.shows(", over the threshold "), "how high, and when");
     assert!(window.shows("With an engine that runs: return, after "));
     assert_eq!(found.time_s, at_s);
     let threshold = window.plan().runway(&"R05".into()).unwrap().threshold;

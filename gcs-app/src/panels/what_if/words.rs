@@ -138,7 +138,10 @@ pub fn diversion(diversion: &Diversion, flown: &FlightPlan, units: Units) -> Vec
 fn just(cause: Cause, margins: &Margins, units: Units) -> String {
     match cause {
         Cause::Engine => {
-            format!("Just: less than {} of height is to spare.", units.altitude().show(margins.glide_m))
+            let height = units.altitude().show(margins.glide_m);
+            format!(
+                "Just: at best a glide, along the plan or straight, is at the threshold less than {height} high."
+            )
         }
         _ => format!("Just: less than {:.0} % energy is to spare.", margins.energy_share * 100.0),
     }
@@ -176,13 +179,23 @@ fn without_engine(
     let track = flown.track.iter().map(|at| at.position);
     let other = runway.filter(|runway| other_end::is_come_to(track, runway)).map(Runway::from_other_end);
     let height = other.as_ref().or(runway).and_then(|runway| height_at_threshold_m(flown, runway));
-    let height = height.map(|m| format!(", {} above the threshold", units.altitude().show(m)));
     let from = if other.is_some() { ", landing from its other end" } else { "" };
-    format!(" {part} {plan}{}{from}, after {time}", height.unwrap_or_default())
+    let down = match height {
+        Some(..TOUCHING_M) => format!("{from}, touching down at the threshold"),
+        Some(height_m) => {
+            let height = units.altitude().show(height_m);
+            format!(", over the threshold {height} high{from}, down")
+        }
+        None => format!("{from}, down"),
+    };
+    format!(" {part} {plan}{down} after {time}")
 }
 
 /// So near to the threshold it is passed, metres.
 const AT_THRESHOLD_M: f64 = 100.0;
+
+/// What is lower over the threshold is said to touch down there, metres.
+const TOUCHING_M: f64 = 1.0;
 
 /// How high the threshold is passed; `None`: it is not.
 fn height_at_threshold_m(flown: &Glided, runway: &Runway) -> Option<f64> {
@@ -201,11 +214,13 @@ fn calculated(glide: &Glide, reserve_m: f64, units: Units) -> String {
     }
     match glide.reach(reserve_m) {
         _ if !glide.time_s.is_finite() => format!("{way}: it does not get there against the wind."),
-        Reach::Out => format!("{way}: ends before the runway, {} too low.", height.show(-glide.margin_m)),
+        Reach::Out => {
+            format!("{way}: at the threshold it would be {} too low.", height.show(-glide.margin_m))
+        }
         _ => format!(
-            "{way}: there after {}, {} above the threshold.",
-            units::duration(glide.time_s),
-            height.show(glide.margin_m)
+            "{way}: at the threshold {} high, after {}.",
+            height.show(glide.margin_m),
+            units::duration(glide.time_s)
         ),
     }
 }
@@ -291,8 +306,8 @@ mod tests {
         assert_eq!(
             words(&found),
             [
-                "Engine failure: R05 is reached without the engine along Return home, 12 m above the threshold, after 1:30.",
-                "Not flown, for comparison: a glide along all of the plan: there after 1:35, 40 m above the threshold.",
+                "Engine failure: R05 is reached without the engine along Return home, over the threshold 12 m high, down after 1:30.",
+                "Not flown, for comparison: a glide along all of the plan: at the threshold 40 m high, after 1:35.",
                 "With an engine that runs: Return home, after 3:20, 62 % energy left.",
             ]
         );
@@ -302,10 +317,10 @@ mod tests {
         assert_eq!(
             words(&found)[..3],
             [
-                "Engine failure: R05 is just reached without the engine on a part of Return home, 12 m above the threshold, \
-                 after 1:30.",
-                "Just: less than 15 m of height is to spare.",
-                "Not flown, for comparison: a glide along all of the plan: ends before the runway, 480 m too low.",
+                "Engine failure: R05 is just reached without the engine on a part of Return home, over the threshold 12 m high, \
+                 down after 1:30.",
+                "Just: at best a glide, along the plan or straight, is at the threshold less than 15 m high.",
+                "Not flown, for comparison: a glide along all of the plan: at the threshold it would be 480 m too low.",
             ]
         );
         let straight = words(&Diversion { straight_m: Some(61.0), ..found.clone() });
@@ -321,9 +336,13 @@ mod tests {
         }
         assert_eq!(
             words(&found)[0],
-            "Engine failure: R05 is just reached without the engine on a part of Return home, 12 m above the threshold, \
-             landing from its other end, after 1:30."
+            "Engine failure: R05 is just reached without the engine on a part of Return home, over the threshold 12 m high, \
+             landing from its other end, down after 1:30."
         );
+        if let Some(glided) = &mut found.glided {
+            glided.track = vec![point(8.99, 380.0), point(9.0001, 300.4), point(9.002, 300.0)];
+        }
+        assert!(words(&found)[0].ends_with(", touching down at the threshold after 1:30."), "not 0 m high");
         if let Some(glided) = &mut found.glided {
             glided.missed_m = 480.0;
         }
@@ -351,7 +370,7 @@ mod tests {
             powered(true, 0.62),
             [
                 "Link lost: R05 is reached on Return home, after 3:20, 62 % energy left.",
-                "A glide along all of the plan: there after 1:35, 40 m above the threshold.",
+                "A glide along all of the plan: at the threshold 40 m high, after 1:35.",
             ]
         );
         assert_eq!(
