@@ -23,10 +23,10 @@ pub fn mend_at_source(plan: &FlightPlan, problems: &mut [Problem]) {
     for problem in problems.iter_mut().filter(is_open) {
         let Some(found) = problem.fix.as_deref().and_then(|fix| Inherited::of(plan, fix)) else { continue };
         let said = found.said(problem.subject.as_ref());
-        problem.message = match problem.message.split_once(": ") {
+        problem.reword(match problem.message.split_once(": ") {
             Some((advice, why)) => format!("{advice} ({said}): {why}"),
             None => format!("{} ({said})", problem.message),
-        };
+        });
         match found.heirs(plan) {
             legs if legs <= found.raised => problem.fix = Some(Box::new(found.edit)),
             legs => {

@@ -150,6 +150,11 @@ impl Problem {
         Self { severity: Severity::Warning, ..Self::error(code, message) }
     }
 
+    /// Says it in other words, as legible as the first ones.
+    pub fn reword(&mut self, message: impl Into<String>) {
+        self.message = legible(&message.into()).into_owned();
+    }
+
     /// The same problem, of this subject.
     pub fn of(self, subject: &Id) -> Self {
         Self { subject: Some(subject.clone()), ..self }

@@ -366,6 +366,21 @@ proptest! {
     }
 }
 
+/// The leg that a place far away makes wrong is named as long as a number that somebody wrote for its name.
+#[test]
+fn a_far_place_names_what_follows_from_it_legibly() {
+    let number = "-0.000000010124337449341684";
+    let plan = include_str!("data/language.xml").to_owned();
+    let mut parts: Vec<&str> = plan.split('"').collect();
+    let values = (parts.len() - 1) / 2;
+    for (word, place) in [("0", 130), (number, 129)] {
+        parts[2 * (place % values) + 1] = word;
+    }
+    let found = check(&read(parts.join("\"")).plan, &Profile::default(), &Flat(300.0));
+    let far = found.iter().find(|problem| problem.code == "far-away").unwrap().to_string();
+    assert!(far.contains("If it is right, see to") && flight_plan::legible(&far) == far, "{far}");
+}
+
 #[test]
 fn nothing_is_flown_at_a_pole_whatever_it_is() {
     const P: &str = r#"<variables><variable name="p" type="position" initial="88.9 10"/></variables>"#;

@@ -52,7 +52,7 @@ fn chosen(view: &View, choices: &[Choice], flight: &Result<Preview, PreviewError
         Err(_) => return None,
     };
     let choices: Vec<_> = choices.iter().map(|c| format!("`{}` at `{}`", c.branch, c.leg)).collect();
-    problem.message = format!("with {}: {}", choices.join(", "), problem.message);
+    problem.reword(format!("with {}: {}", choices.join(", "), problem.message));
     Some(problem)
 }
 

@@ -66,7 +66,7 @@ pub(super) fn alone(view: &Inspection, problems: &mut Vec<Problem>) {
         if let Some(cause) = problems.iter_mut().find(|p| p.code == CODE && p.subject.as_ref() == first) {
             cause.severity = Severity::Error;
             let whose = error.subject.as_ref().map_or_else(String::new, |leg| format!(" `{leg}`"));
-            cause.message.push_str(&format!(". If it is right, see to{whose}: {}", error.message));
+            cause.reword(format!("{}. If it is right, see to{whose}: {}", cause.message, error.message));
         }
     }
 }
