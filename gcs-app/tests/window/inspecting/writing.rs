@@ -252,13 +252,7 @@ impl Panels {
     }
 
     /// Makes a part what it is to be, by its widgets alone.
-    fn fulfil(
-        &mut self,
-        subject: &Subject,
-        wanted: &FlightPlan,
-        as_subject: &Subject,
-        moves_more: bool,
-    ) -> Result<(), String> {
+    fn fulfil(&mut self, subject: &Subject, wanted: &FlightPlan, as_subject: &Subject) -> Result<(), String> {
         let to_be = Draft::of(wanted, as_subject).unwrap();
         for _ in 0..8 {
             let plan = self.plan();
@@ -271,7 +265,7 @@ impl Panels {
         }
         match Draft::of(&self.plan(), as_subject) {
             Some(made) if made != to_be => Err(format!("{made:?} is not {to_be:?}")),
-            Some(_) if self.plan() == *wanted || moves_more => Ok(()),
+            Some(_) if self.plan() == *wanted => Ok(()),
             _ => Err("something else changed".into()),
         }
     }
@@ -287,6 +281,14 @@ fn after(selection: &Option<Selection>, wanted: &FlightPlan, wish: &Wish) -> Sub
         other => other.clone(),
     };
     selections(wanted).into_iter().find(|(of, _)| *of == selection).unwrap().1
+}
+
+/// What leads down to a landing goes with it to another runway.
+fn landed_on(plan: &FlightPlan, subject: &Subject, changes: &[Change]) -> Option<FlightPlan> {
+    let (Subject::Stage(of) | Subject::EmergencyPlan(of)) = subject else { return None };
+    let [Change::Set(property, Some(runway))] = changes else { return None };
+    let is_runway = property.attribute == "runway";
+    flight_plan::create::land_on(plan, of, &runway.as_str().into()).filter(|_| is_runway)?.apply(plan).ok()
 }
 
 #[test]
@@ -306,11 +308,10 @@ fn all_that_is_described_is_written_by_its_own_widget() {
             }
             let what = format!("{subject:?}: {:?}", wish.what);
             let wanted = changed(&plan, &draft, &wish.path, &wish.changes).unwrap();
+            let wanted = landed_on(&plan, &subject, &wish.changes).unwrap_or(wanted);
             panels.select(selection.clone());
             let as_subject = after(&selection, &wanted, &wish);
-            // the approach goes with the runway
-            let moves_more = ["Runway", "Lands on"].contains(&wish.what[1].as_str());
-            if let Err(why) = panels.fulfil(&subject, &wanted, &as_subject, moves_more) {
+            if let Err(why) = panels.fulfil(&subject, &wanted, &as_subject) {
                 failed.push(format!("{what}: {why}"));
             }
             panels.0.state_mut().document = Document::read(EVERYTHING.as_bytes(), None);
