@@ -508,10 +508,13 @@ fn emergency_mut<'a>(
 }
 
 fn associate(choice: &mut EmergencyChoice, cause: Option<Cause>, plan: Option<&Id>) {
-    choice.by_cause.retain(|(c, _)| *c != cause);
-    choice.by_cause.extend(plan.map(|plan| (cause, plan.clone())));
-    // the order in which a document says it: the fallback first
-    choice.by_cause.sort_by_key(|(cause, _)| *cause);
+    let index = choice.by_cause.iter().position(|(known, _)| *known == cause);
+    choice.by_cause.retain(|(known, _)| *known != cause);
+    if let Some(plan) = plan {
+        choice.by_cause.insert(index.unwrap_or(choice.by_cause.len()), (cause, plan.clone()));
+    }
+    // as a document says it: the fallback first. One cause has one plan, so the others have no precedence and stay as they were added
+    choice.by_cause.sort_by_key(|(cause, _)| cause.is_some());
 }
 
 fn set_variable(plan: &mut FlightPlan, name: &Id, value: VariableValue) -> Result<(), EditError> {

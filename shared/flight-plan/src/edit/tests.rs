@@ -118,6 +118,11 @@ fn emergencies_are_associated_per_cause() {
     let choice = |plan: &FlightPlan| plan.leg(&"o1".into()).unwrap().leg.emergency.by_cause.clone();
     assert_eq!(choice(&both), [(None, Id::new("north-strip")), (Some(Cause::Engine), Id::new("return"))]);
     assert_eq!(choice(&set(&both, None, None)), [(Some(Cause::Engine), Id::new("return"))]);
+    let causes = |plan: &FlightPlan| choice(plan).into_iter().map(|(cause, _)| cause).collect::<Vec<_>>();
+    let link = set(&set(&plan(), Some(Cause::Link), Some("return")), Some(Cause::Engine), Some("return"));
+    assert_eq!(causes(&link), [Some(Cause::Link), Some(Cause::Engine)], "below what is there");
+    let other = set(&link, Some(Cause::Link), Some("north-strip"));
+    assert_eq!(causes(&other), causes(&link), "another plan moves nothing");
 }
 
 #[test]
