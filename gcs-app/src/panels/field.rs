@@ -252,6 +252,37 @@ pub fn text_or_hint(ui: &mut Ui, name: &str, current: &str, hint: &str) -> Optio
     text_of_width(ui, name, current, hint, width)
 }
 
+/// A text that may be refused: what was typed then stays, in red, with the reason below it.
+pub fn text_unless(
+    ui: &mut Ui,
+    name: &str,
+    current: &str,
+    refuses: &dyn Fn(&str) -> Option<String>,
+) -> Option<String> {
+    let id = ui.scope_id().with(("refused", name));
+    let refused = ui.data(|d| d.get_temp::<(String, String)>(id)).filter(|(of, _)| of == current);
+    let shown = refused.as_ref().map_or(current, |(_, typed)| typed);
+    let why = refused.as_ref().and_then(|(_, typed)| refuses(typed));
+    let warning = crate::theme::of(ui).warning;
+    let typed = ui.vertical(|ui| {
+        let typed = ui.scope(|ui| {
+            ui.visuals_mut().override_text_color = why.as_ref().map(|_| warning);
+            text(ui, name, shown)
+        });
+        if let Some(why) = &why {
+            ui.add(egui::Label::new(egui::RichText::new(why).size(12.0).color(warning)).wrap());
+        }
+        typed.inner
+    });
+    let typed = typed.inner?;
+    if typed != current && refuses(&typed).is_some() {
+        ui.data_mut(|d| d.insert_temp(id, (current.to_owned(), typed)));
+        return None;
+    }
+    ui.data_mut(|d| d.remove::<(String, String)>(id));
+    (typed != current).then_some(typed)
+}
+
 /// What is being typed into the field of a text that is drawn next.
 pub fn draft(ui: &Ui, name: &str) -> Option<String> {
     let id = text_id(ui, name);

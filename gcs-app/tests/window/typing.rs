@@ -3,7 +3,7 @@
 use super::creating::EMPTY;
 use super::{SQUARE, Window};
 use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use flight_plan::Value;
 
 fn altitude_m(window: &Window, leg: &str) -> f64 {
@@ -99,4 +99,28 @@ impl Window {
         self.press(egui::Key::Enter);
         self.steps(2);
     }
+}
+
+/// The leg's own name was quoted, and what was typed was gone.
+#[test]
+fn an_identifier_that_is_none_stays_in_its_field_with_what_is_wrong_with_it() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.click("TF side4");
+    let typed = |window: &Window| {
+        let field = window.harness.get_by_role_and_label(Role::TextInput, "Identifier");
+        field.accesskit_node().value().unwrap_or_default()
+    };
+    for (wrong, why) in
+        [("side 4", "`side 4` is no identifier"), ("side2", "`side2` is the identifier of something else")]
+    {
+        window.fill_in(Role::TextInput, "Identifier", wrong);
+        window.steps(3);
+        assert!(window.shows(why) && typed(&window) == wrong, "{wrong}: {}", typed(&window));
+        assert!(window.plan().leg(&"side4".into()).is_some());
+    }
+    window.fill_in(Role::TextInput, "Identifier", "last");
+    window.steps(3);
+    assert!(window.plan().leg(&"last".into()).is_some() && window.selected() == "last");
+    assert!(!window.shows("is no identifier") && typed(&window) == "last");
 }

@@ -112,6 +112,15 @@ impl<'a, 's> Page<'a, 's> {
         edits.map_or(field::Change::None, |edits| field::Change::Set(Edit::All(edits)))
     }
 
+    /// Why a change can't be made.
+    pub fn refuses(&self, change: &Change) -> Option<String> {
+        let edit = match self.edit(change) {
+            Ok(edit) => edit,
+            Err(why) => return Some(why),
+        };
+        edit.apply(self.plan()).err().map(|why| why.to_string())
+    }
+
     /// Makes a change as one undo step, or says why it can't be made.
     pub fn change(&mut self, change: &Change) {
         match self.edit(change) {

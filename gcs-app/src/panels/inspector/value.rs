@@ -9,7 +9,7 @@ use crate::panels::field;
 use crate::theme;
 use crate::units::{self, Unit, Units};
 use egui::{RichText, Ui};
-use flight_plan::describe::{self, Kind, Property, Quantity, Range, Sort, choices};
+use flight_plan::describe::{self, Change, Kind, Property, Quantity, Range, Sort, choices};
 use flight_plan::words::yes_or_no;
 use flight_plan::{Use, Value};
 
@@ -132,7 +132,13 @@ fn present(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &st
                 page.set(property, Some(new));
             }
         }
-        Kind::Identifier | Kind::Text | Kind::Names | Kind::Instant => {
+        Kind::Identifier => {
+            let refuses = |typed: &str| page.refuses(&Change::Set(*property, Some(typed.to_owned())));
+            if let Some(new) = field::text_unless(ui, &name, value, &refuses) {
+                page.set(property, Some(new));
+            }
+        }
+        Kind::Text | Kind::Names | Kind::Instant => {
             if let Some(new) = field::text(ui, &name, value) {
                 let optional = property.without.is_some() && new.trim().is_empty();
                 page.set(property, (!optional).then_some(new));

@@ -7,8 +7,8 @@ use crate::uses::SlotMut;
 use crate::{Act, FlightPlan, Id, Leg, LegKind, Place, Procedure, Stage, Value};
 use std::sync::Arc;
 
-const TAKEN: &str = "can't be called that: something else is, choose another identifier";
-const NO_IDENTIFIER: &str = "can't be called that: use letters, digits, `-`, `_` and `.`, at most 64 of them";
+const TAKEN: &str = "is the identifier of something else: choose another one";
+const NO_IDENTIFIER: &str = "is no identifier: use letters, digits, `-`, `_` and `.`, at most 64 of them";
 
 /// Gives something another identifier, and whatever refers to it.
 pub(super) fn anything(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(), EditError> {
@@ -24,10 +24,10 @@ fn thing(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(), EditError> {
     }
     let allowed = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'_' | b'.');
     if !(1..=64).contains(&to.as_str().len()) || !to.as_str().bytes().all(allowed) {
-        return Err(not_applicable(id, NO_IDENTIFIER));
+        return Err(not_applicable(to, NO_IDENTIFIER));
     }
     if super::lists::ids(plan).contains(to) || plan.variable(id).is_some() {
-        return Err(not_applicable(id, TAKEN));
+        return Err(not_applicable(to, TAKEN));
     }
     let mut known = false;
     Walk::of(plan, &mut |group, found: &mut Id| {
@@ -70,7 +70,7 @@ fn deep_references(leg: &mut Leg, rename: &mut dyn FnMut(&mut Id)) {
     }
 }
 
-const NO_NAME: &str = "can't be called that: use letters, digits and `_`, not beginning with a digit, and no word of the expressions";
+const NO_NAME: &str = "is no name of a variable: use letters, digits and `_`, not beginning with a digit, and no word of the expressions";
 
 /// Gives a variable another name, and to what reads or writes it.
 fn variable(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(), EditError> {
@@ -78,10 +78,10 @@ fn variable(plan: &mut FlightPlan, id: &Id, to: &Id) -> Result<(), EditError> {
         return Ok(());
     }
     if !is_variable_name(to.as_str()) {
-        return Err(not_applicable(id, NO_NAME));
+        return Err(not_applicable(to, NO_NAME));
     }
     if plan.variable(to).is_some() || super::lists::ids(plan).contains(to) {
-        return Err(not_applicable(id, TAKEN));
+        return Err(not_applicable(to, TAKEN));
     }
     plan.variables.iter_mut().filter(|v| v.name == *id).for_each(|v| v.name.clone_from(to));
     let reader = Reader { from: id, to, within: None };
