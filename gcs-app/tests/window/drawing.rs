@@ -255,7 +255,7 @@ fn four_clicks_around_a_village_are_an_outline_and_the_key_makes_it_a_circle() {
     };
     let shape = |window: &Window| window.plan().zones.last().map(|zone| zone.shape.clone());
     window.press(Key::Z);
-    assert!(window.shows("Keep-out zone, outline (Z: circle): click the corners"));
+    assert!(window.shows("Keep-out zone, outline (Z: circle): click the corners; Enter, a double click or the first corner closes it"));
     clicks(&mut window, 4);
     assert!(window.shows("outline") && window.shows("circle"), "the choice stays while it is drawn");
     clicks(&mut window, 1);
@@ -429,4 +429,25 @@ fn no_length_is_told_where_the_pointer_has_just_clicked() {
     window.harness.hover_at(at + vec2(80.0, 0.0));
     window.steps(2);
     assert!(window.paints("m · 0"), "the track of its first edge");
+}
+
+/// Only when two corners were there already it said how the area is closed.
+#[test]
+fn tools_say_from_the_first_click_on_how_an_area_or_a_line_is_ended() {
+    let mut window = window();
+    let at = free(&window);
+    for (key, ends) in
+        [(Key::A, "closes it"), (Key::L, "a double click ends"), (Key::T, "a double click ends")]
+    {
+        window.press(key);
+        assert!(window.shows(ends), "{key:?}");
+        for by in figure(Shape::Area).iter().take(2) {
+            window.click_at(at + *by);
+            window.harness.hover_at(window.centre("Zoom in"));
+            window.steps(40);
+            assert!(window.shows(ends), "{key:?}");
+        }
+        window.press(Key::Escape);
+        window.press(Key::Escape);
+    }
 }

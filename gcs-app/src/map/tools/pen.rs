@@ -176,10 +176,13 @@ impl Pen {
             (Figure::Segment, _) => "click where it ends",
             (Figure::Circle, 0) => "click the middle",
             (Figure::Circle, _) => "click the rim",
-            (Figure::Line, 0) => "click the points of the line",
-            (Figure::Ring, 0) => "click the corners",
-            (Figure::Line, 1) | (Figure::Ring, 1 | 2) => {
-                "click the next point; Backspace takes the last back"
+            (Figure::Line, 0) => "click the points of the line; Enter or a double click ends it",
+            (Figure::Ring, 0) => "click the corners; Enter, a double click or the first corner closes it",
+            (Figure::Line, 1) => {
+                "click the next point; Enter or a double click ends the line, Backspace takes the last back"
+            }
+            (Figure::Ring, 1 | 2) => {
+                "click the next corner; from the third on Enter, a double click or the first corner closes it, Backspace takes the last back"
             }
             (Figure::Line, _) => "Enter or a double click ends the line",
             (Figure::Ring, _) => "Enter, a double click or the first corner closes it",

@@ -68,7 +68,7 @@ impl Track {
                     || way(from, to, scene.units()),
                     |trial| trial.words(from, to, scene.units()),
                 );
-                format!("Next leg: {words}. Backspace takes the last back.")
+                format!("Next leg: {words}. Backspace takes the last back, Enter or a double click ends it.")
             }
         }
     }
@@ -84,12 +84,12 @@ impl Tool for Track {
             (_, None) => format!("Draw legs: {NO_STAGE}"),
             (true, Some(aim)) => {
                 let place = words(&aim, scene.document.plan());
-                format!("Draw legs {place}: click where to fly. Esc ends it.")
+                format!("Draw legs {place}: click where to fly; Enter or a double click ends the way. Esc ends it.")
             }
             (false, _) => match (&self.pointer, self.approach) {
                 (Some(to), Some(at)) => self.next_in_words(at.from, to.at, scene),
                 _ => {
-                    "Draw legs: click where to fly next. Backspace takes the last back, Enter ends it.".into()
+                    "Draw legs: click where to fly next. Backspace takes the last back, Enter or a double click ends it.".into()
                 }
             },
         })
