@@ -132,7 +132,7 @@ fn why_safe(scene: &Scene<'_>, cause: &str, shown: &str) -> String {
     format!("{because}{}", not_flown.unwrap_or_default())
 }
 
-/// `Flying Departure ▸ Climb in the hold · in an emergency: Return home`.
+/// `Flying Departure ▸ Climb in the hold · alternate: Return home`.
 fn as_planned(scene: &Scene<'_>) -> String {
     let vehicle = scene.vehicle;
     let status = vehicle.status.as_ref().map(|status| &status.value);
@@ -148,7 +148,7 @@ fn as_planned(scene: &Scene<'_>) -> String {
         |at| format!("{does} {} ▸ {}", vehicle.name_of(&at.stage), vehicle.name_of(&at.leg)),
     );
     let answer = status.and_then(|status| status.emergency_in_force.as_ref());
-    let answer = answer.map(|plan| format!(" · in an emergency: {}", vehicle.name_of(plan)));
+    let answer = answer.map(|plan| format!(" · alternate: {}", vehicle.name_of(plan)));
     let engine = in_force::of_engine(scene).map(|plan| format!(" · engine: {}", vehicle.name_of(&plan)));
     format!("{does}{}{}", answer.unwrap_or_default(), engine.unwrap_or_default())
 }

@@ -157,10 +157,7 @@ fn nothing_moves_when_an_emergency_begins_and_its_red_banner_changes() {
         window.harness.set_size(size);
         value.emergency_in_force = Some("return".into());
         window.receive_status(value.clone());
-        assert!(
-            window.shows("Flying circuit ▸ side2 · in an emergency: return"),
-            "the plan aboard is not known"
-        );
+        assert!(window.shows("Flying circuit ▸ side2 · alternate: return"), "the plan aboard is not known");
         let where_it_is = |window: &Window| {
             let display = window.harness.get_by_label_contains("Primary flight display").rect();
             let others = ["Map", "Zoom in", "⏸ Hold", "⏭ Skip leg", "TF side3", "Hide Flight"]
@@ -445,7 +442,7 @@ fn emergency_plan_of_the_engine_is_named_beside_the_one_for_other_causes() {
     let mut value = window.app().vehicle().status.as_ref().unwrap().value.clone();
     value.emergency_in_force = Some("return".into());
     window.receive_status(value.clone());
-    assert!(window.shows("in an emergency: return · engine: To the field"));
+    assert!(window.shows("· alternate: return · engine: To the field"));
     assert!(window.shows("If engine") && window.shows("Emergency: fly return (hold)"));
     window.receive_gateway(vec![engine_out()]);
     window.leave_open();
