@@ -26,19 +26,37 @@ pub struct Way {
     pub is_default: bool,
     /// From where the path arrives at the fork to where the way leads back, each piece with the leg that goes along it.
     pub lines: Vec<Line>,
-    /// The leg before the fork, if it covers an area: only the flight says where that is left.
-    behind_area: Option<Id>,
+    /// The leg before the fork, if it covers an area or goes around a place: only the flight says where that is left.
+    behind: Option<Id>,
     /// Corridors on the way: only the flight says at which end they are begun and left.
     corridors: Vec<Id>,
+    /// What goes around a place on the way: only the flight says where that is begun and left.
+    rounds: Vec<Round>,
 }
 
 impl Way {
-    /// As the flight goes, where it takes this way: behind an area it begins where that is left, and along a corridor it goes the way that
-    /// is flown.
+    /// As the flight goes, where it takes this way: behind an area or an orbit it begins where that is left, it leads to where an orbit is
+    /// begun, and along a corridor it goes the way that is flown.
     pub(super) fn follow(&mut self, forecast: &Forecast) {
         self.begin(forecast);
         for corridor in self.corridors.clone() {
             self.go_along(&corridor, forecast);
+        }
+        for round in self.rounds.clone() {
+            self.go_round(&round, forecast);
+        }
+    }
+
+    fn go_round(&mut self, round: &Round, forecast: &Forecast) {
+        let Some(index) = self.lines.iter().position(|line| line.leg == round.leg) else { return };
+        let on_it = |point: &&Point| round.centre.distance_m(point.position) <= round.radius_m * ON_RIM;
+        let begun = forecast.passages_of(&round.leg).next().and_then(|flown| flown.iter().find(on_it));
+        let Some((begun, left)) = begun.zip(forecast.end_of(&round.leg)) else { return };
+        if let Some(line) = self.lines.get_mut(index) {
+            line.to = begun.position;
+        }
+        if let Some(line) = self.lines.get_mut(index + 1) {
+            line.from = left.from;
         }
     }
 
@@ -68,9 +86,9 @@ impl Way {
         }
     }
 
-    /// Behind an area it begins where the flight leaves that.
+    /// Behind an area, or what goes around a place, it begins where the flight leaves that.
     fn begin(&mut self, forecast: &Forecast) {
-        let left = self.behind_area.as_ref().and_then(|leg| forecast.end_of(leg));
+        let left = self.behind.as_ref().and_then(|leg| forecast.end_of(leg));
         if let Some((first, left)) = self.lines.first_mut().zip(left) {
             first.from = left.from;
         }
@@ -137,8 +155,8 @@ pub(super) fn of(arrivals: &Arrivals<'_>, reader: &Reader<'_>) -> Vec<Way> {
         let Some(from) = arrivals.at(&context.leg.id) else { continue };
         let heads: Vec<&Id> = fork.branches.iter().filter_map(|branch| branch.next.as_ref()).collect();
         for branch in fork.branches {
-            let (lines, corridors) = (Vec::new(), Vec::new());
-            let mut trace = Trace { reader, calls: &mut calls, at: from, lines, corridors };
+            let (lines, corridors, rounds) = (Vec::new(), Vec::new(), Vec::new());
+            let mut trace = Trace { reader, calls: &mut calls, at: from, lines, corridors, rounds };
             let next = branch.next.clone().or_else(|| after(&context));
             if let (End::OfList, Some(to)) =
                 (trace.way(context.siblings, next, &heads), behind(&context, reader))
@@ -147,9 +165,14 @@ pub(super) fn of(arrivals: &Arrivals<'_>, reader: &Reader<'_>) -> Vec<Way> {
             }
             let label = if branch.label.is_empty() { branch.id.to_string() } else { branch.label.clone() };
             let is_default = fork.default == Some(&branch.id);
-            let Trace { lines, corridors, .. } = trace;
-            let (fork, behind_area) = (context.leg.id.clone(), area_before(&context));
-            ways.push(Way { fork, label, is_default, lines, behind_area, corridors });
+            let Trace { mut lines, corridors, rounds, .. } = trace;
+            if let (Some(round), Some(first)) =
+                (before(&context).and_then(|leg| Round::of(leg, reader)), lines.first_mut())
+            {
+                first.from = round.towards(first.to);
+            }
+            let (fork, behind) = (context.leg.id.clone(), wide_before(&context));
+            ways.push(Way { fork, label, is_default, lines, behind, corridors, rounds });
         }
         if ways.len() >= MOST {
             break;
@@ -162,10 +185,45 @@ fn after(context: &LegContext<'_>) -> Option<Id> {
     context.siblings.get(context.index + 1).map(|leg| leg.id.clone())
 }
 
-/// The leg that the fork is behind, if it covers an area.
-fn area_before(context: &LegContext<'_>) -> Option<Id> {
+/// The leg that the fork is behind.
+fn before<'a>(context: &LegContext<'a>) -> Option<&'a Leg> {
     let before = context.siblings.get(context.index.checked_sub(1)?)?;
-    area(before).filter(|_| before.falls_through()).map(|_| before.id.clone())
+    before.falls_through().then_some(before.as_ref())
+}
+
+/// That, if it is not left at its place: it covers an area, or goes around a place.
+fn wide_before(context: &LegContext<'_>) -> Option<Id> {
+    let is_wide = |leg: &&Leg| {
+        let is_hold = matches!(leg.kind, LegKind::Hf(_) | LegKind::Ha(_) | LegKind::Hm { .. });
+        is_hold || area(leg).is_some() || super::round(leg).is_some()
+    };
+    before(context).filter(is_wide).map(|leg| leg.id.clone())
+}
+
+/// An orbit is flown on its rim, and that is not met at its middle.
+#[derive(Debug, Clone, PartialEq)]
+struct Round {
+    leg: Id,
+    centre: LatLon,
+    radius_m: f64,
+}
+
+/// What is so far from the middle is on the rim, as a share of the radius.
+const ON_RIM: f64 = 1.05;
+
+impl Round {
+    /// `None`: it is no orbit, or nobody knows where.
+    fn of(leg: &Leg, reader: &Reader<'_>) -> Option<Self> {
+        let LegKind::Orbit { centre, radius_m, .. } = &leg.kind else { return None };
+        let (centre, radius_m) = (reader.place(centre)?, reader.number(radius_m)?);
+        let can_be_flown = radius_m.is_finite() && radius_m > 0.0;
+        can_be_flown.then(|| Self { leg: leg.id.clone(), centre, radius_m })
+    }
+
+    /// The place of the rim that is nearest to this one.
+    fn towards(&self, at: LatLon) -> LatLon {
+        self.centre.destination(self.centre.bearing_deg(at), self.radius_m)
+    }
 }
 
 /// Where the flight goes on behind the list of a stage: to the next one, or to its runway.
@@ -197,6 +255,7 @@ struct Trace<'a, 'p> {
     at: LatLon,
     lines: Vec<Line>,
     corridors: Vec<Id>,
+    rounds: Vec<Round>,
 }
 
 impl Trace<'_, '_> {
@@ -251,11 +310,16 @@ impl Trace<'_, '_> {
         if is_corridor(leg) && leg.id == *written && !self.corridors.contains(written) {
             self.corridors.push(written.clone());
         }
+        self.rounds.extend(Round::of(leg, self.reader).filter(|round| round.leg == *written));
         self.places(leg).into_iter().for_each(|to| self.to(to, written));
     }
 
-    /// As [`places`]; of an outline the corner that is nearest to where the way has come, and a corridor from its nearer end.
+    /// As [`places`]; of an outline the corner that is nearest to where the way has come, of an orbit the place on its rim, and a corridor
+    /// from its nearer end.
     fn places(&self, leg: &Leg) -> Vec<LatLon> {
+        if let Some(round) = Round::of(leg, self.reader) {
+            return vec![round.towards(self.at)];
+        }
         let far = |corner: &LatLon| corner.distance_m(self.at);
         match area(leg) {
             Some(Area::Polygon { corners, .. }) => {
@@ -353,6 +417,41 @@ mod tests {
         let (points, scanned) = (points.to_vec(), passage("s", 1));
         sketch.begin_ways(&Forecast { points, passages: vec![scanned], ..Forecast::default() });
         assert!(sketch.ways.iter().all(|way| way.lines[0].from == LatLon::new(46.02, 9.0)));
+    }
+
+    /// It was drawn from the middle of the orbit, and to it.
+    #[test]
+    fn a_way_leads_from_and_to_the_rim_of_an_orbit_where_the_flight_leaves_and_meets_it() {
+        let plan = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><mainPlan><stage id="m" type="mission">
+              <orbit id="o" radius="300" turns="1" turn="left"><centre lat="46" lon="9"/></orbit>
+              <intersection id="f" default="on"><branch id="on" next="p"/><branch id="no" next="home"/></intersection>
+              <orbit id="p" radius="200" turns="1" turn="left"><centre lat="46.1" lon="9"/></orbit><TF id="home" lat="46.2" lon="9"/></stage></mainPlan></flightPlan>"#;
+        let reading = flight_plan::read(plan);
+        assert!(!reading.has_errors(), "{:?}", reading.problems);
+        let mut sketch = Sketch::new(&reading.plan, &Variables::initial(&reading.plan), &Sketch::default());
+        let [o, p, home] = [46.0, 46.1, 46.2].map(|lat| LatLon::new(lat, 9.0));
+        let is_at =
+            |at: LatLon, expected: LatLon| assert!(at.distance_m(expected) < 1.0, "{at:?} {expected:?}");
+        let ends = |sketch: &Sketch, way: usize, line: usize| {
+            let line = &sketch.ways[way].lines[line];
+            (line.from, line.to)
+        };
+        is_at(ends(&sketch, 0, 0).0, o.destination(0.0, 300.0));
+        is_at(ends(&sketch, 0, 0).1, p.destination(180.0, 200.0));
+        is_at(ends(&sketch, 1, 0).0, o.destination(0.0, 300.0));
+        let places = [
+            o.destination(90.0, 300.0),
+            p.destination(180.0, 600.0),
+            p.destination(90.0, 200.0),
+            p.destination(270.0, 200.0),
+        ];
+        let points = places.iter().zip([0.0, 1.0, 2.0, 3.0]).map(|(at, time_s)| at_time(*at, time_s));
+        let passages = vec![passage("o", 0), Passage { first: 1, ..passage("p", 3) }];
+        sketch.begin_ways(&Forecast { points: points.collect(), passages, ..Forecast::default() });
+        is_at(ends(&sketch, 0, 0).0, places[0]);
+        is_at(ends(&sketch, 0, 0).1, places[2]);
+        assert_eq!(ends(&sketch, 0, 1), (places[3], home));
+        is_at(ends(&sketch, 1, 0).0, places[0]);
     }
 
     /// The fork is nearer to the corridor's end, and the flight begins and leaves it there.
