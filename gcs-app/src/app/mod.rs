@@ -101,6 +101,8 @@ pub struct App {
     screenshot: Option<Screenshot>,
     /// What the next run finds, if this one is ended by force.
     stored: Remembered,
+    /// The theme of earlier runs, while one that this run was told to begin with takes its place.
+    theme_of_old: Option<egui::ThemePreference>,
     /// The tour has been offered, in this window or an earlier one.
     tour_seen: bool,
     /// What a demo tells, and where it had come to in the last frame.
@@ -174,6 +176,7 @@ impl App {
             after_saving: None,
             screenshot: None,
             stored,
+            theme_of_old: None,
             tour_seen: remembered.tour_seen,
             story: None,
             looked_through: 0,

@@ -197,7 +197,7 @@ impl App {
                 self.map.draw_way();
             }
             ViewCommand::Units(units) => self.view.units = units,
-            ViewCommand::Theme(theme) => self.view.theme = theme,
+            ViewCommand::Theme(theme) => (self.view.theme, self.theme_of_old) = (theme, None),
             ViewCommand::Scale(scale) => self.view.scale = scale,
             ViewCommand::Palette(begins) => self.view.palette = begins,
             ViewCommand::Help(topic) => self.view.help = topic,

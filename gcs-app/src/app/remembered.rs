@@ -47,7 +47,7 @@ impl Remembered {
             edge: app.view.edge,
             recent: app.recent.clone(),
             connections: app.connections.clone(),
-            theme: app.view.theme,
+            theme: app.theme_of_old.unwrap_or(app.view.theme),
             scale: app.view.scale,
         }
     }

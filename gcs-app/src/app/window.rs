@@ -87,6 +87,14 @@ pub fn run(options: Options) -> Result<(), WindowError> {
     }
 }
 
+impl App {
+    /// Begins with this theme, in this run alone, until the operator chooses one.
+    pub fn begin_in(&mut self, theme: egui::ThemePreference) {
+        self.theme_of_old = Some(self.view.theme);
+        self.view.theme = theme;
+    }
+}
+
 fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
     let text =
         panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
@@ -122,7 +130,7 @@ fn build(creation: &eframe::CreationContext<'_>, options: Options) -> std::io::R
         app.offer_tour();
     }
     if let Some(theme) = options.theme {
-        app.view.theme = theme.into();
+        app.begin_in(theme.into());
     }
     if options.follow {
         app.view.follow = true;

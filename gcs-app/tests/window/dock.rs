@@ -342,3 +342,20 @@ fn the_sides_of_the_default_layout_are_wider_in_a_wide_window_until_somebody_cha
     wide.steps(3);
     assert!((left(&wide) - nominal - 40.0).abs() < 3.0, "{}", left(&wide));
 }
+
+/// `--light` was for one start, and all later ones were light.
+#[test]
+fn a_theme_that_one_start_was_told_is_not_remembered_and_one_that_is_chosen_is() {
+    let light = egui::ThemePreference::Light;
+    let mut window = opened(SIZES[1]);
+    let before = window.app().view().theme;
+    assert_ne!(before, light);
+    window.harness.state_mut().begin_in(light);
+    window.steps(3);
+    assert_eq!(window.app().view().theme, light);
+    assert_eq!(Memory::of(&mut window).window().app().view().theme, before);
+    window.ask_for("light");
+    let row = window.harness.query_all_by_label_contains("Light").last().unwrap().rect().center();
+    window.click_at(row);
+    assert_eq!(Memory::of(&mut window).window().app().view().theme, light, "by hand");
+}
