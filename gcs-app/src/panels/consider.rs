@@ -14,8 +14,10 @@ use usal::contract::GatewayState;
 
 /// Room for the button: what it does is known in more words a moment later, and nothing below moves for that, screen points.
 const BUTTON: f32 = 2.0 * 17.0 + 12.0;
-/// What was told so long ago, by the aircraft's clock, is of another place, seconds.
-const OLD_S: f64 = 20.0;
+/// What was told so long ago is of another place, seconds of the window's clock: it is looked at again each second.
+const OLD_S: f64 = 5.0;
+/// The same by the aircraft's clock, which in a simulation may be much faster.
+const OLD_AIRCRAFT_S: f64 = 20.0;
 /// So many legs are named.
 const MOST_LEGS: usize = 12;
 
@@ -84,7 +86,8 @@ fn since(considered: &Considered, scene: &Scene<'_>) -> Vec<String> {
     let vehicle = scene.vehicle;
     let again = if vehicle.open_link().is_some() { ": looking again" } else { "" };
     let age_s = considered.age_s(scene.now_s, vehicle.clock_s(scene.now_s));
-    let old = age_s.filter(|age_s| *age_s > OLD_S);
+    let is_old = considered.age_s(scene.now_s, None).is_some_and(|age_s| age_s > OLD_S);
+    let old = age_s.filter(|age_s| is_old || *age_s > OLD_AIRCRAFT_S);
     let old = old.map(|age_s| format!("Looked at {} ago{again}", units::duration(age_s)));
     // another leg is not skipped at all: that is said at the button
     let is_elsewhere =

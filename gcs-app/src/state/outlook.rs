@@ -19,6 +19,8 @@ pub struct Considered {
     told: Option<Told>,
     /// When it was last asked or answered, seconds of the window's clock.
     tried_s: f64,
+    /// How long the last answer took, seconds of the window's clock.
+    took_s: f64,
     /// The leg that was being flown when it was last asked.
     asked_on: Option<Id>,
     /// The least height above this window's ground on that way; `None`: that is known nowhere, or not yet.
@@ -79,9 +81,10 @@ pub struct Outlook {
 /// While another way is flown than the preview's, the vehicle is asked for it so often, seconds.
 const ASK_WAY_S: f64 = 15.0;
 /// What was told of a command that is considered is asked anew when it is so old, seconds.
-const AGAIN_S: f64 = 5.0;
-/// But not sooner after the last question or answer, seconds of the window's clock: looking ahead is work.
-const PAUSE_S: f64 = 2.0;
+const AGAIN_S: f64 = 0.5;
+/// But not sooner after the last question or answer, seconds of the window's clock, nor sooner than the last answer took: looking ahead is
+/// work, and the vehicle has other work.
+const PAUSE_S: f64 = 0.5;
 
 impl Outlook {
     /// The command that is considered.
@@ -131,6 +134,7 @@ impl Outlook {
             foresight: None,
             told: None,
             tried_s: f64::NEG_INFINITY,
+            took_s: 0.0,
             asked_on: None,
             clearance: None,
             is_over_ground: false,
@@ -151,7 +155,7 @@ impl Outlook {
         let considered = self.considered.as_ref()?;
         let has_gone_on = considered.has_gone_on(leg);
         let is_old = considered.age_s(now_s, aircraft_s).is_none_or(|age_s| age_s > AGAIN_S);
-        let is_due = (is_old || has_gone_on) && now_s - considered.tried_s > PAUSE_S;
+        let is_due = (is_old || has_gone_on) && now_s - considered.tried_s > considered.took_s.max(PAUSE_S);
         let is_of_another = considered.command == Command::SkipLeg && has_gone_on;
         (is_due && !is_of_another).then_some(&considered.command)
     }
@@ -203,7 +207,7 @@ impl Outlook {
             self.way = told.map(|(foresight, told_s)| Way { foresight, told_s, over_ground: None });
         } else if let Some(considered) = self.considered.as_mut().filter(|c| c.ticket == Some(ticket)) {
             let leg = considered.asked_on.take();
-            considered.tried_s = now_s;
+            (considered.took_s, considered.tried_s) = (now_s - considered.tried_s, now_s);
             if answer.is_ok() || !matches!(considered.foresight, Some(Ok(_))) {
                 considered.foresight = Some(answer);
                 considered.told = Some(Told { window_s: now_s, aircraft_s });
@@ -248,11 +252,10 @@ mod tests {
         outlook.answered(Ticket(1), foresight(191.0), 11.0, None);
         let anew =
             |outlook: &Outlook, leg: &Option<Id>, now_s| outlook.to_ask(leg.as_ref(), now_s, None).cloned();
-        assert_eq!(anew(&outlook, &hold, 15.0), None, "it is fresh");
+        assert_eq!(anew(&outlook, &hold, 11.4), None, "it is fresh");
         let asked = Some(go_on);
-        assert_eq!(anew(&outlook, &hold, 17.0), asked, "also where the aircraft's clock was not known");
-        assert_eq!(anew(&outlook, &land, 12.0), None, "looking ahead is work");
-        assert_eq!(anew(&outlook, &land, 14.0), asked, "from another leg sooner");
+        assert_eq!(anew(&outlook, &hold, 12.1), asked, "also where the aircraft's clock was not known");
+        assert_eq!(anew(&outlook, &land, 11.9), None, "looking ahead is work: the answer took a second");
         outlook.asked_what_follows(Ticket(2), land.clone(), 17.0);
         assert!(
             outlook.considered().is_some_and(|considered| considered.has_gone_on(land.as_ref())),

@@ -76,7 +76,7 @@ fn the_landing_is_gone_to_by_its_row_and_by_the_palette_as_a_leg_is() {
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     assert!(window.shows("until the approach: 85 m") && window.shows("43 % energy left"));
     window.hold("Go to Landing (hold)", 90);
-    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(go_to("land"))));
+    assert_eq!(given(&mut window), Some(Call::Plan(go_to("land"))));
     window.click("LND land");
     window.click("Land now: go to this landing…");
     assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Foresee(Some(go_to("land")))));
@@ -104,9 +104,26 @@ fn skip_shows_what_follows_and_is_given_by_a_button_named_by_its_effect() {
         assert!(window.shows(text), "{text}");
     }
     window.hold("Skip side2, fly side3 next (hold)", 90);
-    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::SkipLeg)));
+    assert_eq!(given(&mut window), Some(Call::Plan(Command::SkipLeg)));
     assert!(!window.shows("Left out"), "it was given");
     assert_eq!(drawn(&window), before);
+}
+
+/// The command that was given; the questions what would follow, asked each second, have no answer.
+fn given(window: &mut Window) -> Option<Call> {
+    loop {
+        let (ticket, call) = window.asked()?;
+        if !matches!(call, Call::Foresee(_)) {
+            return Some(call);
+        }
+        window.answer(ticket, Err("others are being looked ahead for".into()));
+    }
+}
+
+/// The question what would follow this command, among others.
+fn asked_about(window: &mut Window, command: &Command) -> Option<Ticket> {
+    let wanted = Call::Foresee(Some(command.clone()));
+    std::iter::from_fn(|| window.asked()).find_map(|(ticket, call)| (call == wanted).then_some(ticket))
 }
 
 /// The aircraft has flown on since.
@@ -115,7 +132,12 @@ fn what_was_looked_at_long_ago_says_so() {
     let (mut window, ticket) = considered();
     window.receive(position(2.0, 500.0, false));
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
+    window.steps(60);
     assert!(!window.shows("Looked at"));
+    let (refused, _) = window.asked().unwrap();
+    window.answer(refused, Err("others are being looked ahead for".into()));
+    window.steps(60 * 5);
+    assert!(window.shows("⚠ Looked at 6 s ago: looking again"), "also where the aircraft's clock stands");
     window.receive(position(47.0, 500.0, false));
     assert!(window.shows("⚠ Looked at 45 s ago: looking again"));
 }
@@ -193,15 +215,18 @@ fn what_follows_is_looked_at_again_while_it_is_read() {
     let (ticket, _) = window.asked().unwrap();
     window.receive(position(2.0, 500.0, false));
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
-    window.steps(130);
     assert!(window.asked().is_none(), "it is fresh");
+    window.steps(45);
+    let again = asked_about(&mut window, &to).expect("at least once a second");
+    window.answer(again, Ok(Reply::Foresight(Box::new(foresight()))));
+    assert!(!window.shows("Looked at"));
     let mut value = window.app().vehicle().status.as_ref().unwrap().value.clone();
     value.place = Some(place("circuit", "side3"));
     window.receive_status(value);
     window.receive(position(9.0, 500.0, false));
     assert!(window.shows("The aircraft is on another leg by now: looking again"));
-    let (again, call) = window.asked().unwrap();
-    assert_eq!(call, Call::Foresee(Some(to)));
+    window.steps(45);
+    let again = asked_about(&mut window, &to).unwrap();
     let lower = Foresight { clearance_m: Some(42.0), ..foresight() };
     window.answer(again, Ok(Reply::Foresight(Box::new(lower))));
     assert!(window.shows("until the approach: 42 m") && !window.shows("on another leg by now"));
@@ -299,7 +324,7 @@ fn a_way_with_problems_has_to_be_held() {
     window.hold("Skip side2, fly side3 next (hold)", 20);
     assert!(window.asked().is_none() && window.shows("Keep it pressed for 1 s"));
     window.hold("Skip side2, fly side3 next (hold)", 90);
-    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::SkipLeg)));
+    assert_eq!(given(&mut window), Some(Call::Plan(Command::SkipLeg)));
 }
 
 #[test]
@@ -320,7 +345,7 @@ fn without_an_answer_the_command_can_still_be_given() {
     window.answer(ticket, Err("nobody answers".into()));
     assert!(window.shows("What follows is not known: nobody answers"));
     window.hold("Skip side2 (hold)", 90);
-    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(Command::SkipLeg)));
+    assert_eq!(given(&mut window), Some(Call::Plan(Command::SkipLeg)));
 }
 
 #[test]
@@ -344,7 +369,7 @@ fn is_looked_at_first(window: &mut Window, command: Command, button: &str) {
     window.answer(ticket, Ok(Reply::Foresight(Box::new(foresight()))));
     assert!(window.shows("Left out: side2"));
     window.hold(&format!("{button} (hold)"), 90);
-    assert_eq!(window.asked().map(|(_, call)| call), Some(Call::Plan(command)));
+    assert_eq!(given(window), Some(Call::Plan(command)));
 }
 
 #[test]
