@@ -365,7 +365,8 @@ impl Tree {
                 self.focus(ui);
                 let Some(row) = self.rows.get(index) else { return };
                 let range = self.range_to(index).filter(|_| ui.input(|i| i.modifiers.shift));
-                let chosen = range.map_or_else(|| chosen(ui, row), ViewCommand::SelectTogether);
+                let has_others = scene.view.selection.is_some();
+                let chosen = range.map_or_else(|| chosen(ui, row, has_others), ViewCommand::SelectTogether);
                 if let ViewCommand::Select(_) | ViewCommand::SelectBranch(_) = &chosen {
                     self.selected.clone_from(&row.selection);
                 }
@@ -421,12 +422,17 @@ fn is_in_flight(scene: &Scene<'_>) -> bool {
     flies && scene.vehicle.open_link().is_some()
 }
 
-/// What a click does: with Ctrl, what has a place is selected together.
-fn chosen(ui: &Ui, row: &Row) -> ViewCommand {
+/// What a click does: with Ctrl, what has a place is selected together; what has none leaves what is selected as it is.
+fn chosen(ui: &Ui, row: &Row, has_others: bool) -> ViewCommand {
+    if !ui.input(|i| i.modifiers.command) {
+        return row.select();
+    }
     match &row.selection {
-        Some(what) if ui.input(|i| i.modifiers.command) && what.is_in_sets() => {
-            ViewCommand::Toggle(what.clone())
-        }
+        Some(what) if what.is_in_sets() => ViewCommand::Toggle(what.clone()),
+        _ if has_others => ViewCommand::Notice(NOT_TOGETHER.into()),
         _ => row.select(),
     }
 }
+
+/// Why a row is not selected besides what is.
+const NOT_TOGETHER: &str = "This can't be selected together with others: legs, stages, fixes, zones and runways can. Click it without Ctrl to select it alone";

@@ -266,6 +266,8 @@ fn several_legs_are_looped_raised_and_deleted_together() {
     window.click("TF side1");
     click_with(&mut window, "TF side3", egui::Modifiers::COMMAND);
     assert!(window.shows("2 legs"));
+    click_with(&mut window, "ALT return", egui::Modifiers::COMMAND);
+    assert!(window.shows("2 legs") && window.shows("This can't be selected together with others"));
     window.click("Raise them");
     let altitude = |window: &Window, leg: &str| match &window.plan().leg(&leg.into()).unwrap().leg.altitude {
         Some(altitude) => altitude.metres.clone(),
