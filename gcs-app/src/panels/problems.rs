@@ -62,7 +62,7 @@ impl Panel for Problems {
         "Problems"
     }
     fn place(&self) -> Place {
-        Place::Left { height: 188.0 }
+        Place::Left { height: 228.0 }
     }
     /// The verdict, and three problems of two lines.
     fn least_height(&self) -> f32 {
@@ -87,7 +87,11 @@ impl Panel for Problems {
         verdict(ui, scene, self.listed.verdict);
         self.remedies.follow(ui);
         let pointed = ScrollArea::vertical().id_salt("problems").auto_shrink(false);
-        let pointed = pointed.show(ui, |ui| self.rows(ui, scene, &problems, is_news, queue)).inner;
+        let pointed = pointed.show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = BETWEEN;
+            self.rows(ui, scene, &problems, is_news, queue)
+        });
+        let pointed = pointed.inner;
         if scene.view.pointed != pointed {
             queue.view(ViewCommand::PointOut(pointed));
         }
@@ -106,6 +110,7 @@ impl Problems {
         queue: &mut Queue,
     ) -> Option<Id> {
         let mut pointed = None;
+        let at_once = if self.listed.order.len() > FEW { 1 } else { ROWS };
         let near = ui.clip_rect().expand(BEYOND);
         let listed = self
             .listed
@@ -115,7 +120,7 @@ impl Problems {
         for ((number, (problem, calls)), height) in listed.enumerate().zip(&mut self.listed.heights) {
             let rect = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), *height));
             let rect = if near.intersects(rect) {
-                let how = (&mut self.open, &mut self.remedies);
+                let how = (&mut self.open, &mut self.remedies, at_once);
                 let response = row(ui, scene, (number, problem, calls), how, queue);
                 if response.hovered() {
                     pointed.clone_from(&problem.subject);
@@ -146,11 +151,14 @@ impl Problems {
 /// Most problems that are listed: who has more mends the first ones first.
 pub const MOST: usize = 300;
 
-/// Of its headline, until it is opened.
+/// Of its headline, until it is opened; where there are more problems than a few, all of these are to be seen at once.
 const ROWS: usize = 2;
+const FEW: usize = 3;
 
 /// Rows so far out of view are drawn, too, for those who go on by keyboard or screen reader; screen points.
 const BEYOND: f32 = 600.0;
+/// Between what is one below the other, screen points: the more problems are in view, the fewer are missed.
+const BETWEEN: f32 = 2.0;
 /// Height of a row that was not drawn yet, screen points.
 const USUAL: f32 = 36.0;
 
@@ -205,7 +213,7 @@ fn row(
     ui: &mut Ui,
     scene: &Scene<'_>,
     (number, problem, calls): (usize, &Problem, &[Id]),
-    (open, remedies): (&mut Option<String>, &mut Remedies),
+    (open, remedies, rows): (&mut Option<String>, &mut Remedies, usize),
     queue: &mut Queue,
 ) -> Response {
     let p = theme::of(ui);
@@ -216,7 +224,7 @@ fn row(
     let whole = UiBuilder::new().id_salt(("problem", number)).sense(Sense::click());
     let shown = ui.scope_builder(whole, |ui| {
         let background = ui.painter().add(Shape::Noop);
-        inside(ui, problem, (&headline, &message), open);
+        inside(ui, problem, (&headline, &message), (open, rows));
         remedies.show(ui, scene, problem, &message, queue);
         let rect = ui.min_rect().with_max_x(ui.max_rect().right()).expand2(vec2(0.0, 1.0));
         if is_selected || ui.response().hovered() {
@@ -256,7 +264,12 @@ fn symbol(problem: &Problem) -> &'static str {
 }
 
 /// Its symbol, its headline or all of its text.
-fn inside(ui: &mut Ui, problem: &Problem, (headline, message): (&str, &str), open: &mut Option<String>) {
+fn inside(
+    ui: &mut Ui,
+    problem: &Problem,
+    (headline, message): (&str, &str),
+    (open, rows): (&mut Option<String>, usize),
+) {
     let p = theme::of(ui);
     let colour = if problem.is_error() { p.warning } else { p.caution };
     let is_open = open.as_deref() == Some(message);
@@ -269,7 +282,7 @@ fn inside(ui: &mut Ui, problem: &Problem, (headline, message): (&str, &str), ope
         let job = LayoutJob {
             wrap: TextWrapping {
                 max_width: width,
-                max_rows: if is_open { usize::MAX } else { ROWS },
+                max_rows: if is_open { usize::MAX } else { rows },
                 ..TextWrapping::default()
             },
             ..LayoutJob::single_section(text.clone(), TextFormat::simple(FontId::proportional(12.0), p.text))

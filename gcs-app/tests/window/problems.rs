@@ -360,3 +360,22 @@ fn a_click_on_a_problem_of_a_call_goes_to_the_leg_of_the_procedure() {
     window.press(egui::Key::Enter);
     assert_eq!(window.selected(), "round", "the palette knows it, too");
 }
+
+/// Two were, and the others were scrolled to by who knew of them.
+#[test]
+fn five_problems_and_their_remedies_are_in_view() {
+    let corners = ["A", "B", "C", "D"];
+    let broken = corners.iter().fold(SQUARE.to_owned(), |text, fix| {
+        text.replace(&format!(r#" fix="{fix}""#), &format!(r#" fix="{fix}{fix}""#))
+    });
+    let broken = broken.replacen(LANDING, "", 1);
+    for (size, least) in [(vec2(1280.0, 800.0), 5), (vec2(960.0, 600.0), 2)] {
+        let mut window = Window::open_with(&broken, size, None);
+        window.until_analysed();
+        let panel = window.harness.get_by_label("Hide Problems").rect();
+        let in_view = |rect: egui::Rect| rect.top() > panel.bottom() && rect.bottom() <= size.y;
+        let rows = window.harness.query_all_by_label_contains("Problem: ").map(|row| row.rect());
+        let rows: Vec<_> = rows.filter(|row| in_view(*row)).collect();
+        assert!(rows.len() >= least, "{size}: {rows:?}");
+    }
+}
