@@ -84,7 +84,7 @@ impl Tool for Track {
             (_, None) => format!("Draw legs: {NO_STAGE}"),
             (true, Some(aim)) => {
                 let place = words(&aim, scene.document.plan());
-                format!("Draw legs {place}: click where to fly; Enter or a double click ends the way. Esc ends it.")
+                format!("Draw legs {place}: click where to fly. Esc ends it.")
             }
             (false, _) => match (&self.pointer, self.approach) {
                 (Some(to), Some(at)) => self.next_in_words(at.from, to.at, scene),
