@@ -62,7 +62,7 @@ impl Panel for Problems {
         "Problems"
     }
     fn place(&self) -> Place {
-        Place::Left { height: 228.0 }
+        Place::Left { height: 188.0 }
     }
     /// The verdict, and three problems of two lines.
     fn least_height(&self) -> f32 {
@@ -87,11 +87,7 @@ impl Panel for Problems {
         verdict(ui, scene, self.listed.verdict);
         self.remedies.follow(ui);
         let pointed = ScrollArea::vertical().id_salt("problems").auto_shrink(false);
-        let pointed = pointed.show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = BETWEEN;
-            self.rows(ui, scene, &problems, is_news, queue)
-        });
-        let pointed = pointed.inner;
+        let pointed = pointed.show(ui, |ui| self.rows(ui, scene, &problems, is_news, queue)).inner;
         if scene.view.pointed != pointed {
             queue.view(ViewCommand::PointOut(pointed));
         }
@@ -111,6 +107,9 @@ impl Problems {
     ) -> Option<Id> {
         let mut pointed = None;
         let at_once = if self.listed.order.len() > FEW { 1 } else { ROWS };
+        if at_once < ROWS {
+            ui.spacing_mut().item_spacing.y = BETWEEN;
+        }
         let near = ui.clip_rect().expand(BEYOND);
         let listed = self
             .listed
@@ -154,11 +153,11 @@ pub const MOST: usize = 300;
 /// Of its headline, until it is opened; where there are more problems than a few, all of these are to be seen at once.
 const ROWS: usize = 2;
 const FEW: usize = 3;
+/// Between them then, screen points.
+const BETWEEN: f32 = 2.0;
 
 /// Rows so far out of view are drawn, too, for those who go on by keyboard or screen reader; screen points.
 const BEYOND: f32 = 600.0;
-/// Between what is one below the other, screen points: the more problems are in view, the fewer are missed.
-const BETWEEN: f32 = 2.0;
 /// Height of a row that was not drawn yet, screen points.
 const USUAL: f32 = 36.0;
 
@@ -224,8 +223,21 @@ fn row(
     let whole = UiBuilder::new().id_salt(("problem", number)).sense(Sense::click());
     let shown = ui.scope_builder(whole, |ui| {
         let background = ui.painter().add(Shape::Noop);
-        inside(ui, problem, (&headline, &message), (open, rows));
-        remedies.show(ui, scene, problem, &message, queue);
+        // one below the other they take the room of the next problem
+        let is_beside = rows < ROWS && Remedies::is_one(problem) && open.as_deref() != Some(&message);
+        ui.horizontal_top(|ui| {
+            let room = if is_beside { FIX } else { 0.0 };
+            inside(ui, problem, (&headline, &message), (open, rows), room);
+            if is_beside {
+                remedies.show(ui, scene, problem, &message, queue);
+            }
+        });
+        if !is_beside && problem.fix.is_some() {
+            ui.horizontal(|ui| {
+                ui.add_space(20.0);
+                remedies.show(ui, scene, problem, &message, queue);
+            });
+        }
         let rect = ui.min_rect().with_max_x(ui.max_rect().right()).expand2(vec2(0.0, 1.0));
         if is_selected || ui.response().hovered() {
             let colour = p.line.gamma_multiply(if is_selected { 1.0 } else { 0.6 });
@@ -269,6 +281,7 @@ fn inside(
     problem: &Problem,
     (headline, message): (&str, &str),
     (open, rows): (&mut Option<String>, usize),
+    room: f32,
 ) {
     let p = theme::of(ui);
     let colour = if problem.is_error() { p.warning } else { p.caution };
@@ -278,7 +291,7 @@ fn inside(
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.add_space(2.0);
         ui.label(RichText::new(symbol(problem)).color(colour));
-        let width = (ui.available_width() - MORE).max(60.0);
+        let width = (ui.available_width() - MORE - room).max(60.0);
         let job = LayoutJob {
             wrap: TextWrapping {
                 max_width: width,
@@ -297,8 +310,9 @@ fn inside(
     });
 }
 
-/// Width of the mark behind a headline, screen points.
+/// Width of the mark behind a headline, and of the remedy that stands beside it, screen points.
 const MORE: f32 = 20.0;
+const FIX: f32 = 34.0;
 
 /// Opens and closes what else there is to know.
 fn more(ui: &mut Ui, is_open: bool, message: &str) -> bool {

@@ -96,7 +96,7 @@ impl Panel for Tree {
         "Plan"
     }
     fn place(&self) -> Place {
-        Place::Left { height: 530.0 }
+        Place::Left { height: 570.0 }
     }
     fn is_busy(&self) -> bool {
         self.rows.is_busy()

@@ -369,7 +369,7 @@ fn five_problems_and_their_remedies_are_in_view() {
         text.replace(&format!(r#" fix="{fix}""#), &format!(r#" fix="{fix}{fix}""#))
     });
     let broken = broken.replacen(LANDING, "", 1);
-    for (size, least) in [(vec2(1280.0, 800.0), 5), (vec2(960.0, 600.0), 2)] {
+    for (size, least) in [(vec2(1280.0, 800.0), 5), (vec2(960.0, 600.0), 3)] {
         let mut window = Window::open_with(&broken, size, None);
         window.until_analysed();
         let panel = window.harness.get_by_label("Hide Problems").rect();

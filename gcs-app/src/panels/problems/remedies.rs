@@ -37,7 +37,7 @@ impl Remedies {
         self.under.take_if(|under| at.is_some_and(|at| at.distance(under.at) > REST));
     }
 
-    /// Draws the remedies of a problem, and gives the one that is asked for.
+    /// Draws the remedies of a problem, side by side.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -47,15 +47,17 @@ impl Remedies {
         queue: &mut Queue,
     ) {
         let Some(fix) = problem.fix.as_deref() else { return };
-        ui.horizontal(|ui| {
-            ui.add_space(20.0);
-            self.button(ui, scene, ("Fix", ""), (message, 0), fix, queue);
-            if let Some(there) = &problem.at_source {
-                let text = format!("Fix “{}”", scene.document.label(&there.of));
-                let about = format!("For all {} legs that inherit from there.", there.legs);
-                self.button(ui, scene, (&text, &about), (message, 1), &there.edit, queue);
-            }
-        });
+        self.button(ui, scene, ("Fix", ""), (message, 0), fix, queue);
+        if let Some(there) = &problem.at_source {
+            let text = format!("Fix “{}”", scene.document.label(&there.of));
+            let about = format!("For all {} legs that inherit from there.", there.legs);
+            self.button(ui, scene, (&text, &about), (message, 1), &there.edit, queue);
+        }
+    }
+
+    /// It has one remedy.
+    pub fn is_one(problem: &Problem) -> bool {
+        problem.fix.is_some() && problem.at_source.is_none()
     }
 
     fn button(
