@@ -112,6 +112,7 @@ impl Hub {
             fp_manager: None,
             fp_manager_age_s: None,
             waits_for_height_m: None,
+            circle: None,
             safe_return_in_s: None,
             alarms: Vec::new(),
         };

@@ -123,6 +123,7 @@ mod tests {
             fp_manager: fp_manager.map(Into::into),
             fp_manager_age_s: Some(0.1),
             waits_for_height_m: None,
+            circle: None,
             safe_return_in_s: None,
             alarms: Vec::new(),
         };

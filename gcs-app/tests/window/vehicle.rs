@@ -176,6 +176,7 @@ pub fn gateway_status(state: GatewayState) -> GatewayStatus {
         fp_manager: None,
         fp_manager_age_s: Some(0.1),
         waits_for_height_m: None,
+        circle: None,
         safe_return_in_s: None,
         alarms: Vec::new(),
     }

@@ -156,6 +156,10 @@ pub enum Report {
     Power(Power),
     /// Throttle, 0..1.
     Throttle(f64),
+    /// The place that it says it steers to, or circles.
+    SteersTo(LatLon),
+    /// The radius of the circles that it flies where none is commanded, metres; positive clockwise. No sign of life.
+    LoiterRadius(f64),
     /// The take-off place.
     Home {
         /// Where.

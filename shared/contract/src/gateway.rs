@@ -66,10 +66,24 @@ pub struct GatewayStatus {
     /// What was asked for right after lift-off is done from this height above home on, metres; `None`: nothing waits for that.
     #[serde(default)]
     pub waits_for_height_m: Option<f64>,
+    /// The circle that it flies, in a hold or around a waypoint; `None`: none, or its autopilot does not tell it.
+    #[serde(default)]
+    pub circle: Option<Circle>,
     /// Seconds until Safe.Hold becomes Safe.Return, while that is so.
     pub safe_return_in_s: Option<f64>,
     /// Alarms that are raised now.
     pub alarms: Vec<Alarm>,
+}
+
+/// A circle over the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Circle {
+    /// Its centre.
+    pub centre: LatLon,
+    /// Metres.
+    pub radius_m: f64,
+    /// Seen from above.
+    pub clockwise: bool,
 }
 
 /// A kind of autopilot.

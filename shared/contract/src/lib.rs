@@ -32,8 +32,8 @@ pub use command::Command;
 pub use describe::{Description, Primitive};
 pub use foresight::{Foresee, Foresight, PathPoint};
 pub use gateway::{
-    AutopilotKind, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Navigation, SafeParameters,
-    SafeRunway, TimedGatewayEvent,
+    AutopilotKind, Circle, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Navigation,
+    SafeParameters, SafeRunway, TimedGatewayEvent,
 };
 pub use geodesy::LatLon;
 pub use keys::{Key, KeyError, Kind, every_name, every_service, is_segment};

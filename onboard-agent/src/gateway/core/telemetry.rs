@@ -64,6 +64,10 @@ pub struct Telemetry {
     pub throttle: Timed<f64>,
     /// Energy.
     pub power: Timed<Power>,
+    /// The place that it steers to in this mode, or circles, as it says itself.
+    pub steers_to: Timed<LatLon>,
+    /// The radius of the circles that it flies by itself, metres; positive clockwise.
+    pub loiter_radius_m: Option<f64>,
     /// Take-off place and its altitude AMSL.
     pub home: Option<(LatLon, f64)>,
     /// Stands on the ground, if it says.
@@ -97,6 +101,7 @@ fn is_voice(report: &Report) -> bool {
             | Report::HoldsByItself
             | Report::Stopped(_)
             | Report::Capability(_)
+            | Report::LoiterRadius(_)
     )
 }
 
@@ -118,6 +123,8 @@ impl Default for Telemetry {
             engine: None,
             throttle: None,
             power: None,
+            steers_to: None,
+            loiter_radius_m: None,
             home: None,
             on_ground: None,
             list_unfit: false,
@@ -138,6 +145,8 @@ impl Telemetry {
         match report {
             Report::Heartbeat { mode, name, armed, failsafe } => {
                 self.first_beat.get_or_insert(now);
+                // what it steered to was for the mode before
+                self.steers_to = self.steers_to.filter(|_| self.mode == Some(*mode));
                 self.mode = Some(*mode);
                 self.mode_name.clone_from(name);
                 self.armed = *armed;
@@ -158,6 +167,8 @@ impl Telemetry {
             Report::Engine(v) => self.engine = Some((now, *v)),
             Report::Throttle(v) => self.throttle = Some((now, *v)),
             Report::Power(v) => self.power = Some((now, *v)),
+            Report::SteersTo(place) => self.steers_to = Some((now, *place)),
+            Report::LoiterRadius(metres) => self.loiter_radius_m = Some(*metres),
             Report::Home { position, altitude_amsl_m } => {
                 self.home = Some((*position, *altitude_amsl_m));
             }

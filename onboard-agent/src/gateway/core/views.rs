@@ -2,12 +2,14 @@
 
 use super::buffer::CAPACITY;
 use super::off_path::right_of_way_m;
-use super::telemetry::Telemetry;
+use super::telemetry::{OUT_OF_DATE, Telemetry};
 use super::{Gateway, seconds};
-use crate::gateway::order::{Kind, Time};
+use crate::gateway::order::{Kind, Mode, Time};
 use geometry::{LatLon, LocalFrame};
 use usal::Instance;
-use usal::contract::{AutopilotKind, GatewayState, GatewayStatus, Navigation, Token};
+use usal::contract::{
+    Action, AutopilotKind, Circle, GatewayState, GatewayStatus, Navigation, Token, Waypoint,
+};
 
 /// Low-water mark of the buffer.
 pub const LOW_WAYPOINTS: usize = 3;
@@ -15,6 +17,8 @@ pub const LOW_WAYPOINTS: usize = 3;
 pub const LOW_S: f64 = 10.0;
 /// Ground speed below which times make no sense, m/s.
 const SLOWEST_MPS: f64 = 3.0;
+/// No farther from a centre than so many radii it circles there: it may be wide in a wind.
+const ROUND: f64 = 1.5;
 
 impl Gateway {
     /// What it is doing.
@@ -53,9 +57,30 @@ impl Gateway {
             fp_manager: self.fp_manager.heard(now, &self.safe).map(|session| session.to_string()),
             fp_manager_age_s: self.fp_manager.age_s(now),
             waits_for_height_m: self.waits_for_height_m(),
+            circle: self.circle(),
             safe_return_in_s: left.map(|l| l.as_secs_f64()),
             alarms: self.alarms.raised(),
         }
+    }
+
+    /// The circle that it flies: in a hold or a direct command as the autopilot tells it, on the waypoints as it is commanded.
+    fn circle(&self) -> Option<Circle> {
+        let t = &self.telemetry;
+        let (centre, radius_m) = match t.mode.filter(|_| t.is_up(self.now))? {
+            Mode::Hold | Mode::Direct => {
+                let (at, centre) = t.steers_to?;
+                (self.now.saturating_sub(at) < OUT_OF_DATE).then_some((centre, t.loiter_radius_m?))?
+            }
+            Mode::Waypoints => match self.buffer.current()? {
+                Waypoint { position, action: Action::Loiter { radius_m }, .. } => (*position, *radius_m),
+                _ => return None,
+            },
+            Mode::Return | Mode::Other(_) => return None,
+        };
+        // it may still be on its way there
+        let is_there = self.place()?.distance_m(centre) <= ROUND * radius_m.abs();
+        let circle = Circle { centre, radius_m: radius_m.abs(), clockwise: radius_m > 0.0 };
+        is_there.then_some(circle)
     }
 
     fn kind(&self) -> Option<AutopilotKind> {

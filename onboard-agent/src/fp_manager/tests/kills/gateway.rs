@@ -246,6 +246,7 @@ impl Gateway {
             fp_manager: None,
             fp_manager_age_s: None,
             waits_for_height_m: None,
+            circle: None,
             safe_return_in_s: None,
             alarms: self.alarms.clone(),
         }

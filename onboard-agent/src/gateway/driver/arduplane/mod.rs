@@ -40,6 +40,8 @@ pub const DIALECT: Dialect = Dialect {
     flown: [4, 7],
     need: None,
     landing_limit: None,
+    loiter_radius: "WP_LOITER_RAD",
+    whole_as_bits: false,
     advice: &ADVICE,
     manner: Manner {
         we_are: MavType::MAV_TYPE_ONBOARD_CONTROLLER,

@@ -52,6 +52,10 @@ pub struct Dialect {
     pub need: Option<&'static Need>,
     /// The parameter that says how steep a landing may be in its list, degrees; `None`: it takes any.
     pub landing_limit: Option<&'static str>,
+    /// The parameter that says how wide it circles where no radius is commanded, metres; positive clockwise.
+    pub loiter_radius: &'static str,
+    /// It sends whole numbers among its parameters as their bits, not as numbers.
+    pub whole_as_bits: bool,
     /// Parameters that should be so before it is flown.
     pub advice: &'static [Advice],
     /// How it is spoken to.

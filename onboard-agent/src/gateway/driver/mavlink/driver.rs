@@ -64,6 +64,8 @@ pub struct MavlinkDriver {
     needed: Asked,
     /// How steep a landing it takes.
     landing_limit: Asked,
+    /// How wide it circles where no radius is commanded.
+    loiter_radius: Asked,
     /// What was last said of whether it can be flown.
     told: Option<Result<Kind, String>>,
     seen: Option<Seen>,

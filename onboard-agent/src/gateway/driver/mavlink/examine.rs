@@ -9,7 +9,7 @@ use super::super::{DIALECTS, FromLink, Setup};
 use super::Peer;
 use super::dialect::Dialect;
 use super::links::Received;
-use super::parameters::Asked;
+use super::parameters::{Asked, number};
 use super::session::Session;
 use crate::gateway::order::Time;
 use autopilot_link::Outbox;
@@ -100,22 +100,11 @@ impl Looked {
     fn on_parameter(&mut self, message: &PARAM_VALUE_DATA) {
         let Some(dialect) = self.dialect else { return };
         if let Some(need) = dialect.need {
-            self.needed.said(need.name, message);
+            self.needed.said(need.name, message, dialect.whole_as_bits);
         }
         let advice = dialect.advice.iter().find(|advice| message.param_id.to_str() == Ok(advice.name));
         if let Some(advice) = advice {
-            self.advised.insert(advice.name, self.number(message));
-        }
-    }
-
-    /// PX4 sends whole numbers as their bits, ArduPilot as numbers.
-    fn number(&self, message: &PARAM_VALUE_DATA) -> f64 {
-        let bits =
-            self.heard.as_ref().is_some_and(|(_, beat)| beat.autopilot == MavAutopilot::MAV_AUTOPILOT_PX4);
-        match message.param_type {
-            MavParamType::MAV_PARAM_TYPE_REAL32 => message.param_value.into(),
-            _ if bits => (message.param_value.to_bits() as i32).into(),
-            _ => message.param_value.into(),
+            self.advised.insert(advice.name, number(message, dialect.whole_as_bits));
         }
     }
 

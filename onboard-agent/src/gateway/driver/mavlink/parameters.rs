@@ -73,9 +73,9 @@ impl Asked {
     }
 
     /// The autopilot says a parameter.
-    pub fn said(&mut self, name: &str, message: &PARAM_VALUE_DATA) {
+    pub fn said(&mut self, name: &str, message: &PARAM_VALUE_DATA, whole_as_bits: bool) {
         if message.param_id.to_str() == Ok(name) {
-            self.value = Some(number(message));
+            self.value = Some(number(message, whole_as_bits));
         }
     }
 
@@ -90,10 +90,11 @@ impl Asked {
     }
 }
 
-/// Whole numbers come as their bits, or as a number.
-fn number(message: &PARAM_VALUE_DATA) -> f64 {
+/// Whole numbers come as their bits, or as numbers.
+pub fn number(message: &PARAM_VALUE_DATA, whole_as_bits: bool) -> f64 {
     match message.param_type {
         MavParamType::MAV_PARAM_TYPE_REAL32 => message.param_value.into(),
+        _ if !whole_as_bits => message.param_value.into(),
         _ => (message.param_value.to_bits() as i32).into(),
     }
 }

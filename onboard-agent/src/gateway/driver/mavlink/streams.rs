@@ -15,8 +15,9 @@ const MAX_DOUBLINGS: u32 = 5;
 /// What came before and has not for so long has stopped.
 const STOPPED: Duration = Duration::from_secs(10);
 
-/// `(message, interval in milliseconds, what it says)`; interval 0: asked for once, until it comes.
-const WANTED: [(u32, u32, &str); 15] = [
+/// `(message, interval in milliseconds, what it says)`; interval 0: asked for once, until it comes. What says nothing that is missed has no
+/// name: some autopilots steer nowhere while somebody flies by hand, and do not send it.
+const WANTED: [(u32, u32, &str); 16] = [
     (GLOBAL_POSITION_INT_DATA::ID, 100, "position"),
     (ATTITUDE_DATA::ID, 100, "attitude"),
     (MISSION_CURRENT_DATA::ID, 100, "place on the list"),
@@ -31,6 +32,7 @@ const WANTED: [(u32, u32, &str); 15] = [
     (SCALED_PRESSURE_DATA::ID, 1000, "pressure"),
     (SYSTEM_TIME_DATA::ID, 1000, "time of day"),
     (EXTENDED_SYS_STATE_DATA::ID, 500, "whether it stands"),
+    (POSITION_TARGET_GLOBAL_INT_DATA::ID, 1000, ""),
     (HOME_POSITION_DATA::ID, 0, "home"),
 ];
 
@@ -131,7 +133,10 @@ impl Streams {
     pub fn stopped(&mut self, now: Time, wind: u32) -> Option<Vec<&'static str>> {
         let over = |stream: &Stream| stream.came.is_some_and(|at| now.saturating_sub(at) > STOPPED);
         let asked_for = |id: u32, interval_ms: u32| interval_ms > 0 && (id == wind || !WINDS.contains(&id));
-        let known = WANTED.iter().zip(&self.streams).filter(|((id, ms, _), _)| asked_for(*id, *ms));
+        let known = WANTED
+            .iter()
+            .zip(&self.streams)
+            .filter(|((id, ms, what), _)| asked_for(*id, *ms) && !what.is_empty());
         let stopped: Vec<_> = known.filter(|(_, stream)| over(stream)).map(|((.., what), _)| *what).collect();
         if self.told == stopped {
             return None;

@@ -100,6 +100,9 @@ impl Readings {
             }
             MavMessage::EFI_STATUS(m) => self.efi(m),
             MavMessage::HOME_POSITION(m) => home(m).map(|h| out.push(SessionEvent::Telemetry(h))),
+            MavMessage::POSITION_TARGET_GLOBAL_INT(m) if is_nowhere(m.lat_int, m.lon_int) => Some(()),
+            MavMessage::POSITION_TARGET_GLOBAL_INT(m) => place(m.lat_int, m.lon_int)
+                .map(|place| out.push(SessionEvent::Telemetry(Report::SteersTo(place)))),
             MavMessage::EXTENDED_SYS_STATE(m) => {
                 landed(m.landed_state).map(|r| out.push(SessionEvent::Telemetry(r)))
             }

@@ -43,6 +43,8 @@ pub const FIXED_WING: Dialect = Dialect {
     flown: [1, 18],
     need: Some(&NO_LANDING_NEEDED),
     landing_limit: Some(LANDING_LIMIT),
+    loiter_radius: "NAV_LOITER_RAD",
+    whole_as_bits: true,
     advice: &ADVICE,
     // it tells its reasons only where it hears a ground station
     manner: Manner {

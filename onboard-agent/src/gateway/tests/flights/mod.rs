@@ -387,6 +387,7 @@ pub fn landing() -> Vec<Waypoint> {
 mod aftermath;
 mod alternate;
 mod by_hand;
+mod circle;
 mod climb_out;
 mod corners;
 mod disarmed;

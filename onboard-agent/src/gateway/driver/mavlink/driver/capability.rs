@@ -16,6 +16,7 @@ impl MavlinkDriver {
         if let Some(name) = dialect.landing_limit {
             self.landing_limit.tick(now, name, |_| true, peer, out);
         }
+        self.loiter_radius.tick(now, dialect.loiter_radius, |_| true, peer, out);
         self.judge();
     }
 
@@ -23,11 +24,16 @@ impl MavlinkDriver {
     pub(super) fn hear_parameter(&mut self, value: &PARAM_VALUE_DATA) {
         let Some(dialect) = self.dialect() else { return };
         if let Some(need) = dialect.need {
-            self.needed.said(need.name, value);
+            self.needed.said(need.name, value, dialect.whole_as_bits);
         }
         if let Some(name) = dialect.landing_limit {
-            self.landing_limit.said(name, value);
+            self.landing_limit.said(name, value, dialect.whole_as_bits);
         }
+        let before = self.loiter_radius.value();
+        self.loiter_radius.said(dialect.loiter_radius, value, dialect.whole_as_bits);
+        let radius_m = self.loiter_radius.value().filter(|radius_m| radius_m.is_finite() && *radius_m != 0.0);
+        self.reports
+            .extend(radius_m.filter(|_| self.loiter_radius.value() != before).map(Report::LoiterRadius));
         self.judge();
     }
 

@@ -48,7 +48,7 @@ pub(super) static RULES: Rules = Rules {
     no_such_interval: MavResult::MAV_RESULT_DENIED,
 };
 
-const STREAMS: [Streamed; 20] = [
+const STREAMS: [Streamed; 21] = [
     (0, 1000, 0),      // HEARTBEAT
     (1, 500, 2),       // SYS_STATUS
     (2, 1000, 12),     // SYSTEM_TIME
@@ -60,6 +60,7 @@ const STREAMS: [Streamed; 20] = [
     (49, 0, 0),        // GPS_GLOBAL_ORIGIN
     (62, 500, 2),      // NAV_CONTROLLER_OUTPUT
     (74, 250, 11),     // VFR_HUD
+    (87, 500, 2),      // POSITION_TARGET_GLOBAL_INT
     (147, 1000, 12),   // BATTERY_STATUS
     (148, 0, 0),       // AUTOPILOT_VERSION
     (168, 1000, 12),   // WIND
