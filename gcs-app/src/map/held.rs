@@ -1,4 +1,4 @@
-//! The circle that is held: where the agent says that it circles, and else as it is seen to be flown.
+//! The circle that is held: as it is seen to be flown, and until then as the agent says it.
 
 use super::names::{self, Ground, Name, Rank};
 use super::sheet::Sheet;
@@ -17,7 +17,8 @@ pub fn draw(sheet: &Sheet<'_>) {
     if !scene.vehicle.is_airborne() {
         return;
     }
-    if let Some(circle) = scene.vehicle.circling.circle() {
+    let seen = scene.vehicle.circling.circle();
+    if let Some(circle) = seen.or_else(|| scene.vehicle.told_circle(scene.now_s)) {
         return circle_of(sheet, circle, "held");
     }
     let ahead = scene.vehicle.ahead.iter().flat_map(|ahead| &ahead.value.waypoints).enumerate();

@@ -8,8 +8,8 @@ pub use alarms::{LINK_CAUTION_S, LINK_WARNING_S};
 
 use super::watch::Watch;
 use super::{
-    Aged, Circling, Log, Losses, Names, Outlook, RecentEvents, Repeats, Requests, Strangers, Told, Trail,
-    Unanswered, WhySafe,
+    Aged, Circle, Circling, Log, Losses, Names, Outlook, RecentEvents, Repeats, Requests, Strangers, Told,
+    Trail, Unanswered, WhySafe,
 };
 use crate::link::{LinkId, LinkState, Rows};
 use aircraft::Autopilot;
@@ -198,6 +198,12 @@ impl Vehicle {
     /// What was asked for in the climb waits until the aircraft is so high above home, metres.
     pub fn waits_for_height_m(&self, now_s: f64) -> Option<f64> {
         live(&self.gateway, now_s)?.waits_for_height_m
+    }
+
+    /// The circle that its gateway says it flies.
+    pub fn told_circle(&self, now_s: f64) -> Option<Circle> {
+        let circle = live(&self.gateway, now_s)?.circle.filter(|circle| circle.centre.is_valid())?;
+        Some(Circle { centre: circle.centre, radius_m: circle.radius_m })
     }
 
     /// An alarm of its gateway says that it has no engine.

@@ -2,10 +2,10 @@
 
 use super::Window;
 use super::flying::{flying, flying_its_plan};
-use super::vehicle::position;
+use super::vehicle::{gateway_status, position};
 use gcs_app::link::Telemetry;
 use geometry::LatLon;
-use usal::contract::{Action, Ahead, GatewayState, Stamped, Token, Waypoint};
+use usal::contract::{Action, Ahead, Circle, GatewayState, Stamped, Token, Waypoint};
 
 const CENTRE: LatLon = LatLon::new(36.325, -84.165);
 
@@ -32,6 +32,18 @@ fn the_circle_that_is_held_is_drawn_once_it_is_seen_and_goes_with_the_hold() {
         there(&mut window, 60.0, CENTRE, 500.0);
         assert!(!window.paints("held · radius"));
     }
+}
+
+/// Until enough of it was flown, it is taken as told.
+#[test]
+fn the_circle_that_the_gateway_tells_is_drawn_at_once() {
+    let (mut window, _) = flying();
+    let mut value = gateway_status(GatewayState::Hold);
+    value.circle = Some(Circle { centre: CENTRE, radius_m: 110.0, clockwise: true });
+    window.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }.into()));
+    assert!(window.paints("held · radius 110 m"));
+    window.receive_gateway_state(GatewayState::Nav);
+    assert!(!window.paints("held · radius"));
 }
 
 #[test]
