@@ -15,9 +15,13 @@ impl Parameters {
     pub fn hear(&mut self, frame: &Frame<'_>) {
         match frame.message() {
             Some(MavMessage::PARAM_VALUE(value)) => self.keep(value),
-            Some(MavMessage::HEARTBEAT(beat)) if self.0.is_empty() => {
-                let name = own_number(beat.autopilot, frame.sender.system);
-                self.0.extend(name);
+            Some(MavMessage::HEARTBEAT(beat)) => {
+                let number = own_number(beat.autopilot, frame.sender.system);
+                let is_new =
+                    |number: &PARAM_VALUE_DATA| self.0.iter().all(|known| known.param_id != number.param_id);
+                if let Some(number) = number.filter(is_new) {
+                    self.keep(number);
+                }
             }
             _ => {}
         }
