@@ -5,6 +5,9 @@ use super::{Known, MavlinkDriver};
 use crate::gateway::order::{Kind, Report, Time};
 use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType, PARAM_VALUE_DATA};
 
+/// Nobody circles wider than this, metres.
+const WIDEST_M: f64 = 20_000.0;
+
 impl MavlinkDriver {
     /// At each heartbeat, as long as one is not known, or not as it has to be.
     pub(super) fn ask_parameters(&mut self, now: Time) {
@@ -31,7 +34,8 @@ impl MavlinkDriver {
         }
         let before = self.loiter_radius.value();
         self.loiter_radius.said(dialect.loiter_radius, value, dialect.whole_as_bits);
-        let radius_m = self.loiter_radius.value().filter(|radius_m| radius_m.is_finite() && *radius_m != 0.0);
+        let radius_m =
+            self.loiter_radius.value().filter(|radius_m| (1.0..=WIDEST_M).contains(&radius_m.abs()));
         self.reports
             .extend(radius_m.filter(|_| self.loiter_radius.value() != before).map(Report::LoiterRadius));
         self.judge();
