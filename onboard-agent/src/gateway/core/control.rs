@@ -49,6 +49,8 @@ pub struct Control {
     pub direct: Option<(LatLon, f64)>,
     /// It has not been carried out yet.
     pub direct_due: bool,
+    /// The altitude at which it was first seen to hold as asked, metres AMSL; `None`: it does not.
+    pub held_at_m: Option<f64>,
     /// Waypoints that may be aboard of a flight that was met in the air.
     pub adopting: Vec<Fed>,
     speed_mps: Option<f64>,

@@ -143,7 +143,8 @@ impl Gateway {
         match self.control.intent {
             Intent::Direct => self.control.direct.map(|(_, altitude_amsl_m)| altitude_amsl_m),
             Intent::Fly => self.buffer.current().filter(flies).map(|w| w.altitude_amsl_m),
-            Intent::Nothing | Intent::Hold | Intent::Return => None,
+            Intent::Hold => self.control.held_at_m,
+            Intent::Nothing | Intent::Return => None,
         }
     }
 
@@ -151,6 +152,7 @@ impl Gateway {
     fn seconds_to_target(&self) -> Option<f64> {
         let to = match self.control.intent {
             Intent::Direct => self.control.direct?.0,
+            Intent::Hold => return None,
             _ => self.buffer.current()?.position,
         };
         let fix = self.fix()?;

@@ -35,6 +35,14 @@ impl Gateway {
         if let Some((trigger, cause)) = self.seen() {
             self.change(trigger, cause, out);
         }
+        self.keep_altitude_held();
+    }
+
+    /// Autopilots circle at the altitude at which they were told to.
+    fn keep_altitude_held(&mut self) {
+        let holds = self.control.intent == Intent::Hold && self.telemetry.mode == Some(Mode::Hold);
+        let here_m = self.telemetry.fix_now(self.now).map(|fix| fix.altitude_amsl_m);
+        self.control.held_at_m = self.control.held_at_m.or(here_m).filter(|_| holds);
     }
 
     fn seen(&self) -> Option<(Trigger, &'static str)> {

@@ -410,6 +410,25 @@ fn far_above_or_below_its_altitude_and_no_nearer_is_told_and_a_lag_is_not() {
     }
 }
 
+/// A wave carries it up, or somebody turns a knob.
+#[test]
+fn a_hold_that_leaves_its_altitude_is_told() {
+    for (above_m, told) in [(120.0, true), (-120.0, true), (40.0, false)] {
+        let mut core = Core::in_nav();
+        core.step(Input::Request(4, GatewayRequest::Hold));
+        let holding = |above_m| {
+            let mut reports = at_height(above_m, 0.0);
+            reports[0] = beat(Mode::Hold, true);
+            reports
+        };
+        core.run(15, &holding(0.0));
+        assert_eq!(core.gateway.state(), GatewayState::Hold);
+        assert!(!core.raised("off-altitude"), "it holds where it was told to");
+        core.run(15, &holding(above_m));
+        assert_eq!(core.raised("off-altitude"), told, "{above_m} m");
+    }
+}
+
 /// It fell back to the height of its runway after the take-off, or flies over a valley: it rolls no more.
 #[test]
 fn far_too_low_is_told_where_that_is_no_higher_than_the_runway_too() {
