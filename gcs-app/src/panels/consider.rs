@@ -5,7 +5,7 @@ use super::{Scene, answer, field};
 use crate::command::{FlyCommand, Queue};
 use crate::state::{Considered, Vehicle};
 use crate::theme;
-use crate::units;
+use crate::units::{self, Unit};
 use egui::{RichText, ScrollArea, Ui};
 use flight_exec::{Command, Foresight};
 use flight_plan::checks::CLEARANCE_M;
@@ -208,8 +208,38 @@ fn facts(considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) -> V
         foresight.battery_left * 100.0
     );
     let rounds = begun_anew(&considered.command, vehicle);
-    next.into_iter().chain(rounds).chain(left_out(foresight, vehicle)).chain(clearance).chain([end]).collect()
+    let levels = change_of_level(foresight, units.altitude());
+    next.into_iter()
+        .chain(levels)
+        .chain(rounds)
+        .chain(left_out(foresight, vehicle))
+        .chain(clearance)
+        .chain([end])
+        .collect()
 }
+
+/// `First descends 120 m, to 1200 m AMSL`: until the path is level from there on, or turns the other way.
+fn change_of_level(foresight: &Foresight, unit: Unit) -> Option<String> {
+    let from_m = foresight.path.first()?.altitude_amsl_m;
+    let mut to_m = from_m;
+    for (at, next) in foresight.path.iter().zip(foresight.path.iter().skip(1)) {
+        let (by_m, step_m) = (to_m - from_m, next.altitude_amsl_m - at.altitude_amsl_m);
+        let is_level = step_m.abs() < LEVEL_MPS * (next.time_s - at.time_s);
+        if by_m.abs() >= MUCH_M && (is_level || by_m * step_m < 0.0) {
+            break;
+        }
+        to_m = next.altitude_amsl_m;
+    }
+    let by_m = to_m - from_m;
+    let does = if by_m < 0.0 { "descends" } else { "climbs" };
+    let told = || format!("First {does} {}, to {} AMSL", unit.show(by_m.abs()), unit.show(to_m));
+    (by_m.abs() >= MUCH_M).then(told)
+}
+
+/// A path that climbs or descends less is level, m/s.
+const LEVEL_MPS: f64 = 0.2;
+/// A change of altitude that is told, metres.
+const MUCH_M: f64 = 20.0;
 
 /// What is not flown, by whose it is: legs of an emergency plan often have the names of those of the main plan.
 fn left_out(foresight: &Foresight, vehicle: &Vehicle) -> Vec<String> {

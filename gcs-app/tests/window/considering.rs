@@ -282,6 +282,32 @@ fn a_climb_that_is_not_done_or_a_low_way_is_a_caution() {
     }
 }
 
+/// A leg behind the aircraft may be lower: nobody read that it would descend there.
+#[test]
+fn a_change_of_altitude_on_the_way_is_told() {
+    let along = |altitude_at: fn(f64) -> f64| {
+        let mut foresight = foresight();
+        for point in &mut foresight.path {
+            point.time_s *= 10.0;
+            point.altitude_amsl_m = altitude_at(point.time_s);
+        }
+        foresight
+    };
+    let descends: fn(f64) -> f64 = |s| (500.0 - 2.0 * s).max(380.0);
+    let climbs: fn(f64) -> f64 = |s| if s < 100.0 { 500.0 + s } else { 700.0 - s };
+    let is_level: fn(f64) -> f64 = |s| 500.0 + 5.0 * (s / 20.0).sin();
+    for (altitude_at, told) in [
+        (descends, Some("First descends 120 m, to 380 m AMSL")),
+        (climbs, Some("First climbs 100 m, to 600 m AMSL")),
+        (is_level, None),
+    ] {
+        let (mut window, ticket) = considered();
+        window.answer(ticket, Ok(Reply::Foresight(Box::new(along(altitude_at)))));
+        assert!(told.is_none_or(|told| window.shows(told)), "{told:?}");
+        assert_eq!(window.shows("First "), told.is_some());
+    }
+}
+
 /// What the card of a Go to says where the agent has no elevations, and this window those of some ground.
 fn over(ground: Arc<dyn Terrain>) -> Window {
     let mut window = Window::open_over(SQUARE, egui::vec2(1280.0, 800.0), None, ground);
