@@ -1,6 +1,6 @@
 //! What is under the pointer.
 
-use super::Canvas;
+use super::{Canvas, Grip};
 use crate::chart::zones as chart;
 use crate::command::Selection;
 use crate::map::path;
@@ -8,6 +8,7 @@ use crate::map::sketch::{Handle, Handled};
 use egui::Pos2;
 use flight_plan::{FlightPlan, Id, Runway};
 use geometry::LatLon;
+use std::cmp::Ordering;
 
 /// A line so near to the pointer is meant, screen points.
 const NEAR: f32 = 7.0;
@@ -40,6 +41,17 @@ pub fn handles_near<'a>(
     let Canvas { sketch, view, .. } = *canvas;
     let placed = sketch.handles.iter().zip(&sketch.placed.handles);
     placed.filter(move |(_, place)| view.screen(**place).distance(at) < reach).map(|(handle, _)| handle)
+}
+
+/// Of grips that lie over each other the last one takes the pointer: what is selected, and then what is nearest to it. Others keep
+/// their order, in which the keyboard walks through them.
+pub fn put_meant_last(grips: &mut [Grip], pointer: Option<Pos2>) {
+    let Some(pointer) = pointer else { return };
+    let rank = |grip: &Grip| {
+        let far = grip.at.distance(pointer);
+        (far < 2.0 * REACH).then_some((grip.first, -far))
+    };
+    grips.sort_by(|a, b| rank(a).partial_cmp(&rank(b)).unwrap_or(Ordering::Equal));
 }
 
 /// Everything whose line is under the pointer.
@@ -161,4 +173,24 @@ pub fn line_under(at: Pos2, canvas: &Canvas<'_>) -> Option<(Id, Pos2)> {
     });
     let nearest = near.min_by(|(_, a), (_, b)| a.distance(at).total_cmp(&b.distance(at)));
     nearest.map(|(line, on)| (line.leg.clone(), on))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    #[test]
+    fn what_is_selected_takes_the_pointer_and_then_what_is_nearest() {
+        let grip = |key, x, first| Grip { key, name: String::new(), at: pos2(x, 0.0), first };
+        let order = |grips: [Grip; 4]| {
+            let mut grips = grips;
+            put_meant_last(&mut grips, Some(pos2(0.0, 0.0)));
+            grips.map(|grip| grip.key)
+        };
+        let far =
+            |first| [grip(0, 1.0, false), grip(1, 3.0, false), grip(2, 5.0, first), grip(3, 90.0, true)];
+        assert_eq!(order(far(false)), [3, 2, 1, 0]);
+        assert_eq!(order(far(true)), [3, 1, 0, 2]);
+    }
 }

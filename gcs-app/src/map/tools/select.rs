@@ -6,7 +6,7 @@ use super::corner::{corner_of, remove_corner};
 use super::group::{Group, within};
 use super::handles::{draw, draw_labels, label, value};
 use super::pen::{Mark, way};
-use super::pick::{line_under, lines_near, selection};
+use super::pick::{line_under, lines_near, put_meant_last, selection};
 use super::snap::{self, snap_but};
 use super::{Canvas, Card, Grip, Pointer, Tool, Touch, whole};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
@@ -114,7 +114,9 @@ impl Tool for Select {
         let first = |handle: &Handle| canvas.scene.is_selected(&selection(plan, &handle.what));
         let grips =
             shown.map(|&(key, handle, at)| Grip { key, name: name(handle), at, first: first(handle) });
-        let grips: Vec<Grip> = grips.chain(self.group.grips(canvas)).collect();
+        let mut grips: Vec<Grip> = grips.collect();
+        put_meant_last(&mut grips, canvas.pointer);
+        grips.extend(self.group.grips(canvas));
         // below the others
         let line = self.line_grip(&grips, canvas);
         let is_free = line.is_none() && self.inserting.is_none();
