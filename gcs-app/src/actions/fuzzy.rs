@@ -33,6 +33,16 @@ pub fn score(query: &str, text: &str) -> Option<Score> {
     Some(Score { is_whole: false, points })
 }
 
+/// As [`score`], of a name in a group: one that begins with the query, or has it as a whole word, comes before one that only the
+/// group answers for.
+pub fn score_named(query: &str, group: &str, name: &str) -> Option<Score> {
+    let score = score(query, &format!("{group} {name}"))?;
+    let (sought, name) = (query.trim().to_lowercase(), name.to_lowercase());
+    let mut words = name.split(|c: char| !c.is_alphanumeric());
+    let is_its_own = !sought.is_empty() && (name.starts_with(&sought) || words.any(|word| word == sought));
+    Some(Score { points: score.points + if is_its_own { 1000 } else { 0 }, ..score })
+}
+
 /// As [`score`], where the letters are side by side.
 pub fn words(query: &str, text: &str) -> Option<Score> {
     let (text, letters) = (lower(text), letters(query));
@@ -79,6 +89,15 @@ mod tests {
             found.sort_by_key(|(score, _)| *score);
             assert_eq!(found.into_iter().map(|(_, text)| text).collect::<Vec<_>>(), expected, "{query}");
         }
+    }
+
+    #[test]
+    fn a_name_answers_before_the_group_that_it_is_in() {
+        let mut found =
+            [("Maps", "Graticule"), ("Maps", "Maps and elevations…"), ("Edit", "Redraw the maps")];
+        found.sort_by_key(|(group, name)| Reverse(score_named("maps", group, name)));
+        assert_eq!(found.map(|(_, name)| name), ["Redraw the maps", "Maps and elevations…", "Graticule"]);
+        assert_eq!(score_named("maps", "Edit", "Undo"), None);
     }
 
     proptest! {

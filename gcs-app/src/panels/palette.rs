@@ -201,7 +201,7 @@ pub fn everything(scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
 
 /// By its name here, or another word for it.
 fn score(query: &str, action: &Action) -> Option<Score> {
-    let own = fuzzy::score(query, &format!("{} {}", action.group.name(), action.name));
+    let own = fuzzy::score_named(query, action.group.name(), &action.name);
     own.max(aliases::score(query, &action.id))
 }
 

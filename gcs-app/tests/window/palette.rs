@@ -296,3 +296,24 @@ fn engine_failure_is_raised_from_the_palette() {
     assert_eq!(window.app().view().alarm, Some(flight_plan::Cause::Engine));
     assert!(window.app().view().cursor_s.is_some());
 }
+
+#[test]
+fn what_has_the_word_in_its_name_comes_before_what_is_in_a_group_of_that_name() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.ask_for("maps");
+    window.press(Key::Enter);
+    assert!(window.app().view().maps && !window.app().view().edge.graticule);
+}
+
+/// Nobody knows the key of the menu who has none on his keyboard.
+#[test]
+fn the_menu_of_what_is_selected_is_found_with_its_key() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.click("TF side2");
+    window.ask_for("open the menu of what");
+    assert!(window.paints("Shift+F10"));
+    window.press(Key::Enter);
+    assert!(window.shows("Put into a loop"));
+}
