@@ -198,6 +198,8 @@ pub enum ViewCommand {
     Search,
     /// Show it in the plan and type another name for it.
     Rename(Renamed),
+    /// Show the plan and open the menu of what is selected there.
+    RowMenu,
     /// Select a branch of a fork in the plan's tree.
     SelectBranch(BranchId),
     /// Take the keyboard to the next panel, or (`-1`) the one before.

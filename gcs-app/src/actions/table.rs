@@ -124,6 +124,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Group::Edit, "duplicate", "Duplicate what is selected", &[ctrl(Key::D)], |s| clip(s, Clip::Duplicate)),
     entry(Group::Edit, "delete", "Delete what is selected", &[plain(Key::Delete)], delete),
     entry(Group::Edit, "rename", "Rename what is selected", &[plain(Key::F2)], rename),
+    entry(Group::Edit, "row-menu", "Open the menu of what is selected", &[with_shift(Key::F10), plain(Key::Menu)], row_menu),
     entry(Group::Edit, "earlier", "Move what is selected up", &[ctrl(Key::ArrowUp), alt(Key::ArrowUp)], |scene| shift(scene, -1)),
     entry(Group::Edit, "later", "Move what is selected down", &[ctrl(Key::ArrowDown), alt(Key::ArrowDown)], |scene| shift(scene, 1)),
     entry(Group::Edit, "new-way", "Draw a new way from the selected leg", &[plain(Key::W)], new_way),
@@ -313,6 +314,11 @@ fn rename(scene: &Scene<'_>) -> Asked {
     }
     alone(scene)?;
     view(ViewCommand::Rename(Renamed::Part(scene.view.selection.clone().ok_or(NOTHING)?)))
+}
+
+fn row_menu(scene: &Scene<'_>) -> Asked {
+    let is_any = scene.view.selection.is_some() || scene.selected_branch().is_some();
+    is_any.then_some(()).ok_or(NOTHING).and_then(|()| view(ViewCommand::RowMenu))
 }
 
 /// Of a set only the first one would be meant, and nobody sees which that is.

@@ -73,6 +73,8 @@ fn is_pressed(ctx: &Context, key: &KeyboardShortcut) -> bool {
         Key::Escape => ctx.input(|i| i.key_pressed(Key::Escape)),
         // a focused button takes the space bar for itself
         Key::Space if ctx.memory(|m| m.focused().is_some()) => false,
+        // the row with the keyboard opens its own
+        Key::F10 | Key::Menu if ctx.memory(|m| m.focused().is_some()) => false,
         // a cell of the table is renamed where it stands
         Key::F2 if table::has_focus(ctx) => false,
         _ => ctx.input_mut(|i| i.consume_shortcut(key)),

@@ -39,7 +39,7 @@ use crate::link::Links;
 use crate::map::MapState;
 use crate::panels::help::Help;
 use crate::panels::palette::{self, CommandPalette};
-use crate::panels::{self, Elevations, Panel, Scene, ViewState, field, inspector, tree};
+use crate::panels::{self, Elevations, Panel, Scene, ViewState, field, inspector, row_menu, tree};
 use crate::recent::Recent;
 use crate::recovery::Keeper;
 use crate::shelf::Shelf;
@@ -316,6 +316,9 @@ impl App {
         }
         if std::mem::take(&mut self.view.search) {
             tree::focus_search(ctx);
+        }
+        if std::mem::take(&mut self.view.row_menu) {
+            row_menu::ask(ctx);
         }
         if let Some(what) = self.view.rename.take() {
             tree::rename(ctx, what);

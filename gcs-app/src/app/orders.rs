@@ -218,6 +218,10 @@ impl App {
             ViewCommand::Maps(open) => self.view.maps = open,
             ViewCommand::Edge(edge) => self.view.edge = edge,
             ViewCommand::ResetLayout => self.dock.reset(&self.panels),
+            ViewCommand::RowMenu => {
+                self.dock.show_panel(crate::panels::tree::ID, true);
+                self.view.row_menu = true;
+            }
             ViewCommand::Notice(text) => self.view.notice = Some(text),
             ViewCommand::Toast(text) => self.toasts.add(now_s, Level::Info, text),
             ViewCommand::DismissNotice => self.view.notice = None,

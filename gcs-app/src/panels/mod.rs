@@ -34,6 +34,7 @@ pub mod push;
 pub mod reach;
 pub mod recover;
 pub mod selecting;
+pub(crate) mod row_menu;
 pub mod services;
 pub mod start;
 pub mod story;
@@ -188,6 +189,8 @@ pub struct ViewState {
     pub search: bool,
     /// What is about to be renamed in the plan's tree.
     pub rename: Option<tree::Renamed>,
+    /// The menu of what is selected is about to open in the plan's tree.
+    pub row_menu: bool,
     /// By how much altitudes are raised is about to be typed.
     pub raise: bool,
     /// The panel that was asked for last: it gives way to nothing.

@@ -7,7 +7,7 @@ pub(super) mod typed;
 
 use super::in_place::{InPlace, Typed};
 use super::tree::menu;
-use super::{Panel, PanelId, Place, Scene, timeline};
+use super::{Panel, PanelId, Place, Scene, row_menu, timeline};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::derived::{Derived, Source};
 use crate::theme;
@@ -50,11 +50,13 @@ struct Cursor {
     column: Column,
     /// It is to be brought into view.
     moved: bool,
+    /// The keyboard asked for the menu of its row.
+    opens_menu: bool,
 }
 
 impl Default for Cursor {
     fn default() -> Self {
-        Self { row: 0, column: Column::Name, moved: false }
+        Self { row: 0, column: Column::Name, moved: false, opens_menu: false }
     }
 }
 
@@ -166,6 +168,9 @@ impl Table {
             if pressed(Modifiers::NONE, key) {
                 self.cursor.column = self.cursor.column.beside(by).unwrap_or(self.cursor.column);
             }
+        }
+        if pressed(Modifiers::SHIFT, Key::F10) || pressed(Modifiers::NONE, Key::Menu) {
+            (self.cursor.moved, self.cursor.opens_menu) = (true, true);
         }
         if pressed(Modifiers::NONE, Key::F2) || pressed(Modifiers::NONE, Key::Enter) {
             self.edit(scene);
@@ -339,7 +344,8 @@ impl Table {
         let response = row.response();
         // one menu, wherever in the row the click was
         let anywhere = typed_into.into_iter().fold(response.clone(), |all, cell| all.union(cell));
-        anywhere.context_menu(|ui| menu::show(ui, scene, &part, queue));
+        let opens = self.cursor.row == index && std::mem::take(&mut self.cursor.opens_menu);
+        row_menu::show(&anywhere, opens, |ui| menu::show(ui, scene, &part, queue));
         if done.is_none() && response.clicked() {
             done = Some((self.cursor.column, Done::Chosen));
         }
@@ -360,12 +366,12 @@ impl Table {
             Done::Typed(Typed::Cancelled) => self.editing = None,
             Done::Typed(Typed::Text(text)) => self.finish(row, column, &text, scene, queue),
             Done::Edited => {
-                self.cursor = Cursor { row, column, moved: false };
+                self.cursor = Cursor { row, column, ..Cursor::default() };
                 self.select_again(scene, queue);
                 self.edit(scene);
             }
             Done::Chosen => {
-                self.cursor = Cursor { row, column, moved: false };
+                self.cursor = Cursor { row, column, ..Cursor::default() };
                 self.before_click = scene.selected_legs();
                 self.choose(ui, scene, queue);
             }

@@ -12,7 +12,7 @@ mod row;
 mod rows;
 mod search;
 
-use super::{Panel, PanelId, Place, Scene};
+use super::{Panel, PanelId, Place, Scene, row_menu};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::derived::{Derived, Source};
 use drag::{Asking, Drag, STEP, View};
@@ -114,6 +114,11 @@ impl Panel for Tree {
         self.problems.refresh(scene);
         self.follow(ui, scene);
         self.keys(ui, queue);
+        if row_menu::is_asked(ui) {
+            self.reveal(self.cursor.index);
+            self.focus(ui);
+            self.cursor.opens_menu = true;
+        }
         if let Some(renaming) = rename::asked(ui, &self.rows) {
             if let Some(index) = self.rows.iter().position(|row| renaming.is_of(row)) {
                 self.reveal(index);

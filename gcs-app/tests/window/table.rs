@@ -408,3 +408,37 @@ fn a_leg_of_a_procedure_has_the_altitude_that_its_call_says() {
     let own = window.harness.query_all_by_label_contains("AMSL, the leg before").count();
     assert_eq!(own, 0, "what its call says, it does not have from elsewhere");
 }
+
+#[test]
+fn the_menu_of_a_row_opens_by_key() {
+    for (modifiers, key) in [(Modifiers::SHIFT, Key::F10), (Modifiers::NONE, Key::Menu)] {
+        let mut window = opened(SQUARE);
+        let at = window.cell("Altitude of side2");
+        window.click_at(at);
+        window.press_with(modifiers, key);
+        assert!(window.shows("Put into a loop"), "{key:?}");
+        let duplicate = window.harness.get_by_label_contains("Duplicate").rect();
+        window.click_at(duplicate.center());
+        assert_eq!(window.plan().stages[1].legs.len(), 5);
+    }
+}
+
+/// Columns were cut with room beside them.
+#[test]
+fn in_a_large_window_no_cell_is_cut() {
+    let mut window = opened_in(super::whatif::FIRE_WATCH, vec2(1920.0, 1080.0));
+    window.steps(3);
+    let heads = window.places_of(|text| text == "Energy left")[0];
+    let shapes = window.harness.output().shapes.iter();
+    let texts = shapes.flat_map(|clipped| {
+        super::painted::texts(&clipped.shape).into_iter().map(|text| (clipped.clip_rect, text))
+    });
+    let cut: Vec<_> = texts
+        .filter(|(_, text)| text.pos.y >= heads.top() - 2.0 && (330.0..1560.0).contains(&text.pos.x))
+        .filter(|(clip, text)| {
+            text.galley.elided || text.galley.rect.translate(text.pos.to_vec2()).right() > clip.right() + 1.0
+        })
+        .map(|(_, text)| text.galley.text().to_owned())
+        .collect();
+    assert!(cut.is_empty(), "{cut:?}");
+}

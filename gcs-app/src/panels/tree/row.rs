@@ -5,13 +5,10 @@ use super::make::{self, Group};
 use super::menu;
 use super::rows::Row;
 use crate::command::{Queue, Selection, ViewCommand};
-use crate::panels::Scene;
+use crate::panels::{Scene, row_menu};
 use crate::theme::{self, Palette};
 use egui::text::{LayoutJob, TextFormat};
-use egui::{
-    Align2, Color32, FontId, Galley, Popup, Rect, Response, Role, Sense, SetOpenCommand, Stroke, Ui, pos2,
-    vec2,
-};
+use egui::{Align2, Color32, FontId, Galley, Popup, Rect, Response, Role, Sense, Stroke, Ui, pos2, vec2};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -78,7 +75,7 @@ pub(super) fn show(ui: &mut Ui, row: &Row, look: &Look<'_>, queue: &mut Queue) -
     response.widget_info(|| egui::WidgetInfo::selected(Role::TreeItem, true, selected, &name));
     background(ui, rect, selected, &response);
     let text = contents(ui, rect, row, look, is_current && look.renames);
-    menus(ui, row, &response, is_current && look.opens_menu, look.scene, queue);
+    menus(row, &response, is_current && look.opens_menu, look.scene, queue);
     if let Some(group) = row.group {
         add_button(ui, rect, group, look.scene, queue);
     }
@@ -112,20 +109,8 @@ fn done(row: &Row, response: &Response, rect: Rect, queue: &mut Queue) -> Option
     }
 }
 
-/// By a right click, or by the keyboard below the row.
-fn menus(ui: &Ui, row: &Row, response: &Response, opens: bool, scene: &Scene<'_>, queue: &mut Queue) {
-    let mut popup = Popup::context_menu(response);
-    if opens {
-        popup = popup.open_memory(Some(SetOpenCommand::Bool(true)));
-    }
-    let by_key = response.id.with("by key");
-    if opens || response.secondary_clicked() {
-        ui.data_mut(|d| d.insert_temp(by_key, opens));
-    }
-    if ui.data(|d| d.get_temp(by_key)).unwrap_or(false) {
-        popup = popup.at_position(response.rect.left_bottom() + vec2(24.0, 0.0));
-    }
-    popup.show(|ui| {
+fn menus(row: &Row, response: &Response, opens: bool, scene: &Scene<'_>, queue: &mut Queue) {
+    row_menu::show(response, opens, |ui| {
         if let Some(branch) = row.as_branch() {
             menu::of_branch(ui, scene.document.plan(), branch, queue);
         } else if let Some(selection) = &row.selection {
