@@ -13,7 +13,7 @@ use crate::derived::{Derived, Source};
 use crate::theme;
 use cell::{cell, heading, not_flown};
 use egui::{
-    Align, Context, EventFilter, Id as WidgetId, Key, Modifiers, Rect, RichText, ScrollArea, Sense, Ui,
+    Align, Context, EventFilter, Id as WidgetId, Key, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, vec2,
 };
 use egui_extras::{TableBuilder, TableRow};
 use flight_plan::Id;
@@ -239,7 +239,7 @@ impl Table {
     }
 
     fn table(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        ui.spacing_mut().item_spacing.y = 1.0;
+        ui.spacing_mut().item_spacing = vec2(6.0, 1.0);
         let weak = theme::of(ui).weak;
         let whole = ui.clip_rect();
         let mut table = TableBuilder::new(ui)
@@ -250,15 +250,14 @@ impl Table {
             // a low dock has less than its usual least height: its last rows were below the window
             .min_scrolled_height(0.0)
             .cell_layout(egui::Layout::left_to_right(Align::Center))
-            .column(egui_extras::Column::initial(120.0).at_least(60.0).clip(true))
-            // an altitude with where it is from is the longest text: it has what room there is
-            .column(egui_extras::Column::remainder().at_least(150.0).clip(true))
-            .column(egui_extras::Column::initial(90.0).at_least(50.0).clip(true))
-            .column(egui_extras::Column::initial(44.0).at_least(36.0))
-            .column(egui_extras::Column::initial(68.0).at_least(44.0))
-            .column(egui_extras::Column::initial(98.0).at_least(44.0))
-            .columns(egui_extras::Column::initial(50.0).at_least(36.0), 3)
-            .columns(egui_extras::Column::remainder().at_least(60.0), 5);
+            // names, and altitudes and airspeeds with where they are from, are the longest texts: they have what room there is
+            .column(egui_extras::Column::remainder().at_least(110.0).clip(true))
+            .column(egui_extras::Column::remainder().at_least(165.0).clip(true))
+            .column(egui_extras::Column::remainder().at_least(86.0).clip(true));
+        // numbers are no wider than their heads
+        for width in [40.0, 68.0, 92.0, 44.0, 50.0, 40.0, 68.0, 54.0, 92.0, 46.0, 58.0] {
+            table = table.column(egui_extras::Column::initial(width).at_least(36.0));
+        }
         if std::mem::take(&mut self.cursor.moved) {
             table = table.scroll_to_row(self.cursor.row, None);
         }
