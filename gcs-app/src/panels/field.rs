@@ -236,9 +236,14 @@ pub fn choice(ui: &mut Ui, name: &str, options: &[&str], now: Option<usize>) -> 
 
 /// A small button with a symbol, named for what it does.
 pub fn small_button(ui: &mut Ui, symbol: &str, name: &str) -> bool {
+    small_button_response(ui, symbol, name).clicked()
+}
+
+/// The same, with all that happened to it.
+pub fn small_button_response(ui: &mut Ui, symbol: &str, name: &str) -> Response {
     let response = ui.small_button(symbol).on_hover_text(name);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
-    response.clicked()
+    response
 }
 
 /// A text, taken when the field is left or Enter is pressed.

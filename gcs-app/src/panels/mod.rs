@@ -44,6 +44,7 @@ pub mod toasts;
 pub mod tour;
 pub mod tree;
 pub mod unsaved;
+pub(crate) mod unread;
 pub mod what_if;
 
 use crate::command::{Queue, Replacement, Selection};

@@ -347,6 +347,34 @@ fn actions_are_added_changed_put_in_order_and_removed() {
     assert_eq!(panels.leg_of("tf").actions.len(), 1);
 }
 
+/// The next one lies under the pointer then, and was not meant.
+#[test]
+fn a_second_press_removes_nothing_else_until_the_pointer_moves() {
+    let mut panels = Panels::leg("tf");
+    let before = panels.leg_of("tf").actions.len();
+    (0..3).for_each(|_| panels.click("Add action"));
+    let count = |panels: &Panels| panels.leg_of("tf").actions.len() - before;
+    let at = panels.0.get_by_label("Action 1: remove").rect().center();
+    let press = |panels: &mut Panels, at: egui::Pos2| {
+        panels.0.hover_at(at);
+        panels.0.drag_at(at);
+        panels.0.run_steps(1);
+        panels.0.drop_at(at);
+        // not a double click
+        panels.0.run_steps(30);
+    };
+    press(&mut panels, at);
+    assert_eq!(count(&panels), 2);
+    assert!(panels.0.get_by_label("Action 1: remove").rect().contains(at), "the next one came there");
+    press(&mut panels, at);
+    assert_eq!(count(&panels), 2, "it is another one");
+    press(&mut panels, at + vec2(5.0, 0.0));
+    assert_eq!(count(&panels), 1);
+    panels.0.run_steps(100);
+    press(&mut panels, at + vec2(5.0, 0.0));
+    assert_eq!(count(&panels), 0, "it was there long enough to be read");
+}
+
 #[test]
 fn branches_have_labels_conditions_and_a_default() {
     let mut panels = Panels::leg("fork");

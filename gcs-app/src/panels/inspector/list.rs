@@ -3,6 +3,7 @@
 use super::form;
 use super::page::Page;
 use crate::panels::field;
+use crate::panels::unread::row_button;
 use crate::theme;
 use egui::{CollapsingHeader, RichText, Ui};
 use flight_plan::describe::{Change, Children, Description, Kind, Row};
@@ -131,7 +132,7 @@ fn buttons(ui: &mut Ui, page: &mut Page<'_, '_>, index: usize, prefix: &str) {
         ("✖", "remove", Change::Remove(index)),
     ] {
         let name = page.name(&format!("{prefix}{does}"));
-        if field::small_button(ui, symbol, &name) && (does == "remove" || page.can(&change)) {
+        if row_button(ui, symbol, &name) && (does == "remove" || page.can(&change)) {
             page.change(&change);
         }
     }

@@ -1,7 +1,8 @@
 //! The wind at the runway, other winds at other heights, and the warmth of the air.
 
 use super::world::{si_slider, slider};
-use crate::panels::{Scene, field};
+use crate::panels::Scene;
+use crate::panels::unread::row_button;
 use crate::units::Unit;
 use aircraft::Wind;
 use aircraft::air::MOST_DEVIATION_C;
@@ -28,7 +29,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, chosen: &mut WhatIf) {
         let name = format!("Altitude aloft{number}, AMSL");
         ui.horizontal(|ui| {
             si_slider(ui, &name, amsl_m, heights, scene.units().altitude());
-            if field::small_button(ui, "✖", &format!("Give up the wind aloft{number}")) {
+            if row_button(ui, "✖", &format!("Give up the wind aloft{number}")) {
                 given_up = Some(index);
             }
         });
