@@ -8,6 +8,7 @@ use crate::command::{
 use crate::document::Document;
 use crate::guide::Answer;
 use crate::link::Call;
+use crate::panels::counted;
 use crate::state::{LOOK_AHEAD, Level, Proposal, START, Vehicle, VehicleName};
 use flight_exec::Command as PlanCommand;
 use flight_plan::{FlightPlan, Id};
@@ -42,6 +43,13 @@ impl App {
         }
     }
 
+    /// Much is lost by one key: how much is told, with a way back.
+    fn tell_of_removed(&mut self, before: &FlightPlan, now_s: f64) {
+        if let Some(text) = counted::removed(before, self.document.plan()) {
+            self.toasts.add_with_undo(now_s, text, self.document.version());
+        }
+    }
+
     fn change_document(&mut self, command: DocumentCommand, now_s: f64) {
         match command {
             DocumentCommand::Edit(edit) => {
@@ -49,6 +57,7 @@ impl App {
                 let done = self.document.edit(&edit);
                 self.tell(done);
                 if let Some(before) = before {
+                    self.tell_of_removed(&before, now_s);
                     self.tell_of_unused(&before, now_s);
                 }
             }
@@ -209,6 +218,10 @@ impl App {
                 self.dock.show_panel(crate::panels::tree::ID, true);
                 self.view.rename = Some(what);
             }
+            ViewCommand::RowMenu => {
+                self.dock.show_panel(crate::panels::tree::ID, true);
+                self.view.row_menu = true;
+            }
             ViewCommand::SelectBranch(branch) => self.view.select_branch(branch),
             ViewCommand::StepPanel(by) => self.view.panel_step = by,
             ViewCommand::ShowPanel(panel, shown) => {
@@ -218,10 +231,6 @@ impl App {
             ViewCommand::Maps(open) => self.view.maps = open,
             ViewCommand::Edge(edge) => self.view.edge = edge,
             ViewCommand::ResetLayout => self.dock.reset(&self.panels),
-            ViewCommand::RowMenu => {
-                self.dock.show_panel(crate::panels::tree::ID, true);
-                self.view.row_menu = true;
-            }
             ViewCommand::Notice(text) => self.view.notice = Some(text),
             ViewCommand::Toast(text) => self.toasts.add(now_s, Level::Info, text),
             ViewCommand::DismissNotice => self.view.notice = None,

@@ -3,6 +3,7 @@
 
 mod runway;
 
+use super::counted::{contents, listed, number};
 use super::{Scene, primary_button};
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::export::Exported;
@@ -210,39 +211,7 @@ fn text(note: &Note) -> String {
     } else {
         ""
     };
-    format!("{}: {}{remedy}", note.place, note.message)
-}
-
-/// What is in a plan, in a few words.
-fn contents(plan: &FlightPlan) -> String {
-    let parts = [
-        (plan.all_legs().len(), "leg"),
-        (plan.fixes.len(), "fix"),
-        (plan.runways.len(), "runway"),
-        (plan.zones.len(), "zone"),
-    ];
-    listed(&parts)
-}
-
-/// `4 legs, 1 fix and 2 zones`; what there is none of is left out.
-fn listed(parts: &[(usize, &str)]) -> String {
-    let parts: Vec<String> =
-        parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| number(*count, what)).collect();
-    match parts.as_slice() {
-        [] => "nothing that can be flown".into(),
-        [only] => only.clone(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
-    }
-}
-
-/// `1 leg`, `2 legs`, `3 fixes`.
-fn number(count: usize, what: &str) -> String {
-    let plural = match (count, what.ends_with('x')) {
-        (1, _) => "",
-        (_, true) => "es",
-        (_, false) => "s",
-    };
-    format!("{count} {what}{plural}")
+    format!("{}: {}{remedy}", note.place, plan.in_names(&note.message))
 }
 
 #[cfg(test)]
@@ -257,15 +226,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_in_a_plan_is_said_in_words() {
-        let mut plan = FlightPlan::default();
-        assert_eq!(contents(&plan), "nothing that can be flown");
-        plan = flight_plan::read(include_str!("../../../assets/plans/square.xml")).plan;
-        assert!(
-            contents(&plan).contains("legs, ") && contents(&plan).contains(" and "),
-            "{}",
-            contents(&plan)
-        );
-        assert_eq!((number(1, "fix"), number(2, "fix")), ("1 fix".into(), "2 fixes".into()));
+    fn a_note_names_parts_of_the_plan_as_problems_do() {
+        let plan = flight_plan::read(include_str!("../../../assets/plans/square.xml")).plan;
+        let note = Note {
+            code: "runway-assumed",
+            place: "item 4".into(),
+            message: "runway `R05` is taken to be short, and `nothing` is left out".into(),
+        };
+        let told = text(&note, &plan);
+        assert_eq!(told, "item 4: runway “R05” is taken to be short, and “nothing” is left out");
     }
 }

@@ -10,6 +10,7 @@ pub mod binding;
 pub mod browse;
 pub mod changed;
 pub mod consider;
+pub mod counted;
 pub mod decision;
 pub mod emergency;
 pub mod ended;

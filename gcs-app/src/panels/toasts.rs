@@ -2,7 +2,7 @@
 //! themselves.
 
 use super::Scene;
-use crate::command::{Queue, ViewCommand};
+use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::jobs::Job;
 use crate::map::tool_chip;
 use crate::state::Level;
@@ -25,7 +25,9 @@ const HEIGHT: f32 = 44.0;
 pub fn show(ui: &Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     let jobs: Vec<&Job> =
         scene.jobs.lasting(scene.now_s).chain(scene.layers.jobs().lasting(scene.now_s)).collect();
-    let toasts: Vec<&Toast> = scene.toasts.iter().collect();
+    // what was undone or changed since then is told no more
+    let is_so = |toast: &&Toast| toast.undoes.is_none_or(|version| version == scene.document.version());
+    let toasts: Vec<&Toast> = scene.toasts.iter().filter(is_so).collect();
     if jobs.is_empty() && toasts.is_empty() {
         return;
     }
@@ -104,6 +106,9 @@ fn message(ui: &mut Ui, toast: &Toast, queue: &mut Queue) {
             if close.clicked() {
                 queue.view(ViewCommand::DismissToast(toast.id));
             }
+            if toast.undoes.is_some() {
+                undo(ui, toast, queue);
+            }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let label = ui.add(Label::new(&toast.text).wrap());
                 // read aloud when it comes, without taking the keyboard
@@ -112,4 +117,12 @@ fn message(ui: &mut Ui, toast: &Toast, queue: &mut Queue) {
             });
         });
     });
+}
+
+fn undo(ui: &mut Ui, toast: &Toast, queue: &mut Queue) {
+    let button = ui.small_button("Undo");
+    button.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Undo: {}", toast.text)));
+    if button.clicked() {
+        queue.document(DocumentCommand::Undo);
+    }
 }

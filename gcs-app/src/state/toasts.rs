@@ -16,6 +16,8 @@ pub struct Toast {
     pub level: Level,
     /// What it says.
     pub text: String,
+    /// It tells of the step that led to this version of the document, and offers to undo it.
+    pub undoes: Option<u64>,
     /// Until when it is shown, seconds of the window's clock.
     until_s: f64,
 }
@@ -38,7 +40,15 @@ impl Toasts {
             self.list.remove(0);
         }
         self.last += 1;
-        self.list.push(Toast { id: self.last, level, text, until_s: now_s + shown_s(level) });
+        self.list.push(Toast { id: self.last, level, text, undoes: None, until_s: now_s + shown_s(level) });
+    }
+
+    /// A message of the step that led to this version of the document. It stays as long as a caution: there is something to decide.
+    pub fn add_with_undo(&mut self, now_s: f64, text: impl Into<String>, version: u64) {
+        self.add(now_s, Level::Info, text);
+        if let Some(toast) = self.list.last_mut() {
+            (toast.undoes, toast.until_s) = (Some(version), now_s + shown_s(Level::Caution));
+        }
     }
 
     /// Only for the log.

@@ -178,3 +178,19 @@ fn what_leaves_out_an_altitude_of_several_legs_keeps_away_from_the_edge_of_the_w
     let (button, panel) = (right("eave out the altitude"), right("Hide Inspector"));
     assert!(button <= panel, "{button} {panel}");
 }
+
+#[test]
+fn what_goes_by_one_key_is_counted_and_brought_back() {
+    let mut window = opened();
+    let before = window.plan();
+    window.press_ctrl(Key::A);
+    window.press(Key::Delete);
+    let legs = before.all_legs().len() - window.plan().all_legs().len();
+    assert!(legs > 1 && window.paints(&format!("Removed {legs} legs")));
+    window.click(&format!("Undo: Removed {legs} legs"));
+    assert_eq!(window.plan(), before);
+    assert!(!window.shows("Removed"), "it is so no more");
+    window.select_row(("TF side2", 0));
+    window.press(Key::Delete);
+    assert!(!window.shows("Removed"), "one leg is seen to go");
+}
