@@ -32,7 +32,9 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             import(ui, imported, scene, queue)
         });
     } else if let Some(exported) = &scene.view.exported {
-        dialog(ui, "export", ViewCommand::PutExportAside, queue, |ui, queue| export(ui, exported, queue));
+        dialog(ui, "export", ViewCommand::PutExportAside, queue, |ui, queue| {
+            export(ui, exported, scene, queue)
+        });
     }
 }
 
@@ -64,7 +66,7 @@ fn import(ui: &mut Ui, imported: &Imported, scene: &Scene<'_>, queue: &mut Queue
     runway::choose(ui, imported, scene, queue);
     let title =
         if adds { "As a new plan: assumed, changed or left out" } else { "Assumed, changed or left out" };
-    notes(ui, title, &imported.import.notes);
+    notes(ui, title, &imported.import.notes, &imported.import.plan);
     ui.horizontal(|ui| {
         let text = if adds { "As a new plan" } else { "Import the plan" };
         if main_button(ui, text) {
@@ -162,13 +164,13 @@ fn lines(ui: &mut Ui, imported: &Imported, queue: &mut Queue) {
     });
 }
 
-fn export(ui: &mut Ui, exported: &Exported, queue: &mut Queue) {
+fn export(ui: &mut Ui, exported: &Exported, scene: &Scene<'_>, queue: &mut Queue) {
     ui.strong(format!("Export “{}” as {}", exported.name, formats::label(exported.format)));
     ui.label(format!(
         "{}, as they are flown in calm air when nobody decides otherwise. Altitudes are above mean sea level there.",
         number(exported.waypoints, "waypoint")
     ));
-    notes(ui, "Not in the file, or not as in the plan", &exported.notes);
+    notes(ui, "Not in the file, or not as in the plan", &exported.notes, scene.document.plan());
     ui.horizontal(|ui| {
         if main_button(ui, "Save as…") {
             queue.document(DocumentCommand::AskExport);
@@ -179,7 +181,8 @@ fn export(ui: &mut Ui, exported: &Exported, queue: &mut Queue) {
     });
 }
 
-fn notes(ui: &mut Ui, title: &str, notes: &[Note]) {
+/// `plan`: what the notes name is in it.
+fn notes(ui: &mut Ui, title: &str, notes: &[Note], plan: &FlightPlan) {
     ui.add_space(4.0);
     if notes.is_empty() {
         ui.label(RichText::new("✔ Nothing is lost or changed.").color(theme::of(ui).good));
@@ -192,11 +195,11 @@ fn notes(ui: &mut Ui, title: &str, notes: &[Note]) {
     ui.spacing_mut().scroll = ScrollStyle::solid();
     let area = ScrollArea::vertical().auto_shrink([false, true]).max_height(LIST_HEIGHT);
     if notes.len() <= MOST_WRAPPED {
-        area.show(ui, |ui| notes.iter().for_each(|note| drop(ui.add(Label::new(text(note)).wrap()))));
+        area.show(ui, |ui| notes.iter().for_each(|note| drop(ui.add(Label::new(text(note, plan)).wrap()))));
     } else {
         area.show_rows(ui, ROW - ui.spacing().item_spacing.y, notes.len(), |ui, shown| {
             for note in notes.get(shown).unwrap_or_default() {
-                let text = text(note);
+                let text = text(note, plan);
                 ui.add(Label::new(&text).truncate()).on_hover_text(&text);
             }
         });
@@ -205,7 +208,7 @@ fn notes(ui: &mut Ui, title: &str, notes: &[Note]) {
     ui.add_space(4.0);
 }
 
-fn text(note: &Note) -> String {
+fn text(note: &Note, plan: &FlightPlan) -> String {
     let remedy = if note.code == "aircraft-assumed" {
         "; choose it in the inspector of the plan, under Aircraft"
     } else {

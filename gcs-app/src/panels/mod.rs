@@ -34,8 +34,8 @@ pub mod profile;
 pub mod push;
 pub mod reach;
 pub mod recover;
-pub mod selecting;
 pub(crate) mod row_menu;
+pub mod selecting;
 pub mod services;
 pub mod start;
 pub mod story;
@@ -44,8 +44,8 @@ pub mod timeline;
 pub mod toasts;
 pub mod tour;
 pub mod tree;
-pub mod unsaved;
 pub(crate) mod unread;
+pub mod unsaved;
 pub mod what_if;
 
 use crate::command::{Queue, Replacement, Selection};
@@ -189,10 +189,10 @@ pub struct ViewState {
     pub panel_step: isize,
     /// The plan's search is about to get the keyboard.
     pub search: bool,
-    /// What is about to be renamed in the plan's tree.
-    pub rename: Option<tree::Renamed>,
     /// The menu of what is selected is about to open in the plan's tree.
     pub row_menu: bool,
+    /// What is about to be renamed in the plan's tree.
+    pub rename: Option<tree::Renamed>,
     /// By how much altitudes are raised is about to be typed.
     pub raise: bool,
     /// The panel that was asked for last: it gives way to nothing.
