@@ -94,7 +94,7 @@ fn an_emergency_plan_leads_to_the_direction_that_begins_where_the_runway_was_cli
         let along = (drawn[1] - drawn[0]).normalized() * 12.0;
         window.press(Key::E);
         window.click_at([middle - along, middle + along][nearer]);
-        assert!(window.shows(&format!("Emergency plan to {runway}: click its places")), "{runway}");
+        assert!(window.shows(&format!("To {runway}: click its places outwards")), "{runway}");
     }
 }
 
@@ -137,14 +137,14 @@ fn an_emergency_plan_offers_the_direction_that_lacks_where_the_runway_was_clicke
     let along = (towards - middle).normalized() * 12.0;
     window.press(Key::E);
     window.click_at(middle - along);
-    assert!(window.shows("Emergency plan to R05: click its places") && !window.shows(OTHER));
+    assert!(window.shows("To R05: click its places outwards") && !window.shows(OTHER));
     window.press(Key::Escape);
     window.steps(40);
     window.click_at(middle + along);
-    assert!(window.shows("You clicked the end of it, where no runway of the plan begins"));
+    assert!(window.shows("You clicked the end of R05"));
     window.click(OTHER);
     assert_eq!(ids(&window), ["R05", "R23"]);
-    assert!(window.shows("Emergency plan to R23: click its places") && !window.shows(OTHER));
+    assert!(window.shows("To R23: click its places outwards") && !window.shows(OTHER));
     window.press(Key::Enter);
     assert_eq!(window.plan().emergency_plans.last().unwrap().runway.as_str(), "R23");
 }

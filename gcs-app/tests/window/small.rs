@@ -77,6 +77,28 @@ fn opened(text: &str) -> Window {
 }
 
 fn rect(window: &Window, label: &str) -> Rect {
+/// It took three lines of the map, which is small.
+#[test]
+fn what_the_emergency_tool_says_takes_two_lines() {
+    let mut window = opened(SQUARE);
+    window.click("TF side2");
+    window.press(Key::E);
+    let lines = |window: &Window, words: &str| {
+        let shapes = window.harness.output().shapes.iter();
+        let mut texts = shapes.flat_map(|clipped| super::painted::texts(&clipped.shape));
+        let galley = &texts.find(|text| text.galley.text().contains(words)).unwrap().galley;
+        galley.rows.iter().map(|row| row.text()).collect::<Vec<_>>()
+    };
+    assert_eq!(lines(&window, "click the runway it leads to").len(), 1);
+    let runway = window.centre("Runway R05");
+    window.click_at(runway);
+    window.harness.hover_at(runway + vec2(30.0, -40.0));
+    window.steps(5);
+    assert!(window.paints(" From side2: "));
+    let lines = lines(&window, "click its places outwards");
+    assert_eq!(lines.len(), 2, "{lines:?}");
+}
+
     window.harness.get_by_label(label).rect()
 }
 

@@ -125,17 +125,14 @@ impl DrawEmergency {
 
     /// From where it would be flown, and how far and how long it is from there.
     fn way_in(&self, scene: &Scene<'_>) -> String {
-        let Some(raised) = &self.raised else {
-            return " Select a leg, or move the cursor of the preview, to see the way into it from there."
-                .into();
-        };
-        let Some((trial, to)) = self.trials.get().zip(self.begins()) else { return String::new() };
+        let trial = self.raised.as_ref().zip(self.trials.get()).zip(self.begins());
+        let Some(((raised, trial), to)) = trial else { return String::new() };
         let leg = scene.document.label(&raised.leg);
         match &trial.fault {
             Some(fault) => format!(" From {leg} it can't be flown so: {fault}."),
             None => {
                 let way = trial.words(raised.at.from, to, scene.units());
-                format!(" From {leg} to its beginning: {way}.")
+                format!(" From {leg}: {way}.")
             }
         }
     }
@@ -147,16 +144,20 @@ impl Tool for DrawEmergency {
     }
 
     fn status(&self, scene: &Scene<'_>) -> Option<String> {
+        // on a small map there is room for two lines
         Some(match &self.runway {
             _ if scene.document.plan().runways.is_empty() => {
                 "Emergency plan: draw a runway first, it lands on one.".into()
             }
+            None if raised(scene).is_none() => {
+                "Emergency plan: click the runway it leads to. Select a leg to see the way in from there. Esc ends it.".into()
+            }
             None => "Emergency plan: click the runway it leads to. Esc ends it.".into(),
-            Some(runway) if self.lacking(scene).is_some() => format!(
-                "Emergency plan to {runway}. You clicked the end of it, where no runway of the plan begins: “{ADD_OTHER}” lets it land from there. Or click its places from {runway} outwards; Enter ends it, Escape gives it up."
-            ),
+            Some(runway) if self.lacking(scene).is_some() => {
+                format!("You clicked the end of {runway}: “{ADD_OTHER}” lets it land from there. Or click its places outwards.")
+            }
             Some(runway) => format!(
-                "Emergency plan to {runway}: click its places from there outwards, it is flown inwards. Enter or a double click ends it, Escape gives it up; without places it comes straight home.{}",
+                "To {runway}: click its places outwards; Enter ends, Esc gives up.{}",
                 self.way_in(scene)
             ),
         })
