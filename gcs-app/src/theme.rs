@@ -251,6 +251,16 @@ mod tests {
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     }
 
+    /// Numbers of the graticule, names: over water, land and their own halo.
+    #[test]
+    fn text_of_the_map_can_be_read_on_its_ground() {
+        for p in [&DARK, &LIGHT] {
+            for ground in [p.water, p.land, p.halo] {
+                assert!(contrast(p.text, ground) >= 4.5, "{ground:?}");
+            }
+        }
+    }
+
     #[test]
     fn contrast_is_that_of_the_standard() {
         assert!((contrast(Color32::BLACK, Color32::WHITE) - 21.0).abs() < 1e-9);

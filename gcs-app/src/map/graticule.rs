@@ -31,14 +31,14 @@ pub fn draw(sheet: &Sheet<'_>) {
         let name = arc(lon_s, step_s, ['E', 'W']);
         // the next one where something else lies on the edge
         let from_top = |y: f32| (pos2(x, view.rect.top() + y), Align2::CENTER_TOP);
-        ask(sheet, [2.0, 18.0, 34.0, 50.0].map(from_top), name, p.weak);
+        ask(sheet, [2.0, 18.0, 34.0, 50.0].map(from_top), name, p.text);
     }
     for lat_s in lines(from.lat_deg, to.lat_deg, step_s) {
         let y = view.place(LatLon::new(lat_s / 3600.0, 0.0)).y;
         painter.hline(view.rect.x_range(), y, stroke);
         let name = arc(lat_s, step_s, ['N', 'S']);
         let from_left = |x: f32| (pos2(view.rect.left() + TOOLS + x, y), Align2::LEFT_CENTER);
-        ask(sheet, [0.0, 44.0, 96.0, 140.0].map(from_left), name, p.weak);
+        ask(sheet, [0.0, 44.0, 96.0, 140.0].map(from_left), name, p.text);
     }
 }
 

@@ -128,6 +128,11 @@ fn graticule_and_range_rings_lie_over_the_map_when_they_are_asked_for() {
     }
     assert!(window.paints("° N") || window.paints("′ N") || window.paints("″ N"));
     assert_eq!(window.lines_within("Map", rings), 5);
+    // also in the light theme
+    window.ask_for("theme light");
+    window.press(Key::Enter);
+    let colour = window.colour_of("° N").or(window.colour_of("′ N")).or(window.colour_of("″ N"));
+    assert_eq!(colour, Some(gcs_app::theme::palette(false).text));
 }
 
 #[test]
