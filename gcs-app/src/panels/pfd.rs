@@ -3,7 +3,7 @@
 mod attitude;
 mod tape;
 
-use super::{Scene, age_as_heard, flight, value_with_age};
+use super::{Scene, age_as_heard, aged_row, flight};
 use crate::state::Aged;
 use crate::theme::{self, Palette};
 use crate::units::{self, Unit};
@@ -59,7 +59,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, room: f32) {
     wind(&painter, middle, told, scene, level.map(|a| a.heading_deg));
 }
 
-/// What it shows, in a row.
+/// What it shows, in a row: that is long, and says itself what it is.
 pub fn numbers(ui: &mut Ui, scene: &Scene<'_>) {
     let (u, vehicle) = (scene.units(), scene.vehicle);
     let speed = vehicle.air.as_ref().map(|air| format!("TAS {}", u.speed().show(air.value.airspeed_mps)));
@@ -68,7 +68,7 @@ pub fn numbers(ui: &mut Ui, scene: &Scene<'_>) {
     let heading = vehicle.attitude.as_ref();
     let heading = heading.map(|attitude| format!("HDG {}", units::bearing(attitude.value.heading_deg)));
     let text = [speed, altitude, heading].into_iter().flatten().collect::<Vec<_>>().join(" · ");
-    value_with_age(ui, "Flies", &text, age_as_heard(&vehicle.position, scene));
+    aged_row(ui, ("", 0.0), &text, age_as_heard(&vehicle.position, scene));
 }
 
 /// The value, if it is still to be believed.

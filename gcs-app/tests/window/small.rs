@@ -14,7 +14,7 @@ use egui::{Key, Rect, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_exec::{Command, Foresight, IterationPlace};
 use gcs_app::link::{Call, Reply, Telemetry};
-use usal::contract::{Alarm, Power, Severity, Stamped};
+use usal::contract::{Air, Alarm, Power, Severity, Stamped};
 
 #[test]
 fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_for() {
@@ -29,6 +29,15 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
         window.receive(Telemetry::Power(Stamped { time_s: 3.0, validity_s: 5.0, value }));
         let (id, source, advice) = ("energy-low".into(), "gateway".into(), "Land soon.".into());
         window.receive_gateway(vec![Alarm { id, severity: Severity::Caution, source, advice, cause: None }]);
+        window.receive_attitude();
+        let still = Air {
+            airspeed_mps: 24.0,
+            wind_east_mps: 0.0,
+            wind_north_mps: 0.0,
+            pressure_hpa: 980.0,
+            temperature_c: 15.0,
+        };
+        window.receive(Telemetry::Air(Stamped { time_s: 3.0, validity_s: 5.0, value: still }));
         window.steps(20);
         let bottom = window.harness.get_by_label("⏸ Hold").rect().top();
         let vital = ["ENERGY LOW", "Arrival ▸ r1", "above runway R05", "71 % · 24.1 V"];
@@ -37,8 +46,12 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
             assert!(rect.bottom() < bottom, "{size}: {text} is at {rect}, the panel ends at {bottom}");
         }
         assert!(!window.shows("Coverage of the whole path"), "{size}");
-        let numbers = rect(&window, "500 m AMSL");
+        let numbers = said(&window, "500 m AMSL");
         assert!(numbers.bottom() < bottom, "{size}: what the display has no room for is at {numbers}");
+        assert!(
+            window.paints_whole("TAS 24.0 m/s · 500 m AMSL · HDG 040°"),
+            "{size}: they were cut at the right"
+        );
         window.click("What if");
         assert!(window.shows("Coverage of the whole path"), "{size}: it was asked for");
     }
@@ -67,16 +80,6 @@ fn below_the_horizon_the_vital_values_come_first() {
     }
 }
 
-/// The smallest window.
-const SMALL: Vec2 = vec2(960.0, 600.0);
-
-fn opened(text: &str) -> Window {
-    let mut window = Window::open_with(text, SMALL, None);
-    window.until_analysed();
-    window
-}
-
-fn rect(window: &Window, label: &str) -> Rect {
 /// It took three lines of the map, which is small.
 #[test]
 fn what_the_emergency_tool_says_takes_two_lines() {
@@ -99,6 +102,16 @@ fn what_the_emergency_tool_says_takes_two_lines() {
     assert_eq!(lines.len(), 2, "{lines:?}");
 }
 
+/// The smallest window.
+const SMALL: Vec2 = vec2(960.0, 600.0);
+
+fn opened(text: &str) -> Window {
+    let mut window = Window::open_with(text, SMALL, None);
+    window.until_analysed();
+    window
+}
+
+fn rect(window: &Window, label: &str) -> Rect {
     window.harness.get_by_label(label).rect()
 }
 
