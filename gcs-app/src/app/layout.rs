@@ -183,8 +183,11 @@ fn floor(map: Option<Rect>, whole: Rect) -> Rect {
 fn room_of_start(floor: Rect, whole: Rect) -> (Rect, f32) {
     const TOOLS: f32 = 44.0;
     const OUTWARDS: f32 = 9.0;
+    // the map's scale and sources stay in sight below it
+    const BELOW: f32 = 28.0;
     if start::is_on(floor) {
-        (Rect::from_min_max(floor.min + egui::vec2(TOOLS, 0.0), floor.max), start::WIDTH)
+        let room = Rect::from_min_max(floor.min + egui::vec2(TOOLS, 0.0), floor.max - egui::vec2(0.0, BELOW));
+        (room, start::WIDTH)
     } else {
         (Rect::from_min_max(whole.min - egui::vec2(OUTWARDS, 0.0), whole.max), start::NARROW_WIDTH)
     }

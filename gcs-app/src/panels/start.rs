@@ -13,9 +13,10 @@ use crate::map::view::View;
 use crate::theme::{self, Palette};
 use crate::units::{Unit, Units};
 use aircraft::Profile;
+use egui::text::LayoutJob;
 use egui::{
-    Align2, ComboBox, DragValue, Painter, Pos2, Rect, RichText, Role, ScrollArea, Shape, Stroke, Ui,
-    WidgetInfo, vec2,
+    Align2, Color32, ComboBox, DragValue, Label, Painter, Pos2, Rect, RichText, Role, ScrollArea, Shape,
+    Stroke, TextStyle, Ui, WidgetInfo, vec2,
 };
 use flight_plan::template::{Extent, Outline, Template};
 use geometry::LatLon;
@@ -157,7 +158,20 @@ fn templates(ui: &mut Ui, guide: &mut Guide) {
             }
         }
     });
-    ui.label(RichText::new(guide.template.about()).color(theme::of(ui).weak));
+    said(ui, guide.template.about(), theme::of(ui).weak);
+}
+
+/// What is said of an answer takes two lines, whatever it is: no question below moves for it.
+fn said(ui: &mut Ui, text: &str, colour: Color32) {
+    const ROWS: usize = 2;
+    let font = TextStyle::Body.resolve(ui.style());
+    let mut job = LayoutJob::simple(text.to_owned(), font, colour, ui.available_width());
+    job.wrap.max_rows = ROWS;
+    let letters = ui.fonts_mut(|fonts| fonts.layout_job(job));
+    ui.vertical(|ui| {
+        ui.set_min_height(ROWS as f32 * ui.text_style_height(&TextStyle::Body).ceil());
+        ui.add(Label::new(letters)).on_hover_text(text);
+    });
 }
 
 fn answers(ui: &mut Ui, threshold: LatLon, guide: &mut Guide, scene: &Scene<'_>, queue: &mut Queue) {
@@ -183,15 +197,13 @@ fn height_remark(ui: &mut Ui, guide: &Guide, scene: &Scene<'_>) {
     let flown_m = guide.outline().map_or(guide.height_m, |outline| flown_height_m(outline, scene));
     // heights are made round
     const ROUND_M: f64 = 10.0;
-    let text = match flown_m - guide.height_m > ROUND_M {
+    match flown_m - guide.height_m > ROUND_M {
         true => {
             let flown = scene.units().altitude().show(flown_m);
-            RichText::new(format!("⚠ {flown} above the runway: the ground around asks for that"))
-                .color(p.caution)
+            said(ui, &format!("⚠ {flown} above the runway: the ground around asks for that"), p.caution);
         }
-        false => RichText::new("above the runway; more where the ground asks for it").color(p.weak),
-    };
-    ui.label(text);
+        false => said(ui, "above the runway; more where the ground asks for it", p.weak),
+    }
 }
 
 fn flown_height_m(mut outline: Outline, scene: &Scene<'_>) -> f64 {
@@ -207,7 +219,7 @@ fn mission(ui: &mut Ui, figure: MissionFigure, guide: &mut Guide, u: Units, queu
     if let Some(Extent::Drawn(places)) = &extent {
         let size = u.distance().show(2.0 * extent.as_ref().map_or(0.0, Extent::radius_m));
         let text = format!("{} of {} points, {size} across", figure.name(), places.len());
-        field::row(ui, "Mission", |ui| ui.add(egui::Label::new(text).truncate()));
+        field::row(ui, "Mission", |ui| ui.add(Label::new(text).truncate()));
         away(ui, guide, u);
         draw_button(ui, &format!("Draw the {} again", figure.name()), Drawing::Mission, guide);
         return;
@@ -227,13 +239,13 @@ fn mission(ui: &mut Ui, figure: MissionFigure, guide: &mut Guide, u: Units, queu
     guide.radius_m = radius_m;
 }
 
-/// A drawing may come from elsewhere: how far it is, where that is far.
+/// A drawing may come from elsewhere: how far it is, where that is far. The row is there all the same: nothing moves for it.
 fn away(ui: &mut Ui, guide: &Guide, u: Units) {
     const FAR_M: f64 = 20_000.0;
-    if let Some(way_m) = guide.way_m().filter(|way_m| *way_m > FAR_M) {
-        let text = RichText::new(format!("⚠ {} from the runway", u.distance().show(way_m)));
-        field::row(ui, "", |ui| ui.label(text.color(theme::of(ui).caution)));
-    }
+    let far_m = guide.way_m().filter(|way_m| *way_m > FAR_M);
+    let text = far_m.map(|far_m| format!("⚠ {} from the runway", u.distance().show(far_m)));
+    let text = RichText::new(text.unwrap_or_default()).color(theme::of(ui).caution);
+    field::row(ui, "", |ui| ui.label(text));
 }
 
 /// A button that has the next clicks on the map answer.

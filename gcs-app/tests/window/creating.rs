@@ -493,3 +493,34 @@ fn ground_that_nobody_knows_is_said_to_be_assumed() {
     assert_eq!(window.app().view().notice, None);
     assert_eq!(window.harness.get_by_label("Map").rect(), map, "a message moves nothing");
 }
+
+/// What was said of an answer took one line or several, and the next question moved under the pointer.
+#[test]
+fn no_question_moves_while_the_card_is_filled_in_nor_lies_over_the_scale() {
+    let mut window = begun(SIZE);
+    let at = |window: &Window| {
+        ["Heading", "Length", "Height"]
+            .map(|name| window.harness.get_by_role_and_label(Role::SpinButton, name).rect().top())
+    };
+    window.click(Template::Survey.name());
+    let before = at(&window);
+    window.click(Template::FireWatch.name());
+    assert_eq!(at(&window), before);
+    window.click(Template::Survey.name());
+    window.harness.get_by_role_and_label(Role::TextInput, "Runway at").focus();
+    window.steps(2);
+    window.press_ctrl(Key::A);
+    window.harness.get_by_role_and_label(Role::TextInput, "Runway at").type_text("LEGE");
+    window.steps(2);
+    window.press(Key::Enter);
+    window.steps(3);
+    assert!(window.shows("Runway 19"), "another place");
+    assert_eq!(at(&window), before);
+    let card = window.plate_around(window.harness.get_by_label("Create").rect().expand(4.0)).unwrap();
+    let scale = window.places_of(|text| text.ends_with(" m") || text.ends_with(" km"));
+    let map = window.harness.get_by_label("Map").rect();
+    let scale = scale.into_iter().find(|at| at.bottom() > map.bottom() - 24.0).unwrap();
+    assert!(!card.intersects(scale), "{card} {scale}");
+    let sources = window.places_of(|text| text.contains("OurAirports"))[0];
+    assert!(!card.intersects(sources), "{card} {sources}");
+}
