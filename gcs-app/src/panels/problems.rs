@@ -298,7 +298,10 @@ fn inside(
                 max_rows: if is_open { usize::MAX } else { rows },
                 ..TextWrapping::default()
             },
-            ..LayoutJob::single_section(text.clone(), TextFormat::simple(FontId::proportional(12.0), p.text))
+            ..LayoutJob::single_section(
+                unbroken(&text),
+                TextFormat::simple(FontId::proportional(12.0), p.text),
+            )
         };
         let shown = ui.fonts_mut(|fonts| fonts.layout_job(job));
         let is_whole = !shown.elided && text == at_its_place(problem, message);
@@ -308,6 +311,19 @@ fn inside(
             *open = (!is_open).then(|| message.to_owned());
         }
     });
+}
+
+/// No line ends between a number and its unit, nor does what is cut short.
+fn unbroken(text: &str) -> String {
+    let mut words = text.split(' ');
+    let first = words.next().unwrap_or_default().to_owned();
+    words.fold(first, |mut before, word| {
+        let is_of_number = before.ends_with(|c: char| c.is_ascii_digit())
+            && word.starts_with(|c: char| c.is_alphabetic() || "%°".contains(c));
+        before.push(if is_of_number { '\u{a0}' } else { ' ' });
+        before.push_str(word);
+        before
+    })
 }
 
 /// Width of the mark behind a headline, and of the remedy that stands beside it, screen points.
@@ -373,4 +389,17 @@ pub fn find(document: &Document, id: &Id) -> Option<Selection> {
         return Some(Selection::Procedure(id_()));
     }
     plan.variable(id).map(|_| Selection::Variable(id_()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_stays_with_its_unit() {
+        assert_eq!(
+            unbroken("is 12.5 m below 1400 m AMSL, at 90 % after 3"),
+            "is 12.5\u{a0}m below 1400\u{a0}m AMSL, at 90\u{a0}% after 3"
+        );
+    }
 }
