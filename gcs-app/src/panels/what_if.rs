@@ -25,8 +25,8 @@ pub struct WhatIfPanel;
 pub const ID: PanelId = "what-if";
 /// Least width of a column, screen points.
 const LEAST_COLUMN: f32 = 220.0;
-/// Of a slider beside its number and name.
-const SLIDER: f32 = 44.0;
+/// Of a slider beside its number and name, in such a column; what a wider one has more is the slider's.
+const LEAST_SLIDER: f32 = 44.0;
 
 impl Panel for WhatIfPanel {
     fn id(&self) -> PanelId {
@@ -53,10 +53,10 @@ impl Panel for WhatIfPanel {
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         timeline::strip(ui, scene, queue);
         ScrollArea::both().id_salt("what if").auto_shrink(false).show(ui, |ui| {
-            ui.spacing_mut().slider_width = SLIDER;
             let gap = ui.spacing().item_spacing.x;
             let beside = ((ui.available_width() / LEAST_COLUMN) as usize).clamp(1, COLUMNS.len());
             let width = (ui.available_width() / beside as f32 - gap).max(LEAST_COLUMN - gap);
+            ui.spacing_mut().slider_width = LEAST_SLIDER + width - (LEAST_COLUMN - gap);
             for row in COLUMNS.chunks(beside) {
                 ui.horizontal_top(|ui| {
                     for column in row {

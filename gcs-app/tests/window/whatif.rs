@@ -544,3 +544,16 @@ fn it_is_flown_by_the_vehicles_autopilot_unless_another_is_chosen() {
     window.receive_autopilot("Glider", "thermals");
     window.until("as reviewed", |app| app.analysis().forecast.points == as_reviewed.points);
 }
+
+#[test]
+fn sliders_take_the_room_of_the_panel_and_alarms_look_like_buttons() {
+    let window = opened(SQUARE);
+    let slider = window.harness.get_by_role_and_label(Role::Slider, "Wind speed").rect();
+    let panel = window.harness.query_all_by_label_contains("Hide What if").next().unwrap().rect();
+    assert!(slider.width() > 100.0 && slider.right() < panel.right(), "{slider}");
+    for cause in CAUSES {
+        let button = window.harness.get_by_label(cause.name()).rect();
+        let inside = egui::Rect::from_center_size(button.center(), vec2(8.0, 8.0));
+        assert!(window.plate_around(inside).unwrap().width() < button.width() + 4.0, "{cause:?}");
+    }
+}

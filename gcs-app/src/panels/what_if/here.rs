@@ -5,7 +5,7 @@ use crate::command::{PreviewCommand, Queue};
 use crate::panels::{Scene, group_title, reach};
 use crate::theme;
 use crate::units;
-use egui::{RichText, Ui, vec2};
+use egui::{Button, RichText, Ui, vec2};
 use flight_exec::rehearse::{Diversion, Reach};
 use flight_exec::review::Margins;
 use flight_plan::Cause;
@@ -66,7 +66,8 @@ const OUTCOME_HEIGHT: f32 = 120.0;
 
 fn alarm(ui: &mut Ui, cause: Cause, scene: &Scene<'_>, queue: &mut Queue) {
     let (raised, name) = (scene.view.alarm == Some(cause), cause.name());
-    let button = ui.selectable_label(raised, RichText::new(cause.short_name()).size(12.5));
+    let text = RichText::new(cause.short_name()).size(12.5);
+    let button = ui.add(Button::selectable(raised, text).frame_when_inactive(true));
     button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, raised, name));
     if button.on_hover_text(name).clicked() {
         queue.preview(PreviewCommand::Raise((!raised).then_some(cause)));
