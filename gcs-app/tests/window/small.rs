@@ -46,7 +46,7 @@ fn alarms_and_vital_values_are_in_sight_and_what_if_gives_way_until_it_is_asked_
             assert!(rect.bottom() < bottom, "{size}: {text} is at {rect}, the panel ends at {bottom}");
         }
         assert!(!window.shows("Coverage of the whole path"), "{size}");
-        let numbers = said(&window, "500 m AMSL");
+        let numbers = rect(&window, "TAS 24.0 m/s · 500 m AMSL · HDG 040°");
         assert!(numbers.bottom() < bottom, "{size}: what the display has no room for is at {numbers}");
         assert!(
             window.paints_whole("TAS 24.0 m/s · 500 m AMSL · HDG 040°"),
