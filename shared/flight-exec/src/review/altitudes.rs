@@ -6,7 +6,7 @@ use super::flown::{Flown, Point};
 use super::layout::LaidOut;
 use super::remedy::room_to_climb;
 use crate::api::Action;
-use flight_plan::Problem;
+use flight_plan::{Edit, Id, Leg, LegKind, Problem};
 
 /// So much may be missing, metres: the aircraft turns before it reaches a waypoint.
 const TOLERANCE_M: f64 = 30.0;
@@ -43,7 +43,16 @@ fn problem(view: &View, flown: &Flown, last: &LaidOut, at: &Point) -> Option<Pro
         missing_m.abs(),
         last.wanted_amsl_m
     );
-    let fix = view.relevelled(&last.waypoint.leg, last.wanted_amsl_m, -missing_m);
+    let reached = || view.relevelled(&last.waypoint.leg, last.wanted_amsl_m, -missing_m);
+    let fix = held_to_altitude(view, &last.waypoint.leg).or_else(reached);
     let fix = fix.filter(|_| flown.emergency.is_none());
     Some(Problem::warning("altitude-missed", message).of(&last.waypoint.leg).perhaps_fixed_by(fix))
+}
+
+/// A holding that is left at its first crossing, as one that is left at its altitude: another altitude would be too much for the next leg.
+fn held_to_altitude(view: &View, leg: &Id) -> Option<Edit> {
+    let written = view.program.written(leg)?.leg;
+    let LegKind::Hf(holding) = &written.kind else { return None };
+    let with = Leg { kind: LegKind::Ha(holding.clone()), ..written.clone() };
+    Some(Edit::ReplaceLeg { leg: leg.clone(), with: Box::new(with) })
 }

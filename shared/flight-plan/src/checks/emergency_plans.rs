@@ -3,7 +3,9 @@
 
 use super::Inspection;
 use super::remedy::with_kind;
-use crate::{Edit, EmergencyChoice, EmergencyPlan, Id, Leg, LegKind, Problem, Stage, StageKind, Turnaround};
+use crate::{
+    Edit, EmergencyChoice, EmergencyPlan, Id, Leg, LegKind, Problem, Spot, Stage, StageKind, Turnaround,
+};
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for plan in &view.plan.emergency_plans {
@@ -11,7 +13,7 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         if !first.is_some_and(|leg| matches!(leg.kind, LegKind::Df { .. })) {
             let message = "begin this emergency plan with a DF leg: it must be enterable from anywhere";
             let problem = Problem::error("emergency-not-enterable", message).of(&plan.id);
-            problems.push(problem.perhaps_fixed_by(first.and_then(|leg| direct(leg))));
+            problems.push(problem.perhaps_fixed_by(first.and_then(|leg| direct(view, leg))));
         }
         if !lands(plan) {
             let message =
@@ -22,11 +24,19 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     }
 }
 
-/// The same leg as a DF, if it goes to a waypoint.
-fn direct(leg: &Leg) -> Option<Edit> {
+/// The same leg as a DF, if it goes to a waypoint; before a holding, a DF to its fix.
+fn direct(view: &Inspection, leg: &Leg) -> Option<Edit> {
     match &leg.kind {
         LegKind::If(to) | LegKind::Tf(to) | LegKind::Cf { to, .. } => {
             Some(with_kind(leg, LegKind::Df { to: to.clone(), turn: None }))
+        }
+        LegKind::Hf(holding) | LegKind::Ha(holding) | LegKind::Hm { holding, .. } => {
+            let kind = LegKind::Df { to: holding.fix.clone(), turn: None };
+            let id = view.plan.unique_id(&format!("{}-direct", leg.id));
+            // what is done in the holding is not done on the way there
+            let (name, actions, next) = (String::new(), Vec::new(), None);
+            let leg_before = Leg { id, name, actions, next, kind, ..leg.clone() };
+            Some(Edit::InsertLeg { leg: Box::new(leg_before), at: Spot::Before(leg.id.clone()) })
         }
         _ => None,
     }
@@ -83,5 +93,7 @@ mod tests {
         }
         fixed(&with(&format!("{tf}{land}")), "emergency-not-enterable");
         fixed(&with(df), "emergency-no-landing");
+        let hold = r#"<stage id="e" type="arrival"><HA id="eh" fix="A" course="90" turn="left" length="900" altitude="400" altitudeReference="amsl"/></stage>"#;
+        fixed(&with(&format!("{hold}{land}")), "emergency-not-enterable");
     }
 }

@@ -1,11 +1,11 @@
 //! `too-steep`: a climb or descent that the aircraft can't fly on the length of the leg.
 
-use super::Inspection;
 use super::path::SHORTEST_M;
 use super::remedy::relevelled;
 use super::step::Step;
+use super::{CLEARANCE_M, Inspection};
 use crate::legible::told_apart;
-use crate::{Edit, Id, IterativeForm, LegKind, Problem};
+use crate::{Edit, Id, IterativeForm, LegKind, Problem, StageKind};
 
 /// So much does rounding make of it, metres: what another program writes has four decimals.
 const ROUNDED_M: f64 = 0.1;
@@ -22,13 +22,15 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
         let what = if gain_m > 0.0 { "climb" } else { "descend" };
         let (at_least, at_most) = if step.start.is_none() { ("at least ", "at most ") } else { ("", "") };
         let (takes, does) = told_apart(gain_m.abs() / (length_m / step.speed_mps), limit);
-        let ends = step.entry_altitude_amsl_m().map_or_else(String::new, |from_m| {
+        let is_final = gain_m < 0.0 && ends_approach(step);
+        let cause = beginning(view, step, limit, is_final);
+        let from_m = step.entry_altitude_amsl_m().filter(|_| !is_final || cause.is_none());
+        let ends = from_m.map_or_else(String::new, |from_m| {
             // in whole metres that it reaches
             let reached_m =
                 if gain_m > 0.0 { (from_m + possible_m).floor() } else { (from_m - possible_m).ceil() };
             format!("end it at {reached_m:.0} m AMSL, ")
         });
-        let cause = beginning(view, step, limit);
         let begins = cause.as_ref().map_or_else(String::new, |begins| begins.told());
         let message = format!(
             "{begins}{ends}lengthen this leg from {at_most}{:.0} m to {:.0} m or hold to {what} before it (HA): it takes {at_least}{takes} m/s, the aircraft does {does} m/s",
@@ -37,7 +39,8 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
         );
         let say = if lacking_m > GRANTED_M { Problem::error } else { Problem::warning };
         let problem = say("too-steep", message).of(&step.leg.id);
-        let fix = cause.map(|begins| begins.edit).or_else(|| gentler(view, step, limit));
+        let gentler = || gentler(view, step, limit).filter(|_| !is_final);
+        let fix = cause.map(|begins| begins.edit).or_else(gentler);
         problems.push(problem.perhaps_fixed_by(fix));
     }
 }
@@ -69,11 +72,16 @@ impl Beginning<'_> {
     }
 }
 
-/// The leg before has an altitude of its own, and this one only goes back to that of its stage: there lies the cause. `None`: it does not, or
-/// the leg before can't be flown to another one.
-fn beginning<'a>(view: &'a Inspection, step: &Step, most_mps: f64) -> Option<Beginning<'a>> {
-    let before =
-        view.before(step).filter(|before| step.leg.altitude.is_none() && before.leg.altitude.is_some())?;
+/// The end of an approach is where the landing begins: a higher one would only make that too steep.
+fn ends_approach(step: &Step) -> bool {
+    step.around.stage.kind == StageKind::Approach && step.after.is_none()
+}
+
+/// The leg before has an altitude of its own, and this one only goes back to that of its stage, or down to its landing (`is_final`): there
+/// lies the cause. `None`: it does not, or the leg before can't be flown to another one.
+fn beginning<'a>(view: &'a Inspection, step: &Step, most_mps: f64, is_final: bool) -> Option<Beginning<'a>> {
+    let goes_back = |before: &&Step| step.leg.altitude.is_none() && before.leg.altitude.is_some();
+    let before = view.before(step).filter(|before| is_final || goes_back(before))?;
     let (from_m, to_m) = (step.start?.altitude_amsl_m?, step.end?.altitude_amsl_m?);
     let possible_m = step.path?.length_m() / step.speed_mps * most_mps;
     let is_higher = to_m > from_m;
@@ -84,6 +92,8 @@ fn beginning<'a>(view: &'a Inspection, step: &Step, most_mps: f64) -> Option<Beg
         let most_m = longest_m(before).map(|m| m / before.speed_mps * limit_mps(view, before, gain_m));
         most_m.is_none_or(|most_m| gain_m.abs() <= most_m)
     });
+    let ground_m = view.terrain.elevation_m(step.start?.position).unwrap_or(f64::NEG_INFINITY);
+    let is_flown = is_flown && (is_higher || altitude_amsl_m - ground_m >= CLEARANCE_M);
     is_flown.then_some(Beginning { leg: &before.leg.id, altitude_amsl_m, is_higher, edit })
 }
 
@@ -128,7 +138,7 @@ fn flown_backwards(step: &Step) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::checks::testing::{check_legs, fixed_legs, message_of, plan_with};
+    use crate::checks::testing::{check_legs, document, fixed, fixed_legs, message_of, plan_with};
     use crate::{Problem, check, read};
     use aircraft::Profile;
     use terrain::Flat;
@@ -201,6 +211,26 @@ mod tests {
         assert!(format!("{fix:?}").contains("\"a\""), "the fix is what is named first: {fix:?}");
         let both = r#"<IF id="a" fix="A" altitude="1100" altitudeReference="amsl"/><TF id="b" fix="B" altitude="500" altitudeReference="amsl"/>"#;
         assert!(message_of(both, "too-steep").starts_with("end it at "), "its own altitude is asked for");
+    }
+
+    /// To raise the end of the approach would make the landing too steep, whose fix lowers it again.
+    #[test]
+    fn an_approach_that_is_too_steep_is_begun_lower() {
+        let approach = |entry: f64| {
+            document(&format!(
+                r#"<stage id="s" type="en-route"><IF id="a" fix="B" altitude="{entry}" altitudeReference="amsl"/></stage>
+                   <stage id="ap" type="approach"><TF id="b" fix="A" altitude="400" altitudeReference="amsl"/></stage>"#
+            ))
+        };
+        let mended = fixed(&approach(900.0), "too-steep");
+        let metres = |leg: &str| match mended.leg(&leg.into()).unwrap().leg.altitude.clone().unwrap().metres {
+            crate::Value::Constant(metres) => metres,
+            crate::Value::Expression(formula) => panic!("{formula}"),
+        };
+        assert!(metres("a") < 832.0 && metres("b") == 400.0, "{} {}", metres("a"), metres("b"));
+        let found = check(&read(approach(900.0)).plan, &Profile::default(), &Flat(300.0));
+        let message = &found.iter().find(|problem| problem.code == "too-steep").unwrap().message;
+        assert!(message.starts_with("lower `a` to ") && !message.contains("end it at"), "{message}");
     }
 
     /// What is written with four decimals is a hair steeper than what it was written from.
