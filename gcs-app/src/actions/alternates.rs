@@ -3,7 +3,9 @@
 use super::{Action, Group, Kind};
 use crate::command::{Command, DocumentCommand, Selection};
 use crate::panels::Scene;
-use crate::panels::tree::alternates::{associated, causes, choice, name_of, plan_name, together};
+use crate::panels::tree::alternates::{
+    answers_already, associated, causes, choice, name_of, plan_name, together,
+};
 use crate::panels::tree::title;
 use flight_plan::Id;
 
@@ -20,6 +22,7 @@ pub fn of(scene: &Scene<'_>) -> Vec<Action> {
         for cause in causes() {
             let is_it = named.is_some_and(|choice| choice.by_cause.contains(&(cause, alternate.id.clone())));
             let (for_cause, name) = (name_of(cause), plan_name(plan, &alternate.id));
+            let why_not = named.and_then(|choice| answers_already(choice, cause, &alternate.id));
             let edit = associated(&of, cause, Some(&alternate.id).filter(|_| !is_it));
             actions.push(Action {
                 id: format!("alternate-{}-{for_cause}", alternate.id).into(),
@@ -29,7 +32,10 @@ pub fn of(scene: &Scene<'_>) -> Vec<Action> {
                 keys: Vec::new(),
                 while_typing: false,
                 caution: None,
-                command: Ok(Command::Document(DocumentCommand::Edit(edit))),
+                command: match why_not {
+                    Some(why_not) => Err(why_not.into()),
+                    None => Ok(Command::Document(DocumentCommand::Edit(edit))),
+                },
             });
         }
     }

@@ -36,7 +36,13 @@ pub fn causes_menu(ui: &mut Ui, plan: &FlightPlan, of: &[Option<Id>], alternate:
         let now =
             choice.and_then(|choice| choice.by_cause.iter().find(|(c, _)| *c == cause)).map(|(_, id)| id);
         let is_it = now == Some(alternate);
-        let response = ui.selectable_label(is_it, name_of(cause));
+        let inherited = choice.and_then(|choice| answers_already(choice, cause, alternate));
+        let label = egui::Button::selectable(is_it, name_of(cause));
+        let response = ui.add_enabled(inherited.is_none(), label);
+        let response = match inherited {
+            Some(why_not) => response.on_disabled_hover_text(why_not),
+            None => response,
+        };
         let response = match now.filter(|_| !is_it) {
             Some(other) => response.on_hover_text(format!("Now: {}", plan_name(plan, other))),
             None => response,
@@ -46,6 +52,17 @@ pub fn causes_menu(ui: &mut Ui, plan: &FlightPlan, of: &[Option<Id>], alternate:
             ui.close();
         }
     }
+}
+
+/// Why it changes nothing to name an emergency plan for a cause: it is the one for every cause there, and no other is named for this one.
+pub fn answers_already(
+    choice: &EmergencyChoice,
+    cause: Option<Cause>,
+    alternate: &Id,
+) -> Option<&'static str> {
+    let names = |of| choice.by_cause.iter().find(|(cause, _)| *cause == of).map(|(_, plan)| plan);
+    let is_so = cause.is_some() && names(cause).is_none() && names(None) == Some(alternate);
+    is_so.then_some("It is that already: it is the plan for any cause, and no other is named for this one")
 }
 
 /// A leg stands for all that are selected with it.
@@ -135,6 +152,21 @@ pub fn plan_name(plan: &FlightPlan, id: &Id) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_would_change_nothing_is_not_offered() {
+        let (home, field) = (Id::new("home"), Id::new("field"));
+        let choice = |by_cause: &[(Option<Cause>, &Id)]| EmergencyChoice {
+            by_cause: by_cause.iter().map(|(cause, plan)| (*cause, (*plan).clone())).collect(),
+        };
+        let any = choice(&[(None, &home)]);
+        let is_offered = |choice, cause, plan| answers_already(choice, cause, plan).is_none();
+        assert!(!is_offered(&any, Some(Cause::Link), &home));
+        assert!(is_offered(&any, None, &home), "it can be taken back");
+        assert!(is_offered(&any, Some(Cause::Link), &field));
+        let both = choice(&[(None, &home), (Some(Cause::Link), &field)]);
+        assert!(is_offered(&both, Some(Cause::Link), &home) && !is_offered(&both, Some(Cause::Gps), &home));
+    }
 
     #[test]
     fn a_row_says_what_it_names_itself_and_not_what_it_inherits() {
