@@ -2,12 +2,13 @@
 
 use super::names::{self, Ground, Name, Rank};
 use super::sheet::Sheet;
-use super::sketch::photos::{Photos, Spot, USUAL_ACROSS_DEG};
+use super::sketch::photos::{Photos, Spot};
 use crate::command::Selection;
 use crate::forecast::{Forecast, Point};
 use crate::panels::Scene;
 use crate::units::Units;
 use egui::{Pos2, Shape, Stroke, vec2};
+use flight_plan::template::USUAL_ACROSS_DEG;
 use flight_plan::{Act, Edit, Id, Leg, LegAction, Trigger, Value};
 use geometry::LatLon;
 use std::collections::HashMap;

@@ -18,7 +18,7 @@ use egui::{
     Align2, Color32, ComboBox, DragValue, Label, Painter, Pos2, Rect, RichText, Role, ScrollArea, Shape,
     Stroke, TextStyle, Ui, WidgetInfo, vec2,
 };
-use flight_plan::template::{Extent, Outline, Template};
+use flight_plan::template::{Extent, Outline, Survey, Template, USUAL_ACROSS_DEG};
 use geometry::LatLon;
 use std::ops::RangeInclusive;
 
@@ -188,6 +188,7 @@ fn answers(ui: &mut Ui, threshold: LatLon, guide: &mut Guide, scene: &Scene<'_>,
     }
     number(ui, "Height", &mut guide.height_m, u.altitude(), 30.0..=4000.0);
     height_remark(ui, guide, scene);
+    survey_remark(ui, guide, scene);
     aircraft(ui, guide);
 }
 
@@ -206,11 +207,41 @@ fn height_remark(ui: &mut Ui, guide: &Guide, scene: &Scene<'_>) {
     }
 }
 
-fn flown_height_m(mut outline: Outline, scene: &Scene<'_>) -> f64 {
+fn flown_height_m(outline: Outline, scene: &Scene<'_>) -> f64 {
+    let (outline, profile) = on_the_ground(outline, scene);
+    outline.mission_height_m(&profile, scene.layers.ground().as_ref())
+}
+
+/// How far apart the tracks of a survey are, and what that is good for.
+fn survey_remark(ui: &mut Ui, guide: &Guide, scene: &Scene<'_>) {
+    let survey = guide.outline().and_then(|outline| {
+        let (outline, profile) = on_the_ground(outline, scene);
+        outline.survey(&profile, scene.layers.ground().as_ref())
+    });
+    let Some(survey) = survey else { return };
+    let p = theme::of(ui);
+    ui.label(RichText::new(survey_words(&survey, scene.units())).color(p.weak)).on_hover_text(format!(
+        "As a camera sees it that sees {USUAL_ACROSS_DEG:.0}° across the track. Change it afterwards: it is the spacing of the scan"
+    ));
+}
+
+/// `Tracks 50 m apart: 71 % side overlap at 150 m AGL`.
+fn survey_words(survey: &Survey, u: Units) -> String {
+    let Survey { spacing_m, side_overlap, above_ground_m } = *survey;
+    let apart = format!("Tracks {} apart", u.length().show(spacing_m));
+    let height = u.altitude().show(above_ground_m);
+    match side_overlap > 0.0 {
+        true => format!("{apart}: {:.0} % side overlap at {height} AGL", 100.0 * side_overlap),
+        false => format!("{apart}: more than is seen from {height} AGL"),
+    }
+}
+
+/// With its runway as high as the ground there, and its aircraft.
+fn on_the_ground(mut outline: Outline, scene: &Scene<'_>) -> (Outline, Profile) {
     let ground = scene.layers.ground().as_ref();
     outline.runway.elevation_amsl_m = Ground::of(ground, outline.runway.threshold).amsl_m().round();
     let profile = Profile::by_name(&outline.aircraft).unwrap_or_default();
-    outline.mission_height_m(&profile, ground)
+    (outline, profile)
 }
 
 /// Where the mission is: drawn, or around a place.

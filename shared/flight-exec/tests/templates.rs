@@ -55,6 +55,20 @@ fn every_template_can_be_flown_among_hills() {
     }
 }
 
+/// 50 m apart, a camera that sees 60° sees 71 % of a track again from 150 m; a large area is not seen so often.
+#[test]
+fn the_tracks_of_a_survey_overlap_for_a_camera() {
+    let (threshold, flat) = (LatLon::new(46.0, 8.0), Flat(300.0));
+    let ours = outline(Template::Survey, threshold, 300.0, 90.0);
+    let survey = ours.survey(&Profile::default(), &flat).unwrap();
+    assert_eq!((survey.spacing_m, survey.above_ground_m), (50.0, 150.0));
+    assert!((survey.side_overlap - 0.71).abs() < 0.01, "{survey:?}");
+    let wide = Extent::Around { centre: threshold.destination(180.0, 6000.0), radius_m: 2500.0 };
+    let wide = Outline { extent: wide, ..ours.clone() }.survey(&Profile::default(), &flat).unwrap();
+    assert!(wide.spacing_m > 100.0 && wide.side_overlap < 0.5, "{wide:?}");
+    assert_eq!(Outline { template: Template::Search, ..ours }.survey(&Profile::default(), &flat), None);
+}
+
 /// A hill beside the final's line, where its hold goes round.
 struct Hill(LatLon);
 impl Terrain for Hill {

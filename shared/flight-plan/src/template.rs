@@ -30,6 +30,21 @@ use terrain::Terrain;
 /// Length of the straight legs of holds, metres.
 const HOLD_M: f64 = 600.0;
 
+/// What a camera sees across the track where nothing else is said, degrees.
+pub const USUAL_ACROSS_DEG: f64 = 60.0;
+
+/// The tracks of a survey.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Survey {
+    /// Between neighbouring tracks, metres.
+    pub spacing_m: f64,
+    /// Share of what a usual camera sees on a track that it sees again on the next, over the highest ground around; below 0, if it does not see
+    /// all.
+    pub side_overlap: f64,
+    /// Height of the tracks above that ground, metres.
+    pub above_ground_m: f64,
+}
+
 /// What a flight is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Template {

@@ -5,8 +5,6 @@ use crate::forecast::Point;
 use flight_plan::{Act, Id, Leg, LegAction, Trigger};
 use geometry::LatLon;
 
-/// What a camera sees across the track where the leg does not say it, degrees.
-pub const USUAL_ACROSS_DEG: f64 = 60.0;
 /// A plan with pictures nearer to each other says that of a video, metres.
 const LEAST_M: f64 = 1.0;
 

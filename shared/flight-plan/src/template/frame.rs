@@ -49,6 +49,8 @@ pub(super) struct Frame<'a> {
     pub(super) gate_m: f64,
     /// Of the mission, metres above the runway.
     pub(super) height_m: f64,
+    /// The same above the highest ground around, metres.
+    pub(super) above_ground_m: f64,
     /// Of the highest ground under the final, metres above the runway.
     hill_m: f64,
     /// Of that under the hold where the final begins, metres above the runway.
@@ -69,6 +71,7 @@ impl<'a> Frame<'a> {
             final_m: (20.0 * turn_radius_m).max(2600.0),
             gate_m: (9.0 * turn_radius_m).max(1200.0),
             height_m: outline.height_m,
+            above_ground_m: outline.height_m,
             hill_m: 0.0,
             hold_hill_m: 0.0,
             final_fix: "FINAL".into(),
@@ -78,6 +81,7 @@ impl<'a> Frame<'a> {
         frame.hold_hill_m = frame.hill_below_hold(terrain);
         let hilltop_m = frame.highest_ground(outline, terrain) - outline.runway.elevation_amsl_m;
         frame.height_m = (outline.height_m.max(hilltop_m + CLEARANCE_M) / 10.0).ceil() * 10.0;
+        frame.above_ground_m = frame.height_m - hilltop_m;
         frame
     }
 

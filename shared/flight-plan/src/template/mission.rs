@@ -1,18 +1,23 @@
 //! What is flown between the way out and the way home.
 
 use super::frame::Frame;
-use super::{Extent, Outline, Template, fix, leg, to};
+use super::{Extent, Outline, Survey, Template, USUAL_ACROSS_DEG, fix, leg, to};
 use crate::{
     Area, Fix, IterativeForm, Leg, LegKind, Pattern, Place, Scan, ScanEntry, ScanOrder, ScanStyle, Spacing,
     TurnDirection, Value, Variable, VariableValue,
 };
+use aircraft::Profile;
 use geometry::LatLon;
+use geometry::scan::camera_spacing_m;
 use std::sync::Arc;
+use terrain::Terrain;
 
 /// Width of the strip along a line that was drawn, metres.
 const STRIP_M: f64 = 200.0;
 /// A fire may grow to so many times its radius.
 const GROWN: f64 = 1.2;
+/// So much of what is seen on one track of a survey is seen again on the next.
+const SIDE_OVERLAP: f64 = 0.7;
 /// How often a fire is scanned.
 const PASSES: f64 = 2.0;
 
@@ -42,8 +47,21 @@ impl Outline {
         }
     }
 
-    /// Neighbouring tracks are a turn apart, and not so many that the energy doesn't last.
+    /// How a survey is seen by a usual camera; `None`: it is another mission.
+    pub fn survey(&self, profile: &Profile, terrain: &dyn Terrain) -> Option<Survey> {
+        let frame = Frame::new(self, profile, terrain);
+        let spacing_m = Some(self.spacing_m(&frame)).filter(|_| self.template == Template::Survey)?;
+        let above_ground_m = frame.above_ground_m;
+        let seen_m = camera_spacing_m(above_ground_m, USUAL_ACROSS_DEG, 0.0).ok()?;
+        Some(Survey { spacing_m, side_overlap: 1.0 - spacing_m / seen_m, above_ground_m })
+    }
+
     fn spacing(&self, frame: &Frame<'_>) -> Spacing {
+        Spacing::Metres(Value::Constant(self.spacing_m(frame)))
+    }
+
+    /// Neighbouring tracks are a turn apart, those of a survey as far as its pictures overlap; and not so many that the energy doesn't last.
+    fn spacing_m(&self, frame: &Frame<'_>) -> f64 {
         let least_m = 2.2 * frame.turn_radius_m;
         let (half_m, radius_m) = (self.extent.half_width_m(), self.extent.radius_m());
         let scanned_m2 = match self.template {
@@ -53,7 +71,14 @@ impl Outline {
             Template::Circuit | Template::Patrol => 0.0,
         };
         let affordable_m = scanned_m2 / frame.tracks_m;
-        Spacing::Metres(Value::Constant((half_m / 5.0).max(least_m).max(affordable_m).ceil()))
+        let overlapping_m = camera_spacing_m(frame.above_ground_m, USUAL_ACROSS_DEG, SIDE_OVERLAP);
+        match overlapping_m {
+            Ok(metres) if self.template == Template::Survey => {
+                let in_fives = |fives: f64| fives.max(1.0) * 5.0;
+                in_fives((metres / 5.0).floor()).max(in_fives((affordable_m / 5.0).ceil()))
+            }
+            _ => (half_m / 5.0).max(least_m).max(affordable_m).ceil(),
+        }
     }
 
     fn corridor(&self, spacing: Spacing) -> LegKind {
