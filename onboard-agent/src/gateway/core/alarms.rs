@@ -111,13 +111,13 @@ impl Alarms {
     /// The worst emergency of those that are raised, in words.
     pub fn emergency(&self) -> Option<&'static str> {
         let worst = self.raised.iter().filter_map(|watch| watch.alarm().cause).max()?;
-        Some(match worst {
-            Cause::Engine => "the engine is out, or seems to be",
-            Cause::Energy => "little energy is left",
-            Cause::Gps => "the position is not known",
-            // of these the gateway knows nothing
-            Cause::Link | Cause::Traffic | Cause::Payload | Cause::Operator => return None,
-        })
+        // of the other causes the gateway knows nothing
+        let words = [
+            (Cause::Engine, "the engine is out, or seems to be"),
+            (Cause::Energy, "little energy is left"),
+            (Cause::Gps, "the position is not known"),
+        ];
+        words.into_iter().find(|(cause, _)| *cause == worst).map(|(_, words)| words)
     }
 
     /// The alarm of an engine that has failed, or seems to, for a gateway that follows this one: on the way down nothing else shows it.

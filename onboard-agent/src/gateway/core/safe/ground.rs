@@ -142,4 +142,16 @@ mod tests {
         assert!((0.09..0.11).contains(&northmost(|most_m, shares| most_m < 100.0 && shares[0] > 0.5)));
         assert!(northmost(|_, _| false) > 0.17);
     }
+
+    /// A box across the line of the date would go round the other way.
+    #[test]
+    fn across_the_line_of_the_date_nothing_is_known_of_a_part_as_a_whole() {
+        let lat_deg = HOME.lat_deg + 1.0;
+        let known = |from_deg: f64, to_deg: f64| {
+            let parts = parts(&LowNorth, LatLon::new(lat_deg, from_deg), LatLon::new(lat_deg, to_deg));
+            parts.iter().filter(|part| part.at_most_m(&LowNorth).is_none()).count()
+        };
+        assert_eq!(known(179.0, 179.99), 0);
+        assert_eq!(known(179.99, -179.99), 1);
+    }
 }

@@ -255,6 +255,17 @@ fn what_an_earlier_gateway_launched_is_not_disarmed_in_the_air_while_it_is_read(
     assert_eq!(stands_down(&core), 0);
 }
 
+/// He has it in his hand: what disarms it then takes it from him.
+#[test]
+fn what_an_earlier_gateway_launched_and_somebody_has_in_a_mode_of_his_own_is_his() {
+    let mut known = launched(true).gateway.snapshot();
+    known.waypoints[0].action = usal::contract::Action::TakeOff { heading_deg: 0.0 };
+    let mut core = Core::started_anew(Some(known));
+    core.run(65, &on_ground(Mode::Other(5), true));
+    assert_eq!((core.gateway.state(), stands_down(&core)), (GatewayState::Stop, 0));
+    assert!(core.gateway.snapshot().waypoints.is_empty(), "nobody takes that launch up any more");
+}
+
 /// He arms by his sticks and throws it.
 #[test]
 fn who_arms_it_in_a_mode_of_his_own_after_a_launch_was_given_up_has_it() {

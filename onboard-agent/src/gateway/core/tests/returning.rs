@@ -1,7 +1,7 @@
 //! On the way home, with and without an engine.
 
 use super::*;
-use usal::contract::{Engine, SafeRunway};
+use usal::contract::{Engine, Power, SafeRunway};
 
 /// In this mode, with the engine turning so fast at full throttle.
 fn with_engine(mode: Mode, rpm: f64) -> Vec<Report> {
@@ -268,4 +268,14 @@ fn what_is_to_return_by_its_own_means_is_not_approaching_while_it_still_flies_it
     core.run(core.gateway.safe.t2_s as u64 + 2, &flying(25.0, 25.0));
     assert_eq!(core.gateway.control.intent, Intent::Return, "there is no runway");
     assert_eq!(core.gateway.state(), GatewayState::SafeReturn);
+}
+
+#[test]
+fn safe_mode_says_what_was_wrong_when_it_was_asked_for() {
+    let mut core = Core::in_nav();
+    let low = Report::Power(Power { voltage_v: 21.0, current_a: 10.0, battery: 0.02, fuel: None });
+    core.run(15, &[&flying(25.0, 25.0)[..], &[low]].concat());
+    core.step(Input::Request(5, GatewayRequest::Safe));
+    let cause = core.gateway.status(core.now).cause;
+    assert!(cause.contains("little energy is left"), "{cause}");
 }

@@ -11,7 +11,7 @@ mod late_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
-mod word_by_word;
+mod word_by_word_tests;
 
 use super::Peer;
 use super::rto::Rto;

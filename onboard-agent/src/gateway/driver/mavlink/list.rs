@@ -58,7 +58,7 @@ pub trait Feeding: std::fmt::Debug + Send + Sync {
     /// A landing may be so steep, degrees, where the autopilot tells that: of what is fed from now on.
     fn limit_landing(&mut self, _steepest_deg: Option<f64>) {}
     /// The aircraft is here now. For a strategy to which it matters when a list changes.
-    fn moved(&mut self, _fix: &Fix) {}
+    fn moved(&mut self, fix: &Fix);
     /// The next change, if one is due and none is in flight. `may_install`: the aircraft is not
     /// flying the list, so that it may be replaced whole. `home`: the take-off place.
     fn next_change(&mut self, may_install: bool, home: Option<Item>) -> Option<Change>;

@@ -56,6 +56,10 @@ impl Feeding for Noting {
         self.note("bring back");
     }
 
+    fn moved(&mut self, _fix: &Fix) {
+        self.note("moved");
+    }
+
     fn next_change(&mut self, _may_install: bool, _home: Option<Item>) -> Option<Change> {
         self.0.lock().unwrap().change.clone()
     }

@@ -228,6 +228,18 @@ fn an_autopilot_that_never_answers_is_given_up() {
     assert_eq!((talk.timeout(), talk.said().as_str()), (None, "list?"));
 }
 
+/// An autopilot gives a transfer up when it is not answered for some seconds: no patience of ours helps.
+#[test]
+fn a_link_that_is_longer_than_the_autopilots_patience_is_named() {
+    let (mut rto, mut out) = (Rto::default(), vec![]);
+    rto.knows_trip(Some(Time::from_millis(4600)));
+    let transfer = Transfer::upload(Time::ZERO, entries(3), &RULES, rto, PEER, &mut out);
+    let mut talk = Talk { transfer, now: Time::ZERO, out };
+    let given_up = std::iter::repeat_with(|| talk.timeout()).take(1000).find(Option::is_some).flatten();
+    let why = failed(given_up);
+    assert!(why.contains("takes 5 s there and back") && why.contains("faster"), "{why}");
+}
+
 /// On a bad link each new beginning has all the patience that there is.
 #[test]
 fn an_autopilot_that_takes_some_each_time_is_given_up_in_the_end() {
