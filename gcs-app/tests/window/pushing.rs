@@ -48,10 +48,15 @@ fn a_proposal_says_how_old_it_is_and_whose_path_is_on_the_map() {
     }
     assert!(window.shows("The aircraft would fly next:") && !window.shows("push again"));
     assert!(window.shows("on the map: this plan"));
+    let places = |window: &Window| {
+        ["Commit", "Keep as draft"].map(|name| window.harness.get_by_label(name).rect().left_top().x)
+    };
+    let before = places(&window);
     window.steps(60 * 11);
     assert!(window.shows("ago, looking again") && window.shows("Push again"));
+    assert_eq!(places(&window), before, "who is on the way to one of them presses no other");
     let rect = |name: &str| window.harness.get_by_label(name).rect();
-    assert!(rect("Keep as draft").top() > rect("Commit").bottom(), "three have no room side by side");
+    assert!(rect("Push again").top() > rect("Commit").bottom(), "three have no room side by side");
     let accent = gcs_app::theme::palette(true).accent;
     let fill = |window: &Window, button| window.fill_around(window.harness.get_by_label(button).rect());
     assert_eq!(
