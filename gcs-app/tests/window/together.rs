@@ -3,7 +3,7 @@
 use super::{SQUARE, Window};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, vec2};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use flight_plan::Value;
 
 fn opened() -> Window {
@@ -54,6 +54,14 @@ fn raising_all_altitudes_is_found_and_reaches_take_off_and_emergency_plans() {
     window.click("Undo");
     assert_eq!(window.plan(), before, "one step each");
     assert!(!window.shows("raised by"));
+    let offered = |window: &Window| {
+        let field = window.harness.get_by_role_and_label(Role::SpinButton, "Raise by");
+        field.accesskit_node().value().unwrap_or_default()
+    };
+    assert!(offered(&window).starts_with("50"), "{}", offered(&window));
+    window.select_row(("TF side2", 0));
+    window.select_row_with(("TF side3", 0), Modifiers::COMMAND);
+    assert!(offered(&window).starts_with("30"), "of others: {}", offered(&window));
 }
 
 /// What leads to and from a runway fits it; and what can't be meant is not where one presses.

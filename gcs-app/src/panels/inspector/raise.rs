@@ -28,7 +28,10 @@ pub fn focus(ctx: &Context) {
 /// By how much, and which of them stay as they are.
 pub(super) fn show(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue) {
     let id = egui::Id::unique("raise legs by");
-    let mut by_m = ui.data(|d| d.get_temp(id)).unwrap_or(USUAL_M);
+    // what was right for others is typed by nobody here
+    let of = egui::Id::unique((&scene.document.plan().name, set));
+    let typed: Option<(egui::Id, f64)> = ui.data(|d| d.get_temp(id));
+    let mut by_m = typed.filter(|(typed_of, _)| *typed_of == of).map_or(USUAL_M, |(_, by_m)| by_m);
     let behind = guard::behind(scene);
     let (flown, all): (Vec<&Id>, HashSet<&Id>) = split(set, &behind);
     let away = away_from_runways(scene.document.plan(), &all);
@@ -52,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue
             raise(ui, scene, &set, by_m, queue);
         }
     });
-    ui.data_mut(|d| d.insert_temp(id, by_m));
+    ui.data_mut(|d| d.insert_temp(id, (of, by_m)));
     if may_leave {
         ui.checkbox(&mut are_left, LEAVE).on_hover_text("Their altitudes lead to and from a runway");
         ui.data_mut(|d| d.insert_temp(leaves, are_left));
