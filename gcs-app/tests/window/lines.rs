@@ -67,12 +67,12 @@ fn an_emergency_plan_shows_the_way_into_it_from_the_selected_leg_while_it_is_dra
     let middle = |window: &Window, from: &str, to: &str| window.centre(from).lerp(window.centre(to), 0.5);
     let sides = [middle(&window, "Fix A", "Fix B"), middle(&window, "Fix C", "Fix D")];
     window.press(Key::E);
-    assert!(window.shows("Select a leg to see the way in"));
     let runway = window.centre("Runway R05");
     window.click_at(runway);
     let there = window.centre("Map") + vec2(60.0, 40.0);
     window.harness.hover_at(there);
     window.steps(2);
+    assert!(window.shows("Select a leg to see the way in"));
     let ends = |window: &Window| sides.map(|side| window.line_ends_near(side, band));
     let before = ends(&window);
     for (leg, number) in [("side2", 0), ("side4", 1)] {

@@ -125,8 +125,8 @@ impl DrawEmergency {
 
     /// From where it would be flown, and how far and how long it is from there.
     fn way_in(&self, scene: &Scene<'_>) -> String {
-        let trial = self.raised.as_ref().zip(self.trials.get()).zip(self.begins());
-        let Some(((raised, trial), to)) = trial else { return String::new() };
+        let Some(raised) = &self.raised else { return " Select a leg to see the way in.".into() };
+        let Some((trial, to)) = self.trials.get().zip(self.begins()) else { return String::new() };
         let leg = scene.document.label(&raised.leg);
         match &trial.fault {
             Some(fault) => format!(" From {leg} it can't be flown so: {fault}."),
@@ -149,12 +149,11 @@ impl Tool for DrawEmergency {
             _ if scene.document.plan().runways.is_empty() => {
                 "Emergency plan: draw a runway first, it lands on one.".into()
             }
-            None if raised(scene).is_none() => {
-                "Emergency plan: click the runway it leads to. Select a leg to see the way in from there. Esc ends it.".into()
-            }
             None => "Emergency plan: click the runway it leads to. Esc ends it.".into(),
             Some(runway) if self.lacking(scene).is_some() => {
-                format!("You clicked the end of {runway}: “{ADD_OTHER}” lets it land from there. Or click its places outwards.")
+                format!(
+                    "You clicked the end of {runway}: “{ADD_OTHER}” lets it land from there. Or click its places outwards."
+                )
             }
             Some(runway) => format!(
                 "To {runway}: click its places outwards; Enter ends, Esc gives up.{}",
