@@ -65,7 +65,7 @@ impl App {
             .frame(frame.inner_margin(egui::Margin::symmetric(10, 4)))
             .show(ui, |ui| bar::show(ui, &scene, &fittings, queue));
         let is_read = strips(ui, &scene, dock.place_to_read(), queue);
-        CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
+        let room = CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
             let whole = ui.max_rect();
             let map = dock.show(ui, &mut Content::new(map, panels, &scene, queue), is_read);
             let floor = floor(map, whole);
@@ -85,8 +85,9 @@ impl App {
             }
             notice(ui, floor, &scene, queue);
             toasts::show(ui, tool_chip::above(ui.ctx(), floor), &scene, queue);
+            whole
         });
-        dialogs(ui, &scene, queue);
+        dialogs(ui, room.inner, &scene, queue);
         help.show(ui, &scene, queue);
         palette.show(ui, &scene, &fittings, queue);
         dropped_files(ui, queue);
@@ -104,12 +105,12 @@ fn strips(ui: &mut Ui, scene: &Scene<'_>, width: Option<f32>, queue: &mut Queue)
 }
 
 /// What lies over map and panels until something is decided, and the tour.
-fn dialogs(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+fn dialogs(ui: &mut Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     maps::show(ui, scene, queue);
-    unsaved::show(ui, scene, queue);
-    changed::show(ui, scene, queue);
-    browse::show(ui, scene, queue);
-    interchange::show(ui, scene, queue);
+    unsaved::show(ui, room, scene, queue);
+    changed::show(ui, room, scene, queue);
+    browse::show(ui, room, scene, queue);
+    interchange::show(ui, room, scene, queue);
     tour::show(ui, scene, queue);
 }
 

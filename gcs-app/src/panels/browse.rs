@@ -1,13 +1,13 @@
 //! A file dialog in the window, for desktops that offer none.
 
-use super::{Scene, primary_button};
+use super::{Scene, dialog, primary_button};
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::files::{Entry, Purpose};
 use crate::formats;
 use crate::theme;
 use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
-use egui::{Align, Id, Key, Layout, Modal, RichText, ScrollArea, Ui};
+use egui::{Align, Id, Key, Layout, Rect, RichText, ScrollArea, Ui};
 use std::path::PathBuf;
 
 /// A folder in which a file is chosen.
@@ -82,9 +82,9 @@ enum Wish {
 }
 
 /// Draws it, while a file is asked for.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+pub fn show(ui: &mut Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(browsing) = &scene.view.browsing else { return };
-    let modal = Modal::new(Id::unique("browse")).show(ui.ctx(), |ui| {
+    let is_given_up = dialog::show(ui, room, scene, "browse", |ui| {
         ui.set_width(480.0);
         ui.strong(match browsing.purpose {
             Purpose::Open => "Open or import a plan".to_owned(),
@@ -101,7 +101,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.add_space(6.0);
         buttons(ui, browsing.purpose, browsing.wish(&name), entered, queue);
     });
-    if modal.should_close() || ui.input(|i| i.key_pressed(Key::Escape)) {
+    if is_given_up {
         queue.view(ViewCommand::StopBrowsing);
     }
 }

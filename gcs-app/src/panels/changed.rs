@@ -1,16 +1,16 @@
 //! The question when another program has changed the plan's file.
 
-use super::{Scene, primary_button};
+use super::{Scene, dialog, primary_button};
 use crate::command::{DocumentCommand, Queue};
 use crate::theme;
-use egui::{Id, Key, Modal, Ui};
+use egui::{Rect, Ui};
 
 /// Draws it, while there is something to be decided.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+pub fn show(ui: &mut Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     if scene.view.changed_outside.is_none() {
         return;
     }
-    let modal = Modal::new(Id::unique("changed")).show(ui.ctx(), |ui| {
+    let is_given_up = dialog::show(ui, room, scene, "changed", |ui| {
         ui.set_width(400.0);
         ui.strong(format!("Another program has changed {}", scene.document.file_name()));
         ui.label("Load what is in the file now (undo brings yours back), or keep yours: saving then replaces the file.");
@@ -24,7 +24,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             }
         });
     });
-    if modal.should_close() || ui.input(|i| i.key_pressed(Key::Escape)) {
+    if is_given_up {
         queue.document(DocumentCommand::KeepMine);
     }
 }

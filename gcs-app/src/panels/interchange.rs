@@ -4,14 +4,14 @@
 mod runway;
 
 use super::counted::{contents, listed, number};
-use super::{Scene, primary_button};
+use super::{Scene, dialog, primary_button};
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::export::Exported;
 use crate::files::{Choices, Imported, Lines};
 use crate::map::drawings;
 use crate::{formats, theme};
 use egui::style::ScrollStyle;
-use egui::{Id, Key, Label, Modal, RichText, ScrollArea, Ui};
+use egui::{Key, Label, Rect, RichText, ScrollArea, Ui};
 use flight_plan::FlightPlan;
 use interchange::{Areas, Note};
 
@@ -22,30 +22,25 @@ const ROW: f32 = 20.0;
 const MOST_WRAPPED: usize = 200;
 
 /// Draws it, while there is something to be decided.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+pub fn show(ui: &mut Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     // one question at a time
     if scene.view.browsing.is_some() {
         return;
     }
+    let is_given_up = |id: &str, add: &mut dyn FnMut(&mut Ui)| {
+        dialog::show(ui, room, scene, id, |ui| {
+            ui.set_width(WIDTH);
+            add(ui);
+        })
+    };
     if let Some(imported) = &scene.view.imported {
-        dialog(ui, "import", ViewCommand::PutImportAside, queue, |ui, queue| {
-            import(ui, imported, scene, queue)
-        });
-    } else if let Some(exported) = &scene.view.exported {
-        dialog(ui, "export", ViewCommand::PutExportAside, queue, |ui, queue| {
-            export(ui, exported, scene, queue)
-        });
-    }
-}
-
-/// `aside`: what Escape asks for.
-fn dialog(ui: &Ui, id: &str, aside: ViewCommand, queue: &mut Queue, add: impl FnOnce(&mut Ui, &mut Queue)) {
-    let modal = Modal::new(Id::unique(id)).show(ui.ctx(), |ui| {
-        ui.set_width(WIDTH);
-        add(ui, queue);
-    });
-    if modal.should_close() || ui.input(|i| i.key_pressed(Key::Escape)) {
-        queue.view(aside);
+        if is_given_up("import", &mut |ui| import(ui, imported, scene, queue)) {
+            queue.view(ViewCommand::PutImportAside);
+        }
+    } else if let Some(exported) = &scene.view.exported
+        && is_given_up("export", &mut |ui| export(ui, exported, scene, queue))
+    {
+        queue.view(ViewCommand::PutExportAside);
     }
 }
 

@@ -12,6 +12,7 @@ pub mod changed;
 pub mod consider;
 pub mod counted;
 pub mod decision;
+pub(crate) mod dialog;
 pub mod emergency;
 pub mod ended;
 pub mod field;

@@ -1,14 +1,14 @@
 //! The question before plans with unsaved changes give way to something else, or are closed with the window; and before a
 //! window that watches a flight is closed.
 
-use super::{Scene, primary_button};
+use super::{Scene, dialog, primary_button};
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
 use crate::document::Document;
 use crate::theme;
-use egui::{Id, Key, Label, Modal, ScrollArea, Ui};
+use egui::{Label, Rect, ScrollArea, Ui};
 
 /// Draws it, while there is something to be decided.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+pub fn show(ui: &mut Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(with) = &scene.view.unsaved else { return };
     let quits = *with == Replacement::Quit;
     let documents: Vec<&Document> = match quits {
@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         false => vec![scene.document],
     };
     let flying = if quits { flying(scene) } else { None };
-    let modal = Modal::new(Id::unique("unsaved")).show(ui.ctx(), |ui| {
+    let is_given_up = dialog::show(ui, room, scene, "unsaved", |ui| {
         ui.set_width(400.0);
         if !documents.is_empty() {
             title(ui, &documents, scene.document.id());
@@ -52,7 +52,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             }
         });
     });
-    if modal.should_close() || ui.input(|i| i.key_pressed(Key::Escape)) {
+    if is_given_up {
         queue.view(ViewCommand::KeepUnsaved);
     }
 }

@@ -1,10 +1,12 @@
 //! The commands of the flight are in the window and nothing is drawn over them, at every size and whatever is open.
 
 use super::emergency::in_emergency;
-use super::flying::{connected, flying, report};
+use super::filing::{name, until_listed, window_on};
+use super::flying::{connected, fly_its_plan, flying, report};
+use super::interchange::{fixture, until_imported};
 use super::vehicle::{decision, status};
 use super::{SQUARE, Window};
-use egui::{Order, Pos2, Rect, Vec2, vec2};
+use egui::{Key, Order, Pos2, Rect, Vec2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use flight_exec::Phase;
 use gcs_app::link::Reply;
@@ -85,6 +87,41 @@ fn commands_in_flight_are_in_reach_whatever_is_open() {
         window.answer(ticket, Err("a long refusal, ".repeat(12)));
         window.steps(5);
         assert_in_reach(&window, size, &labels, "a refusal is shown");
+    }
+}
+
+/// Another program may write the plan's file in flight: nobody answers that before he may hold the aircraft.
+#[test]
+fn commands_in_flight_are_in_reach_while_a_question_of_a_file_waits() {
+    let labels = ["⏸ Hold", "Skip leg", "Emergency: fly"];
+    for size in SIZES {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shared.xml");
+        let mut window = window_on(&path, SQUARE);
+        window.until_analysed();
+        fly_its_plan(&mut window);
+        window.harness.set_size(size);
+        std::fs::write(&path, SQUARE.replace("side2", "their-side")).unwrap();
+        window.until("question", |app| app.view().changed_outside.is_some());
+        window.steps(5);
+        assert!(window.shows("Another program has changed shared.xml"));
+        assert_in_reach(&window, size, &labels, "another program has changed the file");
+        window.click("Keep mine");
+        window.press_ctrl(Key::N);
+        window.steps(5);
+        assert!(window.app().view().unsaved.is_some());
+        assert_in_reach(&window, size, &labels, "what is unsaved is asked about");
+        window.press(Key::Escape);
+        window.press_ctrl(Key::S);
+        window.until("saved", |app| !app.document().is_dirty());
+        window.press_ctrl(Key::O);
+        until_listed(&mut window);
+        window.steps(5);
+        assert_in_reach(&window, size, &labels, "a file is chosen");
+        name(&mut window, &fixture("survey.plan"));
+        window.click("Open");
+        until_imported(&mut window);
+        assert_in_reach(&window, size, &labels, "an import is looked through");
     }
 }
 
