@@ -28,7 +28,7 @@ pub fn focus(ctx: &Context) {
 /// By how much, and which of them stay as they are.
 pub(super) fn show(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue) {
     let id = egui::Id::unique("raise legs by");
-    // what was right for others is typed by nobody here
+    // what was typed for others is not offered for these
     let of = egui::Id::unique((&scene.document.plan().name, set));
     let typed: Option<(egui::Id, f64)> = ui.data(|d| d.get_temp(id));
     let mut by_m = typed.filter(|(typed_of, _)| *typed_of == of).map_or(USUAL_M, |(_, by_m)| by_m);
