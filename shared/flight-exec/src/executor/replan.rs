@@ -7,6 +7,10 @@ use crate::layout::cursor::{Cursor, LayoutError};
 use crate::layout::stretch::{Continuation, Stretch, lay_out};
 use flight_plan::Id;
 
+/// The seconds of the horizon are counted from behind so many waypoints. So what follows a long line is handed out before that begins:
+/// an autopilot that is given a new list in the middle of a line may leave it.
+const AT_HAND: usize = 3;
+
 impl Executor {
     /// Tops the horizon up.
     pub(super) fn fill(&mut self, out: &mut Vec<Output>) {
@@ -21,20 +25,25 @@ impl Executor {
         if self.is_muted() || horizon.continuation() != Continuation::Open {
             return;
         }
-        let more = self.asks_for_more(horizon.len(), self.path_ahead().time_flown_s());
+        let mut more = self.asks_for_more(horizon.len());
         let Some(tail) = horizon.tail().filter(|t| more(0, t)) else { return };
         let stretch = lay_out(tail, &self.world(), false, false, more);
         self.append(stretch, out);
     }
 
-    /// Asks for more until there are enough waypoints and seconds ahead.
-    fn asks_for_more(&self, count: usize, from_s: f64) -> impl Fn(usize, &Cursor) -> bool + use<> {
+    /// Asks for more until there are enough waypoints ahead, and enough seconds behind those at hand. `kept`: so many waypoints come
+    /// before what is laid out.
+    fn asks_for_more(&self, kept: usize) -> impl FnMut(usize, &Cursor) -> bool + use<> {
         let c = &self.setup.config;
         let (most, least, horizon_s) =
             (c.horizon_waypoints.max(4), c.least_waypoints.max(2), c.horizon_s.max(60.0));
+        let mut at_hand_s = self.flight.horizon.bookmark(AT_HAND).map_or(0.0, |behind| behind.path.time_s);
         move |new, cursor| {
-            let ahead = count + new;
-            ahead < most && (ahead < least || cursor.path.time_s - from_s < horizon_s)
+            let ahead = kept + new;
+            if ahead <= AT_HAND {
+                at_hand_s = cursor.path.time_s;
+            }
+            ahead < most && (ahead < least || cursor.path.time_s - at_hand_s < horizon_s)
         }
     }
 
@@ -97,12 +106,13 @@ impl Executor {
     /// numbers; one transaction cancels and appends the rest.
     pub(super) fn replan_with(&mut self, from: usize, cursor: Cursor, arriving: bool, out: &mut Vec<Output>) {
         let from = from.min(self.flight.horizon.len());
-        let more = self.asks_for_more(from, self.path_ahead().time_flown_s());
         let at_least = self.flight.horizon.len() - from;
         let kept = from.checked_sub(1).and_then(|i| self.flight.horizon.get(i));
         let marked = kept.is_some_and(|h| h.waypoint.end_of_plan);
-        let lay_out =
-            |from: &Cursor| lay_out(from, &self.world(), arriving, marked, |n, c| n < at_least || more(n, c));
+        let lay_out = |cursor: &Cursor| {
+            let mut more = self.asks_for_more(from);
+            lay_out(cursor, &self.world(), arriving, marked, |n, c| more(n, c) || n < at_least)
+        };
         let mut stretch = lay_out(&cursor);
         if from == 0 && self.is_led_elsewhere(&stretch) {
             stretch = lay_out(&cursor.going_on_from(self.here()));
@@ -146,7 +156,7 @@ impl Executor {
         if let Some(climb) = climb {
             cursor.climb_first(climb);
         }
-        let more = self.asks_for_more(0, cursor.path.time_s);
+        let more = self.asks_for_more(0);
         let stretch = lay_out(&cursor, &self.world(), false, false, more);
         self.append(stretch, out);
         if let Some(climb) = climb {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Config {
     /// Most waypoints issued ahead of the aircraft.
     pub horizon_waypoints: usize,
-    /// Seconds of flight issued ahead, if that takes fewer waypoints (at least 60).
+    /// Seconds of flight issued ahead of the waypoints that come next, if that takes fewer waypoints (at least 60).
     pub horizon_s: f64,
     /// Fewest waypoints ahead, however long their legs are: the gateway wants three in its buffer.
     pub least_waypoints: usize,

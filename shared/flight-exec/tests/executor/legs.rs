@@ -151,3 +151,17 @@ fn a_take_off_climbs_to_its_altitude_whatever_it_is_above() {
         assert!((rig.flown.last().unwrap().altitude_amsl_m - GROUND_M - 150.0).abs() < 1e-6, "above home");
     }
 }
+
+/// PX4 leaves a line when its list is changed in the middle of it: what follows a long line is fed before that begins.
+#[test]
+fn what_follows_a_long_line_is_handed_out_before_it_begins() {
+    let legs = r#"<TF id="a" fix="A1"/><TF id="long" fix="D1"/>
+        <expandingSquare id="s" spacing="300" radius="900" turn="right"><centre fix="D1"/></expandingSquare>"#;
+    let mut rig = Rig::started(legs);
+    rig.fly_to("a");
+    let ahead: Vec<_> = rig.buffer.iter().collect();
+    let long = ahead.iter().position(|w| w.leg.as_str() == "long").unwrap();
+    let behind_s = |w: &[&flight_exec::Waypoint]| w[0].position.distance_m(w[1].position) / w[1].airspeed_mps;
+    let seconds: f64 = ahead[long..].windows(2).map(behind_s).sum();
+    assert!(seconds >= 110.0, "{seconds:.0} s behind the long line, {} waypoints", ahead.len());
+}
