@@ -2,8 +2,9 @@
 //!
 //! With each new list PX4 drops the line along which it flies, and goes straight from where it is to what it steers to: on a long leg it
 //! wanders from its line then, by some metres, and behind a turn it would never come onto it. Where the next line begins all is well again.
-//! So what is not needed soon waits for the end of a leg, or for a short one, as those around an arc are. With a new list it also drops a
-//! take-off in the air, and turns: that one waits until it is over, or is to be left.
+//! So what is not needed soon waits for the end of a leg, or for a short one, as those around an arc are; and before a long line begins,
+//! so much is put on board that nothing is needed on it. With a new list PX4 also drops a take-off in the air, and turns: that one waits
+//! until it is over, or is to be left.
 
 use super::Window;
 use crate::gateway::order::{Fed, Fix};
@@ -18,6 +19,8 @@ const ALONG_LINE_DEG: f64 = 3.0;
 const NEAR_M: f64 = 300.0;
 /// What is on board for less than so many seconds of flight can't wait: a link is lost for longer than a list takes to go up.
 const LEAST_S: f64 = 90.0;
+/// A long line is prepared for when it is among so many that come next.
+const COMES_NEXT: u64 = 3;
 
 impl Window {
     /// What is new from a position on may go up later, where it does no harm.
@@ -33,7 +36,18 @@ impl Window {
             return false;
         };
         let aboard = (first..new_from).map_while(|position| self.chain.at(position));
-        !is_near_the_next_line(&fix, from.position, to.waypoint.position) && lasts(&fix, aboard)
+        !is_near_the_next_line(&fix, from.position, to.waypoint.position) && lasts(fix.position, aboard)
+    }
+
+    /// If a long line comes, what is on board behind it lasts until the next lists may go up.
+    pub(super) fn lasts_behind_the_next_line(&self) -> bool {
+        let first = self.chain.first();
+        let line =
+            |position| Some((self.chain.at(position)?.position, self.chain.at(position + 1)?.position));
+        let is_long = |position: &u64| line(*position).is_some_and(|(from, to)| from.distance_m(to) > NEAR_M);
+        let Some(long) = (first..first + COMES_NEXT).find(is_long) else { return true };
+        let behind = (long + 1..self.end).map_while(|position| self.chain.at(position));
+        line(long).is_none_or(|(_, end)| lasts(end, behind))
     }
 }
 
@@ -57,9 +71,9 @@ fn is_along(fix: &Fix, from: LatLon, to: LatLon) -> bool {
     aside_m.abs() <= ON_LINE_M && along >= ALONG_LINE_DEG.to_radians().cos()
 }
 
-/// What is on board, the waypoint steered to first, lasts long enough for the list to wait.
-fn lasts<'a>(fix: &Fix, aboard: impl Iterator<Item = &'a Waypoint>) -> bool {
-    let (mut seconds, mut from, mut count) = (0.0, fix.position, 0);
+/// What is on board, flown from a place on, lasts long enough for a list to wait.
+fn lasts<'a>(mut from: LatLon, aboard: impl Iterator<Item = &'a Waypoint>) -> bool {
+    let (mut seconds, mut count) = (0.0, 0);
     for waypoint in aboard {
         seconds += from.distance_m(waypoint.position) / waypoint.airspeed_mps.max(1.0);
         (from, count) = (waypoint.position, count + 1);

@@ -351,7 +351,8 @@ impl Window {
     /// How far on board the chain should reach: extended in large steps, so that there are few lists.
     fn stretch(&mut self) {
         let (first, full) = (self.chain.first(), self.chain.end());
-        let enough = self.end >= first + REFILL || self.end >= full;
+        let many = self.end >= first + REFILL && self.lasts_behind_the_next_line();
+        let enough = many || self.end >= full;
         if !enough || self.end < first {
             self.end = full.min(first + AHEAD);
         }

@@ -59,6 +59,33 @@ fn what_is_needed_later_goes_up_where_the_next_line_is_near() {
     assert!(rig.window.ready());
 }
 
+/// 100 m, 4 s, from each to the next one, but for 4 km to the fourth.
+fn spot(n: u64) -> LatLon {
+    let along_m = 100.0 * n as f64 + if n > 3 { 3900.0 } else { 0.0 };
+    LatLon::new(36.0, -84.0).destination(0.0, along_m)
+}
+
+fn spots(from: u64, count: u64) -> Vec<Fed> {
+    let fed =
+        |n| Fed { serial: Serial(n), waypoint: Waypoint { position: spot(n), ..waypoint(n, Action::Fly) } };
+    (from..from + count).map(fed).collect()
+}
+
+/// Behind the long line 20 spots are on board, which last for less than 90 s.
+#[test]
+fn so_much_goes_up_before_a_long_line_that_nothing_is_needed_on_it() {
+    let mut rig = Rig::flying(spots(1, 24), spot);
+    rig.window.feed(ALL, spots(25, 4));
+    let change = rig.begin().expect("a long line comes");
+    rig.end(&change, Fate::Done);
+    (0..3).for_each(|_| rig.reach());
+    assert_eq!(rig.window.target(), Target::Waypoint(Serial(4)));
+    rig.window.feed(ALL, spots(29, 4));
+    let on_the_long_line = Fix { position: spot(3).destination(0.0, 3000.0), ..before(2, 0.0, 0.0, 0.0) };
+    rig.window.moved(&on_the_long_line);
+    assert_eq!(rig.begin(), None);
+}
+
 #[test]
 fn what_is_needed_soon_goes_up_at_once() {
     // the next corner is not aboard; nobody knows where the aircraft is
