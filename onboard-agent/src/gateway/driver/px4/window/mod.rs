@@ -99,9 +99,7 @@ impl Feeding for Window {
     }
 
     fn invalidate(&mut self) {
-        // the same list again would be no news
-        let edition = (self.edition + 1) % MOST_EDITIONS;
-        *self = Self { chain: std::mem::take(&mut self.chain), edition, ..self.anew() };
+        *self = Self { chain: std::mem::take(&mut self.chain), ..self.anew() };
     }
 
     fn adopt(&mut self, list: &[Item], current: u16, waypoints: Vec<Fed>) -> Option<usize> {
@@ -169,7 +167,7 @@ impl Feeding for Window {
             if !self.disobeys || !may_install {
                 return None;
             }
-            self.edition = (self.edition + 1) % MOST_EDITIONS;
+            self.edition = self.next_edition();
             return self.install();
         }
         self.stretch();
@@ -257,9 +255,13 @@ impl Window {
         Self { chain, steepest, ..Self::default() }
     }
 
-    /// With nothing in it, for the same autopilot.
+    /// With nothing in it, for the same autopilot. For that the list that it has would be no news.
     fn anew(&self) -> Self {
-        Self { steepest: self.steepest, ..Self::default() }
+        Self { steepest: self.steepest, edition: self.next_edition(), ..Self::default() }
+    }
+
+    fn next_edition(&self) -> u16 {
+        (self.edition + 1) % MOST_EDITIONS
     }
 
     /// What it steers to for certain.
@@ -399,7 +401,8 @@ impl Window {
         let (passed, wanted) = (self.chain.before(first), |p| self.wanted(p));
         let items = match self.landing() {
             Some(landing) => {
-                ring::list_that_lands((first, landing), self.comes_from(landing).or(passed), wanted)?
+                let from = self.comes_from(landing).or(passed);
+                ring::list_that_lands((first, landing), self.edition, from, wanted)?
             }
             None => ring::list((first, self.end), self.edition, passed, wanted)?,
         };

@@ -9,6 +9,10 @@ use usal::contract::Waypoint;
 pub const RING: u64 = 40;
 /// Entry of the jump back to entry 1.
 const JUMP: usize = 1 + RING as usize;
+/// Editions of a landing stand so much apart: a float of 10 km keeps it, and nobody feels it.
+const EDITION_M: f64 = 0.01;
+/// So many of them differ.
+const LANDING_EDITIONS: u16 = 10;
 
 /// The entry of a position: the same in every list that follows another without a renumbering.
 pub fn entry(position: u64) -> u16 {
@@ -45,9 +49,11 @@ pub fn list(
 }
 
 /// The whole list while `first` is steered to and `landing` is the last to be flown. It ends there: PX4 takes off again
-/// for what stands behind a landing, and hangs for ever on a jump back from there. See [`lies_flat`].
+/// for what stands behind a landing, and hangs for ever on a jump back from there. See [`lies_flat`]. The landing carries
+/// the `edition`: it stands some centimetres higher.
 pub fn list_that_lands(
     (first, landing): (u64, u64),
+    edition: u16,
     passed: Option<Item>,
     wanted: impl Fn(u64) -> Option<Item>,
 ) -> Option<Vec<Item>> {
@@ -57,7 +63,11 @@ pub fn list_that_lands(
         None => wanted(first)?,
     };
     let before = (0..entry(first)).map(|_| Some(passing(passed)));
-    before.chain((first..=landing).map(wanted)).collect()
+    let mut items: Vec<Item> = before.chain((first..=landing).map(wanted)).collect::<Option<_>>()?;
+    if let Some(last) = items.last_mut() {
+        last.altitude_amsl_m += EDITION_M * f64::from(edition % LANDING_EDITIONS);
+    }
+    Some(items)
 }
 
 /// What is flown from `first` to `landing` needs no jump.

@@ -38,6 +38,40 @@ fn a_list_with_a_landing_ends_there_wherever_it_lies_in_the_ring_and_nothing_is_
     }
 }
 
+/// It has landed and flies the same once more: for PX4 the list of the first flight would be no news.
+#[test]
+fn a_short_flight_is_flown_a_second_time_as_it_was() {
+    type Again = fn(&mut Window);
+    let ways: [(&str, Again); 3] = [
+        ("the FP Manager came anew", |window| {
+            window.clear();
+            window.feed(ALL, whole_flight(5));
+        }),
+        ("the whole agent came anew", |window| {
+            *window = Window::default();
+            window.feed(ALL, whole_flight(5));
+        }),
+        ("nobody knows what is aboard", |window| {
+            window.feed(Serial(0), whole_flight(5));
+            window.invalidate();
+        }),
+    ];
+    for (name, again) in ways {
+        let mut rig = launched(whole_flight(5));
+        for _ in 0..9 {
+            rig.reach();
+            rig.settle();
+        }
+        rig.autopilot.landed = true;
+        rig.flying = false;
+        again(&mut rig.window);
+        rig.settle();
+        let begins = rig.autopilot.target.map(|item| item.kind);
+        assert_eq!((begins, rig.autopilot.seq), (Some(ItemKind::TakeOff), 0), "{name}");
+        assert_eq!(rig.window.target(), Target::Waypoint(Serial(1)), "{name}");
+    }
+}
+
 #[test]
 fn a_landing_behind_the_jump_is_laid_out_flat_whatever_is_lost_on_the_way() {
     for fate in [Fate::Lost, Fate::Unanswered] {
