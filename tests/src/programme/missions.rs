@@ -22,7 +22,7 @@ pub const SCENARIOS: &[Scenario] = &[
     },
     Scenario {
         name: "bad_radio",
-        happens: "a fifth of all packets is lost, some come twice or late",
+        happens: "a radio of 57.6 kbit/s loses a fifth of all packets, some come twice or late",
         expected: "three sweeps of the loop, landing on the runway",
         plan: of_field,
         simulator: &[
@@ -32,6 +32,8 @@ pub const SCENARIOS: &[Scenario] = &[
             "duplicate=0.05",
             "--fault",
             "reorder=0.05",
+            "--fault",
+            "bandwidth=57600",
             "--seed",
             "7",
         ],

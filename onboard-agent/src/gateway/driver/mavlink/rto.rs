@@ -11,6 +11,8 @@ const LONGEST: Duration = Duration::from_millis(3000);
 const MAX_DOUBLINGS: u32 = 1;
 /// No autopilot waits longer than this for what it has asked for, however far it is.
 const FARTHEST: Duration = Duration::from_secs(5);
+/// Nobody answers in no time, whatever a clock that stands still between two steps says.
+const NEAREST: Duration = Duration::from_millis(10);
 /// A timeout makes a link suspect for so many exchanges.
 const SUSPECT_FOR: u32 = 16;
 
@@ -46,7 +48,7 @@ impl Rto {
     /// About how long it is there and back.
     pub fn trip(&self) -> Duration {
         let measured = self.smoothed_s.and_then(|(mean, _)| Duration::try_from_secs_f64(mean).ok());
-        measured.unwrap_or(FIRST / 3).max(self.trip.unwrap_or_default()).min(FARTHEST)
+        measured.unwrap_or(FIRST / 3).max(self.trip.unwrap_or_default()).clamp(NEAREST, FARTHEST)
     }
 
     /// How often what is short and matters is sent at once: twice on a link that loses frames.

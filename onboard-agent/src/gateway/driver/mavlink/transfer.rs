@@ -74,6 +74,8 @@ pub struct Transfer {
     /// on the way is no sign of a narrow link.
     window: usize,
     went_back: Time,
+    /// Times that it went back since.
+    backs: u32,
     /// When it asked for something new.
     moved: Time,
     /// It got an entry that it did not wait for: one is missing, or came twice.
@@ -129,6 +131,7 @@ impl Transfer {
             rewrites: 0,
             restarts: 0,
             went_back: now,
+            backs: 0,
             moved: now,
             complains: false,
             list_late: 0,

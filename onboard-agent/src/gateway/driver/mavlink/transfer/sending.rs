@@ -4,6 +4,10 @@ use super::{LEAST_WINDOW, Phase, Transfer, WINDOW};
 use crate::gateway::driver::mavlink::{Peer, mission_type};
 use crate::gateway::order::Time;
 use mavlink::dialects::ardupilotmega::*;
+use std::time::Duration;
+
+/// More often than this the time is not doubled after which entries are sent again.
+const MOST_DOUBLINGS: u32 = 6;
 
 impl Transfer {
     pub(super) fn send_from_start(&mut self, peer: Peer, out: &mut Vec<MavMessage>) {
@@ -67,7 +71,7 @@ impl Transfer {
 
     fn moves(&mut self, now: Time) {
         self.progressed(now);
-        (self.moved, self.complains) = (now, false);
+        (self.moved, self.complains, self.backs) = (now, false, 0);
     }
 
     /// It complains of an entry that came twice, too; it waits for one that was lost when it has asked for nothing new since.
@@ -76,16 +80,24 @@ impl Transfer {
     }
 
     pub(super) fn stuck_at(&self) -> Time {
-        self.moved.max(self.went_back) + self.rto.trip()
+        self.moved.max(self.went_back) + self.until_next_back()
+    }
+
+    /// What was sent again is answered by then at the earliest. A narrow link takes the longer the more of it waits there, and of what
+    /// goes twice no round trip can be measured: each time in vain it is given twice as long, until silence tells as much.
+    fn until_next_back(&self) -> Duration {
+        let trip = self.rto.trip();
+        (trip * (1 << self.backs.min(MOST_DOUBLINGS))).min(self.rto.timeout().max(trip))
     }
 
     /// Sends again from the first entry that was not acknowledged; at most once a round trip, for
     /// each of a window's remaining items is answered with the same complaint.
     pub(super) fn go_back(&mut self, now: Time, out: &mut Vec<MavMessage>) {
-        if now < self.went_back + self.rto.trip() {
+        if now < self.went_back + self.until_next_back() {
             return;
         }
         (self.went_back, self.complains) = (now, false);
+        self.backs += 1;
         self.careful = true;
         self.silent += 1;
         self.probe = None;

@@ -335,3 +335,25 @@ fn an_autopilot_that_complains_of_whatever_comes_and_asks_for_nothing_is_given_u
     let lasted = talk.now - begun;
     assert!((COMPLAINS_FOR..COMPLAINS_FOR + Duration::from_secs(5)).contains(&lasted), "{lasted:?}");
 }
+
+/// The requests of a second ago still wait in the line, and each had the whole window sent once more, where answers seemed to take no
+/// time: nothing else came through any more.
+#[test]
+fn what_is_missed_again_and_again_is_sent_ever_more_seldom_and_never_twice_at_once() {
+    let mut talk = Talk::upload(60, &RULES);
+    for seq in 1..=40 {
+        talk.request(seq);
+    }
+    let mut sent_at: Vec<Time> = vec![];
+    while talk.now < Time::from_secs(2) {
+        talk.now += Duration::from_millis(1);
+        talk.out.clear();
+        (0..10).for_each(|_| talk.request(40));
+        let words = talk.said();
+        assert!(words.is_empty() || words.split(' ').count() <= WINDOW, "{words}");
+        sent_at.extend((!words.is_empty()).then_some(talk.now));
+    }
+    let gaps: Vec<_> = sent_at.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert!(gaps.is_sorted() && gaps.first() < gaps.last(), "{gaps:?}");
+    assert!((5..30).contains(&sent_at.len()), "{sent_at:?}");
+}
