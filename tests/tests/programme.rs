@@ -53,6 +53,7 @@ programme! {
     strong_wind,
     bad_radio always,
     accuracy,
+    accuracy_at_10_mps,
     example_alternates,
     example_coast_patrol,
     example_fire_watch,

@@ -1,6 +1,6 @@
 //! The mission as it is planned, in all weathers.
 
-use super::{Scenario, expect_whole_mission, land_by_plan, of_field};
+use super::{Scenario, expect_whole_mission, land_by_plan, land_into_calm, of_field};
 use crate::rig::Rig;
 
 pub const SCENARIOS: &[Scenario] = &[
@@ -14,11 +14,16 @@ pub const SCENARIOS: &[Scenario] = &[
     },
     Scenario {
         name: "strong_wind",
-        happens: "12 m/s of wind",
+        happens: "12 m/s of wind until it is down",
         expected: "three sweeps of the loop, landing on the runway",
         plan: of_field,
         simulator: &["--wind", "250,12"],
-        fly: |rig| Box::pin(whole(rig)),
+        fly: |rig| {
+            Box::pin(async {
+                land_into_calm(rig).await?;
+                expect_whole_mission(rig)
+            })
+        },
     },
     Scenario {
         name: "bad_radio",
