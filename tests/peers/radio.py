@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 BITS_PER_S = 57_600
 BITS_A_BYTE = 10
 ONE_WAY_S = 0.05
+# What would wait longer before the line has no room in the radio
+LATEST_S = 1.0
 
 MISSION_COUNT, MISSION_ACK = 44, 47
 ACCEPTED = 0
@@ -69,13 +71,52 @@ class Seen:
                 self.aboard = time.monotonic()
 
 
-class Radio:
-    """Listens for one client, and carries its frames to and from the simulator at a TCP port."""
+class Datagrams:
+    """A socket that hears whoever sends datagrams to a port, and answers whom it heard last."""
 
-    def __init__(self, simulator, conditions):
+    def __init__(self, port):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.bind(("127.0.0.1", port))
+        # else the thread that listens would keep the port for as long as nothing comes
+        self.socket.settimeout(0.2)
+        self.peer = None
+
+    def recv(self, size):
+        while True:
+            try:
+                data, self.peer = self.socket.recvfrom(size)
+                return data
+            except TimeoutError:
+                pass
+
+    def sendall(self, data):
+        if self.peer:
+            self.socket.sendto(data, self.peer)
+
+    def shutdown(self, how):
+        self.socket.shutdown(how)
+
+    def close(self):
+        self.socket.close()
+
+
+def connect(address):
+    """To an autopilot at `tcp:HOST:PORT`, or to one that sends datagrams to `udp:HOST:PORT`."""
+    kind, host, port = address.split(":")
+    if kind == "udp":
+        return Datagrams(int(port))
+    far = socket.create_connection((host, int(port)))
+    far.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return far
+
+
+class Radio:
+    """Listens for one client, and carries its frames to and from the autopilot at an address."""
+
+    def __init__(self, autopilot, conditions):
         self.conditions = conditions
         self.seen = Seen()
-        self.simulator = simulator
+        self.autopilot = autopilot
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.port = self.listener.getsockname()[1]
         self.ended = threading.Event()
@@ -88,10 +129,9 @@ class Radio:
             near, _ = self.listener.accept()
         except OSError:
             return
-        far = socket.create_connection(("127.0.0.1", self.simulator))
+        near.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        far = connect(self.autopilot)
         self.sockets = [near, far]
-        for end in self.sockets:
-            end.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.carry(near, far, self.conditions.seed, lambda number, _, data: self.seen.from_client(number, data))
         self.carry(far, near, self.conditions.seed + 1, lambda number, payload, _: self.seen.from_autopilot(number, payload))
 
@@ -109,7 +149,10 @@ class Radio:
             for number, payload, frame in frames(buffer):
                 hear(number, payload, frame)
                 # lost on the air: it takes its time all the same
-                free_at = max(free_at, time.monotonic()) + len(frame) * BITS_A_BYTE / self.conditions.bits_per_s
+                passed_at = max(free_at, time.monotonic()) + len(frame) * BITS_A_BYTE / self.conditions.bits_per_s
+                if passed_at > time.monotonic() + LATEST_S:
+                    continue
+                free_at = passed_at
                 lost, twice = dice.random() < self.conditions.loss, dice.random() < self.conditions.duplicates
                 for _ in range(0 if lost else 2 if twice else 1):
                     waiting.put((free_at + ONE_WAY_S, frame))

@@ -112,24 +112,44 @@ class Told:
         self.reader.join()
 
 
-def read_list(port):
-    """The list as pymavlink reads it; nothing while the simulator serves its last client, or waits for the rest of a list."""
-    link = mavutil.mavlink_connection(f"tcp:127.0.0.1:{port}", source_system=255, retries=20)
+def spoken_to(address, question):
+    """What pymavlink gets as an answer, over a link of its own; nothing while the autopilot serves its last client."""
     try:
-        link.mav.mission_request_list_send(1, 1)
-        count = link.recv_match(type="MISSION_COUNT", blocking=True, timeout=2)
-        if not count:
-            return None
-        places = []
-        for seq in range(count.count):
-            link.mav.mission_request_int_send(1, 1, seq)
-            item = link.recv_match(type="MISSION_ITEM_INT", condition=f"MISSION_ITEM_INT.seq=={seq}", blocking=True, timeout=10)
-            places.append((item.command, item.x, item.y, round(item.z)))
-        return places
+        link = mavutil.mavlink_connection(address.replace("udp:", "udpin:"), source_system=255, retries=20)
+    except OSError:
+        # the last client's port
+        return None
+    try:
+        # who sends datagrams is known when it was heard
+        link.wait_heartbeat(timeout=5)
+        return question(link)
     except ConnectionError:
         return None
     finally:
         link.close()
+
+
+def read_list(link):
+    """The list that is aboard; nothing while the autopilot waits for the rest of another one."""
+    link.mav.mission_request_list_send(1, 1)
+    count = link.recv_match(type="MISSION_COUNT", blocking=True, timeout=2)
+    if not count:
+        return None
+    places = []
+    for seq in range(count.count):
+        link.mav.mission_request_int_send(1, 1, seq)
+        item = link.recv_match(type="MISSION_ITEM_INT", condition=f"MISSION_ITEM_INT.seq=={seq}", blocking=True, timeout=10)
+        places.append((item.command, item.x, item.y, round(item.z)))
+    # else PX4 has no time for anybody else for 5 s
+    link.mav.mission_ack_send(1, 1, mavutil.mavlink.MAV_MISSION_ACCEPTED)
+    return places
+
+
+def clear_list(link):
+    """Says whether there is none any more."""
+    link.mav.mission_clear_all_send(1, 1)
+    answer = link.recv_match(type="MISSION_ACK", blocking=True, timeout=2)
+    return answer and answer.type == mavutil.mavlink.MAV_MISSION_ACCEPTED
 
 
 def wanted(mission):
@@ -138,19 +158,23 @@ def wanted(mission):
         yield int(command), round(x * 1e7), round(y * 1e7), round(z)
 
 
-def is_aboard(port, mission):
+def is_aboard(address, mission):
     """Whether all of it is; the first entry is the autopilot's own home. MAVProxy cuts degrees off where others round them."""
     # as a tuple of one: an empty list is an answer as well
-    (have,) = until(lambda: None if (places := read_list(port)) is None else (places,), 30, "the list is read")
+    (have,) = until(lambda: None if (places := spoken_to(address, read_list)) is None else (places,), 30, "the list is read")
     want = list(wanted(mission))
     near = all(a[0] == b[0] and abs(a[1] - b[1]) < 2 and abs(a[2] - b[2]) < 2 and a[3] == b[3] for a, b in zip(have[1:], want[1:]))
     return len(have) == len(want) and near
 
 
-def upload(start, name, personality, conditions, mission, folder):
+def simulated(start, personality):
+    """Where a simulator of its own listens."""
     simulator = start("legwork-sim", "--personality", personality, "--tcp", "127.0.0.1:0", "--home", HOME)
-    port = int(simulator.wait_for(r"listening on tcp 127\.0\.0\.1:(\d+)")[1])
-    radio = Radio(port, conditions)
+    return "tcp:" + simulator.wait_for(r"listening on tcp (127\.0\.0\.1:\d+)")[1]
+
+
+def upload(name, autopilot, conditions, mission, folder):
+    radio = Radio(autopilot, conditions)
     client = dict(clients(radio.port, mission, folder))[name]
     told = Told(client, folder)
     try:
@@ -166,7 +190,7 @@ def upload(start, name, personality, conditions, mission, folder):
         radio.close()
     begun, got = radio.seen.begun, radio.seen.aboard
     return Run(
-        claimed=claimed is not None, true=is_aboard(port, mission), aboard_s=got and got - begun, verified_s=read and read - begun,
+        claimed=claimed is not None, true=is_aboard(autopilot, mission), aboard_s=got and got - begun, verified_s=read and read - begun,
         sent_bytes=radio.seen.sent_bytes,
     )
 
@@ -187,7 +211,7 @@ def compared(start, condition, mission, folder):
         def one(name):
             own = folder / f"{name}-{personality}-{loss}-{bits_per_s}"
             own.mkdir()
-            return upload(start, name, personality, conditions, mission, own)
+            return upload(name, simulated(start, personality), conditions, mission, own)
 
         return dict(zip(names, pool.map(one, names)))
 
@@ -242,3 +266,20 @@ def test_we_upload_much_faster_than_mavsdk(results, personality, least, loss):
 def test_we_read_back_much_faster_than_mavsdk(results):
     runs = results["arduplane", 0.0, BITS_PER_S]
     assert runs["MAVSDK"].verified_s >= 8 * runs["gateway"].verified_s, runs
+
+
+@pytest.mark.skipif("LEGWORK_AUTOPILOT" not in os.environ, reason="LEGWORK_AUTOPILOT=tcp:HOST:PORT or udp:HOST:PORT says where one is")
+@pytest.mark.parametrize("loss", LOSSES)
+def test_on_a_real_autopilot(mission, tmp_path, capsys, loss):
+    """One client after the other, for there is one autopilot; at normal speed, for the radio's seconds are the machine's."""
+    autopilot, runs = os.environ["LEGWORK_AUTOPILOT"], {}
+    conditions = Conditions(loss, duplicates=0.0 if loss == 0 else 0.02)
+    for name in ("gateway", "MAVSDK"):
+        folder = tmp_path / name
+        folder.mkdir()
+        # a list that is aboard already is no transfer
+        until(lambda: spoken_to(autopilot, clear_list), 30, "the list is cleared")
+        runs[name] = upload(name, autopilot, conditions, mission, folder)
+    with capsys.disabled():
+        print("\n" + "\n".join(told((autopilot, loss, BITS_PER_S), runs)))
+    assert runs["gateway"].claimed and runs["gateway"].true, runs

@@ -51,6 +51,7 @@ async fn nominal_on_a_vtol() {
 programme! {
     nominal always,
     strong_wind,
+    strong_wind_in_flight,
     bad_radio always,
     accuracy,
     accuracy_at_10_mps,

@@ -26,6 +26,20 @@ pub const SCENARIOS: &[Scenario] = &[
         },
     },
     Scenario {
+        name: "strong_wind_in_flight",
+        happens: "12 m/s of wind from lift-off until it is down",
+        expected: "three sweeps of the loop, landing on the runway",
+        plan: of_field,
+        simulator: &[],
+        fly: |rig| {
+            Box::pin(async {
+                rig.disturb("wind 250,12")?;
+                land_into_calm(rig).await?;
+                expect_whole_mission(rig)
+            })
+        },
+    },
+    Scenario {
         name: "bad_radio",
         happens: "a radio of 57.6 kbit/s loses a fifth of all packets, some come twice or late",
         expected: "three sweeps of the loop, landing on the runway",
