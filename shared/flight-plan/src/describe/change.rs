@@ -1,6 +1,8 @@
 //! What can be done to a part's element.
 
+use super::extent::Extent;
 use super::first::First;
+use super::parts::CORNER;
 use super::{Description, Kind, OneOf, Property, Row, Way};
 use crate::Element;
 
@@ -66,7 +68,8 @@ pub(super) fn set(element: &mut Element, property: &Property, value: Option<&str
 /// What the other ways say goes, unless this one says it too; what this one must say begins with its first value.
 fn choose(element: &mut Element, one: &OneOf, way: usize, first: &First) -> Option<()> {
     let chosen = one.ways.get(way)?;
-    let place = first.place_of(element);
+    let extent = Extent::of(element, first.plan);
+    let place = first.place_of(element).or_else(|| first.somewhere(extent.as_ref()?.centre));
     for other in one.ways.iter().filter(|other| *other != chosen) {
         leave(element, other, chosen);
     }
@@ -74,10 +77,16 @@ fn choose(element: &mut Element, one: &OneOf, way: usize, first: &First) -> Opti
     for row in chosen.rows {
         match row {
             Row::Property(property) if property.without.is_none() && property.value(element).is_none() => {
-                let value = place.as_ref().and_then(|at| at.as_kind(property.kind));
+                let reach = extent.as_ref().filter(|_| property.attribute == "radius").map(Extent::radius);
+                let value = reach.or_else(|| place.as_ref().and_then(|at| at.as_kind(property.kind)));
                 set(element, property, Some(&value.unwrap_or_else(|| first.value(property, &[]))));
             }
-            Row::Children(children) => first.fill(element, children),
+            Row::Children(children) => {
+                let corners =
+                    extent.as_ref().filter(|_| children.of == [&CORNER] && children.count(element) == 0);
+                element.children.extend(corners.into_iter().flat_map(Extent::corners));
+                first.fill(element, children);
+            }
             Row::Property(_) | Row::OneOf(_) => {}
         }
     }

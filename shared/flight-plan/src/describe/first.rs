@@ -40,7 +40,11 @@ impl First<'_> {
         let fix = named.and_then(|id| self.plan.fix(&id));
         let number = |name: &str| element.attribute(name)?.parse::<f64>().ok();
         let written = number("lat").zip(number("lon")).map(|(lat, lon)| LatLon::new(lat, lon));
-        let at = fix.map(|fix| fix.position).or(written)?;
+        self.somewhere(fix.map(|fix| fix.position).or(written)?)
+    }
+
+    /// A position, and the fix that is there.
+    pub fn somewhere(&self, at: LatLon) -> Option<Somewhere> {
         let there = self.plan.fixes.iter().find(|fix| fix.position == at).or_else(|| self.nearest(at));
         Some(Somewhere { fix: there.map(|fix| fix.id.clone()), at: Some(at) })
     }

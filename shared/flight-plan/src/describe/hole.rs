@@ -29,7 +29,8 @@ pub(super) fn inside(parts: &[Element]) -> Option<Element> {
     Some(Element { name: "hole".into(), children, ..Element::default() })
 }
 
-fn corners(parts: &[Element]) -> Vec<LatLon> {
+/// Where the corners among these are.
+pub(super) fn corners(parts: &[Element]) -> Vec<LatLon> {
     let at =
         |corner: &Element| position(&format!("{} {}", corner.attribute("lat")?, corner.attribute("lon")?));
     parts.iter().filter(|part| part.name == "corner").filter_map(at).collect()

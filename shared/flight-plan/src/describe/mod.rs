@@ -8,6 +8,7 @@
 mod actions;
 mod change;
 mod draft;
+mod extent;
 mod first;
 mod formula;
 mod hole;
