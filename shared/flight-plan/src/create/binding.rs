@@ -1,7 +1,8 @@
 //! What of a leg a variable can give: its place or area and its numbers, each with the edits that make it so.
 
 use super::bind::{Numeric, bind, bound_to, own_polygon, unbind, variable_of_leg};
-use crate::{Edit, FlightPlan, Id, Leg, Variable, VariableValue};
+use crate::{Edit, FlightPlan, Id, Leg, Value, Variable, VariableValue, transform};
+use geometry::{LatLon, LocalFrame};
 
 /// Something of a leg that a variable can give.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,7 +13,8 @@ pub struct Binding {
     pub number: Option<Numeric>,
     /// The variable that it consists of.
     pub bound: Option<Id>,
-    /// The variables that can give it, each with the edit that binds it.
+    /// The variables that can give it, each with the edit that binds it: the one that it is bound to first, then the one that is most
+    /// like what it is now.
     pub choices: Vec<(Id, Edit)>,
     /// A new variable with its value, and the edit that makes and binds it.
     pub new: Option<(Id, Edit)>,
@@ -45,8 +47,10 @@ pub fn bindings(plan: &FlightPlan, leg: &Id) -> Vec<Binding> {
         bound: Numeric::bound_to(value),
         choices: edits(
             plan,
-            |variable| {
-                matches!(variable.initial, VariableValue::Number(_)) && number.takes(leg, &variable.unit)
+            Numeric::bound_to(value).as_ref(),
+            |variable| match variable.initial {
+                VariableValue::Number(says) if number.takes(leg, &variable.unit) => Some(away(value, says)),
+                _ => None,
             },
             |name| Some(number.bind(leg, name)),
         ),
@@ -58,14 +62,18 @@ pub fn bindings(plan: &FlightPlan, leg: &Id) -> Vec<Binding> {
 
 /// Where a leg goes, or its area.
 fn place(plan: &FlightPlan, leg: &Leg) -> Option<Binding> {
-    let fits = |variable: &Variable| {
-        matches!(variable.initial, VariableValue::Position(_) | VariableValue::Polygon(_))
+    let now = middle(&transform::places(plan, leg));
+    let from_now = |at: Option<LatLon>| now.zip(at).map_or(0.0, |(now, at)| now.distance_m(at));
+    let fits = |variable: &Variable| match &variable.initial {
+        VariableValue::Position(at) => Some(from_now(Some(*at))),
+        VariableValue::Polygon(corners) => Some(from_now(middle(corners))),
+        _ => None,
     };
     Some(Binding {
         name: name_of_place(plan, leg)?.into(),
         number: None,
         bound: bound_to(leg),
-        choices: edits(plan, fits, |name| bind(plan, &leg.id, name)),
+        choices: edits(plan, bound_to(leg).as_ref(), fits, |name| bind(plan, &leg.id, name)),
         new: variable_of_leg(plan, &leg.id),
         free: unbind(plan, &leg.id),
     })
@@ -80,13 +88,31 @@ fn name_of_place(plan: &FlightPlan, leg: &Leg) -> Option<&'static str> {
     is_any.then_some(if is_area { "Area" } else { "Place" })
 }
 
+/// `away`: how far what a variable says is from what is there now; `None`: it does not fit.
 fn edits(
     plan: &FlightPlan,
-    fits: impl Fn(&Variable) -> bool,
+    bound: Option<&Id>,
+    away: impl Fn(&Variable) -> Option<f64>,
     bind: impl Fn(&Id) -> Option<Edit>,
 ) -> Vec<(Id, Edit)> {
-    let variables = plan.variables.iter().filter(|variable| fits(variable));
-    variables.filter_map(|variable| Some((variable.name.clone(), bind(&variable.name)?))).collect()
+    let fitting = plan.variables.iter().filter_map(|variable| Some((away(variable)?, &variable.name)));
+    let mut fitting: Vec<(f64, &Id)> = fitting.collect();
+    fitting.sort_by(|(one, a), (other, b)| {
+        (bound != Some(*a)).cmp(&(bound != Some(*b))).then(one.total_cmp(other))
+    });
+    fitting.into_iter().filter_map(|(_, name)| Some((name.clone(), bind(name)?))).collect()
+}
+
+/// Between a number and another one; of what only the flight says all are alike.
+fn away(now: &Value<f64>, says: f64) -> f64 {
+    match now {
+        Value::Constant(now) => (now - says).abs(),
+        Value::Expression(_) => 0.0,
+    }
+}
+
+fn middle(places: &[LatLon]) -> Option<LatLon> {
+    LocalFrame::around(places).map(|frame| frame.origin())
 }
 
 /// `innerRadius` as people write it.
@@ -137,6 +163,22 @@ mod tests {
         assert_eq!(offered("metres"), ["Radius"], "nobody knows that unit");
         assert_eq!(offered("m/s"), [""; 0]);
         assert_eq!(offered(""), ["Radius", "Turns"]);
+    }
+
+    /// The first of the plan was offered first, and Enter took it.
+    #[test]
+    fn the_variable_that_is_most_like_what_is_there_is_offered_first() {
+        let more = r#"<variable name="near" type="position" initial="46.001 8.001"/>
+            <variable name="wide" type="number" initial="310"/></variables>"#;
+        let plan = crate::read(PLAN.replace("</variables>", more)).plan;
+        let offered = |leg: &str, name: &str| {
+            let all = bindings(&plan, &leg.into());
+            let binding = all.into_iter().find(|binding| binding.name == name).unwrap();
+            binding.choices.into_iter().map(|(variable, _)| variable.to_string()).collect::<Vec<_>>()
+        };
+        assert_eq!(offered("o", "Place"), ["near", "fire"]);
+        assert_eq!(offered("o", "Radius"), ["wide", "reach"]);
+        assert_eq!(offered("t", "Place"), ["fire", "near"], "it is that already");
     }
 
     #[test]
