@@ -35,6 +35,25 @@ fn altitude_is_dragged_in_the_profile_in_one_step() {
     assert_eq!(window.plan(), before, "one step");
 }
 
+/// It selected the leg and left the cursor where that was.
+#[test]
+fn a_click_on_a_mark_brings_the_cursor_there() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    let before = window.plan();
+    for leg in ["side3", "side1"] {
+        window.click(&format!("Altitude of {leg}"));
+        assert_eq!(window.selected(), leg);
+        let forecast = &window.app().analysis().forecast;
+        let passage = forecast.passages.iter().find(|passage| passage.leg.as_str() == leg).unwrap();
+        let end_s = forecast.points[passage.end - 1].time_s;
+        assert_eq!(window.app().view().cursor_s, Some(end_s), "{leg}");
+        // no double click
+        window.steps(40);
+    }
+    assert_eq!(window.plan(), before);
+}
+
 #[test]
 fn altitude_that_is_a_formula_is_not_dragged() {
     let formula = r#"<TF id="side2" fix="B" altitude="= high" altitudeReference="home"/>"#;

@@ -1,8 +1,8 @@
 //! Altitudes by hand: a mark at the end of each leg's passage; dragged up or down, it is the leg's altitude.
 
 use super::Axes;
-use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
-use crate::forecast::Passage;
+use crate::command::{DocumentCommand, PreviewCommand, Queue, Selection, ViewCommand};
+use crate::forecast::{Passage, Point};
 use crate::map::guard;
 use crate::map::tools::has_left;
 use crate::panels::Scene;
@@ -163,6 +163,9 @@ impl Levels {
         if response.clicked() || response.drag_started() {
             queue.view(ViewCommand::Select(Some(scene.document.part_of(&passage.leg))));
         }
+        if let Some(end) = end_of(scene, passage).filter(|_| response.clicked()) {
+            queue.preview(PreviewCommand::Scrub(Some(end.time_s)));
+        }
         if response.drag_started()
             && let Some(from) = response.ctx.input(|i| i.pointer.press_origin())
         {
@@ -202,10 +205,8 @@ fn marks<'a>(axes: &Axes, scene: &Scene<'a>) -> Vec<(usize, &'a Passage, Pos2)> 
     let forecast = scene.forecast();
     let is_of_plan = |leg: &Id| !scene.document.kind_name(leg).is_empty();
     let places = forecast.passages.iter().enumerate();
-    let places = places.filter_map(|(index, passage)| {
-        let last = forecast.points.get(passage.first..passage.end)?.last()?;
-        Some((index, passage, axes.place(last)))
-    });
+    let places =
+        places.filter_map(|(index, passage)| Some((index, passage, axes.place(end_of(scene, passage)?))));
     let places: Vec<_> = places.filter(|(.., at)| axes.plot.expand(1.0).contains(*at)).collect();
     let is_selected = |passage: &Passage| scene.is_selected(&Selection::Leg(passage.leg.clone()));
     let (first, rest): (Vec<_>, Vec<_>) =
@@ -218,6 +219,11 @@ fn marks<'a>(axes: &Axes, scene: &Scene<'a>) -> Vec<(usize, &'a Passage, Pos2)> 
         taken.range(x - gap + 1..x + gap).next().is_none() && is_of_plan(&passage.leg) && taken.insert(x)
     };
     first.into_iter().chain(rest).filter(is_free).collect()
+}
+
+/// Where a passage ends, and its mark is.
+fn end_of<'a>(scene: &Scene<'a>, passage: &Passage) -> Option<&'a Point> {
+    scene.forecast().points.get(passage.first..passage.end)?.last()
 }
 
 fn mark(ui: &Ui, scene: &Scene<'_>, passage: &Passage, index: usize, at: Pos2) -> Response {
