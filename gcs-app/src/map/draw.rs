@@ -77,6 +77,7 @@ fn draw_grid(sheet: &Sheet<'_>) -> ShapeIdx {
 fn draw_plan(sheet: &Sheet<'_>, path: &mut path::Layer, aircraft: &mut aircraft::Layer) {
     let kin = kin::Kin::of(sheet.scene);
     zones::draw(sheet, &kin);
+    variables::draw_areas(sheet);
     plan::draw_areas(sheet, &kin);
     variables::draw(sheet);
     plan::draw_emergencies(sheet, &kin);

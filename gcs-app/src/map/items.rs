@@ -126,6 +126,10 @@ fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
         let (at, name) = (view.place(variable.at), format!("Variable {}", variables::name(&variable.name)));
         inside(at, view).then(|| Item { name, at, what: Selection::Variable(variable.name.clone()) })
     });
+    let named = sketch.areas.iter().filter_map(|(variable, corners)| {
+        let name = format!("Variable {}", variables::name(variable));
+        outline(&closed(corners), name, Selection::Variable(variable.clone()))
+    });
     let emergencies = sketch.emergencies.iter().filter_map(|(id, line)| {
         let name = plan.emergency_plan(id).map_or_else(|| id.to_string(), |e| title(&e.name, id.as_str()));
         outline(line, format!("Path of emergency plan {name}"), Selection::Emergency(id.clone()))
@@ -146,6 +150,7 @@ fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
     let all = runways
         .chain(zones)
         .chain(variables)
+        .chain(named)
         .chain(legs(canvas))
         .chain(legs_of_ways(canvas))
         .chain(areas)

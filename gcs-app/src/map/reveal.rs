@@ -5,8 +5,9 @@ use super::view::View;
 use super::{MapState, zones};
 use crate::command::Selection;
 use crate::panels::Scene;
-use flight_plan::{FlightPlan, Leg, Place, transform};
-use geometry::LatLon;
+use flight_plan::{FlightPlan, Leg, Place, Section, transform};
+use geometry::{LatLon, LocalFrame};
+use std::sync::Arc;
 use walkers::{MapMemory, lat_lon};
 
 /// What is to be brought into view.
@@ -34,9 +35,9 @@ impl MapState {
         self.memory.detached().map(|at| LatLon::new(at.y(), at.x()))
     }
 
-    /// Where something selectable is, if it is anywhere.
+    /// Where something selectable is or begins, if it is anywhere.
     pub fn place_of(&self, selection: &Selection, plan: &FlightPlan) -> Option<LatLon> {
-        place_of(selection, plan, &self.sketch)
+        place_or_begin(selection, plan, &self.sketch)
     }
 
     /// True: it was out of view. Of several places the map shows all.
@@ -81,9 +82,38 @@ pub fn place_of(selection: &Selection, plan: &FlightPlan, sketch: &Sketch) -> Op
         Selection::Fix(id) => plan.fix(id).map(|f| f.position),
         Selection::Runway(id) => plan.runway(id).map(|r| r.threshold),
         Selection::Zone(id) => plan.zone(id).and_then(zones::middle),
-        Selection::Variable(id) => sketch.variables.iter().find(|v| v.name == *id).map(|v| v.at),
+        Selection::Variable(id) => {
+            let area = || sketch.areas.iter().find(|(area, _)| area == id);
+            let middle = || LocalFrame::around(&area()?.1).map(|frame| frame.origin());
+            sketch.variables.iter().find(|v| v.name == *id).map(|v| v.at).or_else(middle)
+        }
         Selection::Procedure(_) => None,
     }
+}
+
+/// The same; what names a place or a runway that is not there begins where the leg before it ends.
+pub fn place_or_begin(selection: &Selection, plan: &FlightPlan, sketch: &Sketch) -> Option<LatLon> {
+    place_of(selection, plan, sketch).or_else(|| {
+        before(selection, plan)?.find_map(|leg| place_of(&Selection::Leg(leg.id.clone()), plan, sketch))
+    })
+}
+
+/// The legs before a leg or a stage, the nearest first: of its list, then of the stages before.
+fn before<'p>(selection: &Selection, plan: &'p FlightPlan) -> Option<impl Iterator<Item = &'p Arc<Leg>>> {
+    let context = match selection {
+        Selection::Leg(id) => Some(plan.leg(id)?),
+        _ => None,
+    };
+    let stage = context.as_ref().map_or(selection.id(), |context| &context.stage.id);
+    let (section, _) = plan.all_stages().find(|(_, other)| other.id == *stage)?;
+    let stages = match section {
+        Section::Main => &plan.stages,
+        Section::Emergency(emergency) => &emergency.stages,
+    };
+    let own = context.as_ref().and_then(|context| context.siblings.get(..context.index)).unwrap_or_default();
+    let others = stages.iter().take_while(move |other| other.id != *stage);
+    let others: Vec<&Arc<Leg>> = others.flat_map(|other| &other.legs).collect();
+    Some(own.iter().rev().chain(others.into_iter().rev()))
 }
 
 fn place_of_leg(plan: &FlightPlan, leg: &Leg) -> Option<LatLon> {

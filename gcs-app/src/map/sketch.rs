@@ -75,6 +75,8 @@ pub struct Sketch {
     pub emergencies: Vec<(Id, Vec<LatLon>)>,
     /// Variables that are a place.
     pub variables: Vec<PlacedVariable>,
+    /// Variables that are an area, each with its corners.
+    pub areas: Vec<(Id, Vec<LatLon>)>,
     /// Ways on from forks.
     pub ways: Vec<Way>,
     /// What procedures lead over, where they are called.
@@ -105,7 +107,11 @@ impl Sketch {
         let fixes = plan.fixes.iter().rev().map(|fix| (&fix.id, fix.position)).collect();
         let env = Env { variables, flight: FlightState::on_ground(home) };
         let reader = Reader { plan, fixes, env, former };
-        let mut sketch = Self { variables: placed_variables(plan, variables), ..Self::default() };
+        let mut sketch = Self {
+            variables: placed_variables(plan, variables),
+            areas: areas(plan, variables),
+            ..Self::default()
+        };
         for fix in plan.fixes.iter().filter(|f| f.position.is_valid()) {
             sketch.handles.push(Handle { what: Handled::Fix(fix.id.clone()), at: fix.position });
         }
@@ -335,7 +341,8 @@ impl Sketch {
             .iter()
             .flat_map(|c| [0.0, 90.0, 180.0, 270.0].map(|b| c.centre.destination(b, c.radius_m)));
         let drawn = self.main.iter().flatten().chain(&self.called).copied();
-        self.handles.iter().map(|h| h.at).chain(drawn).chain(rims).collect()
+        let areas = self.areas.iter().flat_map(|(_, corners)| corners).copied();
+        self.handles.iter().map(|h| h.at).chain(drawn).chain(rims).chain(areas).collect()
     }
 }
 
@@ -385,6 +392,16 @@ fn placed_variables(plan: &FlightPlan, variables: &Variables) -> Vec<PlacedVaria
     names
         .filter_map(|name| Some(PlacedVariable { name: name.clone(), at: place(name)?, radius_m: None }))
         .collect()
+}
+
+fn areas(plan: &FlightPlan, variables: &Variables) -> Vec<(Id, Vec<LatLon>)> {
+    let area = |name: &Id| match variables.get(name) {
+        Some(VariableValue::Polygon(corners)) if corners.iter().all(|at| at.is_valid()) => {
+            Some(corners.clone())
+        }
+        _ => None,
+    };
+    plan.variables.iter().filter_map(|of| Some((of.name.clone(), area(&of.name)?))).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
-//! Variables of the plan that are a place: where they are now, with their radius where they have one.
+//! Variables of the plan that are a place or an area: where they are now, with their radius where they have one.
 
 use super::names::{self, Ground, Name, Rank};
+use super::polyline::Style;
 use super::sheet::Sheet;
 use super::sketch::PlacedVariable;
 use super::tools::Canvas;
@@ -8,7 +9,7 @@ use super::tools::pick::things_near;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::panels::binding::DraggedVariable;
 use crate::theme;
-use egui::{DragAndDrop, Pos2, Shape, Stroke, Ui, vec2};
+use egui::{Align2, DragAndDrop, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use flight_plan::Id;
 use flight_plan::create::place_binding;
 
@@ -48,6 +49,29 @@ fn draw_one(sheet: &Sheet<'_>, variable: &PlacedVariable, selected: bool) {
     let (rank, spots, text) =
         (Rank::Place.or_selected(selected), [above, below, right, left], name(&variable.name));
     sheet.ask(Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Halo });
+}
+
+/// Every variable that is an area: its outline, and its name above or in it.
+pub fn draw_areas(sheet: &Sheet<'_>) {
+    let Sheet { view, p, .. } = *sheet;
+    for (variable, corners) in &sheet.sketch.areas {
+        let selected = sheet.scene.is_selected(&Selection::Variable(variable.clone()));
+        let stroke = Stroke::new(if selected { 2.4 } else { 1.6 }, p.caution);
+        sheet.line(corners.iter().chain(corners.first()).copied(), stroke, Style::Solid);
+        let bounds = Rect::from_points(&corners.iter().map(|at| view.place(*at)).collect::<Vec<_>>());
+        if !bounds.intersects(view.rect) {
+            continue;
+        }
+        let seen = bounds.intersect(view.rect);
+        let spots = [
+            (seen.center_top() - vec2(0.0, 4.0), Align2::CENTER_BOTTOM),
+            (seen.center_bottom() + vec2(0.0, 4.0), Align2::CENTER_TOP),
+            (seen.center_top() + vec2(0.0, 4.0), Align2::CENTER_TOP),
+            (seen.center(), Align2::CENTER_CENTER),
+        ];
+        let (rank, text) = (Rank::Place.or_selected(selected), name(variable));
+        sheet.ask(Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Halo });
+    }
 }
 
 /// A variable whose row is dragged onto a leg's place gives that place.

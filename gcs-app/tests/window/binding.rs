@@ -162,6 +162,34 @@ fn a_variable_is_dragged_from_the_plan_to_what_it_says() {
     assert!(window.plan() == before && window.shows("on its field in the inspector"));
 }
 
+/// It was nowhere on the map.
+#[test]
+fn a_variable_that_is_an_area_is_drawn_with_its_name_and_selected_on_the_map() {
+    let area = r#"<variables><variable name="burnt_area" type="polygon" initial="36.33 -84.185, 36.33 -84.175, 36.325 -84.18"/></variables><mainPlan"#;
+    let mut window = Window::open(&SQUARE.replacen("<mainPlan", area, 1));
+    window.until_analysed();
+    let name = window.places_of(|text| text == "burnt area");
+    let map = window.harness.get_by_label("Map").rect();
+    assert!(name.iter().any(|name| map.contains_rect(*name)), "{name:?}");
+    let colour = gcs_app::theme::palette(true).caution;
+    assert!(window.lines_within("Map", colour) > 0);
+    window.click("Variable burnt area");
+    assert_eq!(window.selected(), "burnt_area");
+}
+
+#[test]
+fn the_place_that_is_nearest_is_bound_by_key() {
+    let far = r#"<variables><variable name="far_away" type="position" initial="36.5 -84.0"/>"#;
+    let plan = SQUARE.replacen("<mainPlan", &format!("{far}<variable name=\"corner\" type=\"position\" initial=\"36.3211 -84.1538\"/></variables><mainPlan"), 1);
+    let mut window = Window::open(&plan);
+    window.until_analysed();
+    let leg = drawn_leg(&mut window);
+    window.press(Key::B);
+    window.press(Key::Enter);
+    let place = window.plan().leg(&leg.as_str().into()).unwrap().leg.place().cloned();
+    assert_eq!(place, Some(Place::Position(Value::Expression("corner".into()))));
+}
+
 /// A scan that was drawn behind the second leg, and is selected.
 fn drawn_scan(window: &mut Window) -> String {
     window.select_row(("TF side2", 0));

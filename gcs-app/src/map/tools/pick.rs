@@ -125,7 +125,7 @@ pub fn selection(plan: &FlightPlan, what: &Handled) -> Selection {
     }
 }
 
-/// The runways, areas, circles, zones and emergency plans whose line is under the pointer.
+/// The runways, areas, circles, variables, zones and emergency plans whose line is under the pointer.
 fn outlines_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
     let Canvas { view, sketch, scene, .. } = *canvas;
     let on_line = |line: &[LatLon], closed: bool| {
@@ -143,10 +143,12 @@ fn outlines_near(at: Pos2, canvas: &Canvas<'_>) -> Vec<Selection> {
     let circles = sketch.circles.iter().filter(|circle| on_circle(circle.centre, circle.radius_m));
     let zones = plan.zones.iter().filter(|zone| on_line(&chart::outline(zone), true));
     let emergencies = sketch.emergencies.iter().filter(|(_, line)| on_line(line, false));
+    let named = sketch.areas.iter().filter(|(_, corners)| on_line(corners, true));
     let legs = polygons.map(|(leg, _)| leg).chain(circles.map(|circle| &circle.leg));
     runways
         .map(|runway| Selection::Runway(runway.id.clone()))
         .chain(legs.map(|leg| Selection::Leg(leg.clone())))
+        .chain(named.map(|(variable, _)| Selection::Variable(variable.clone())))
         .chain(zones.map(|zone| Selection::Zone(zone.id.clone())))
         .chain(emergencies.map(|(id, _)| Selection::Emergency(id.clone())))
         .collect()
