@@ -2,7 +2,7 @@
 
 use super::names::{self, Ground, Name, Rank, Spot};
 use super::polyline::Style;
-use super::reveal::place_of;
+use super::reveal::place_or_begin;
 use super::sheet::Sheet;
 use super::sketch::{Line, Way};
 use crate::panels::what_if::reach_name;
@@ -70,12 +70,12 @@ pub fn draw_faults(sheet: &Sheet<'_>) {
     draw_failures(sheet);
 }
 
-/// Where something is wrong: the place that is named, or else where that is whose problem it is.
+/// Where something is wrong: the place that is named, or else where that is, or begins, whose problem it is. `None`: nowhere.
 fn place_of_problem(problem: &Problem, sheet: &Sheet<'_>) -> Option<LatLon> {
     let Sheet { sketch, scene, .. } = *sheet;
     match &problem.place {
         Some(spot) => Some(spot.position),
-        None => place_of(&selection_of(problem, scene)?, scene.document.plan(), sketch),
+        None => place_or_begin(&selection_of(problem, scene)?, scene.document.plan(), sketch),
     }
 }
 
@@ -86,11 +86,7 @@ fn draw_failures(sheet: &Sheet<'_>) {
     if let Some((end, why)) = end.filter(|_| scene.analysis.no_forecast.is_none()) {
         failure(sheet, end.position, why);
     }
-    // what has no place of its own is wrong where the path ends
-    let ends = scene.forecast().points.last().filter(|_| scene.forecast().is_beginning);
-    let wrong = first_error(scene).and_then(|problem| {
-        Some((problem, place_of_problem(problem, sheet).or(ends.map(|end| end.position))?))
-    });
+    let wrong = first_error(scene).and_then(|problem| Some((problem, place_of_problem(problem, sheet)?)));
     if let Some((problem, at)) = wrong {
         failure(sheet, at, &scene.document.plan().in_names(&problem.message));
     }

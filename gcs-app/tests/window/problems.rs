@@ -379,3 +379,28 @@ fn five_problems_and_their_remedies_are_in_view() {
         assert!(rows.len() >= least, "{size}: {rows:?}");
     }
 }
+
+/// It stood where the departure ended.
+#[test]
+fn the_mark_of_a_missing_fix_or_runway_is_where_what_names_it_begins() {
+    let mark_of = |from: &str, to: &str, words: &str| {
+        let window = opened(&SQUARE.replacen(from, to, 1));
+        let marks = window.places_of(|text| text.starts_with(words));
+        let map = window.harness.get_by_label("Map").rect();
+        let mark = marks.into_iter().find(|mark| map.contains_rect(*mark));
+        (mark, ["A", "B", "C", "D"].map(|fix| window.centre(&format!("Fix {fix}"))))
+    };
+    let near =
+        |mark: Option<egui::Rect>, at: egui::Pos2| mark.is_some_and(|mark| mark.distance_to_pos(at) < 30.0);
+    let (mark, [_, b, ..]) = mark_of(r#"side3" fix="C"/"#, r#"side3" fix="NOWHERE"/"#, "there is no fix");
+    assert!(near(mark, b), "{mark:?} {b}");
+    let (mark, [.., d]) = mark_of(
+        r#""land" type="land" runway="R05"#,
+        r#""land" type="land" runway="R99"#,
+        "there is no runway",
+    );
+    assert!(near(mark, d), "{mark:?} {d}");
+    let (mark, [.., _]) =
+        mark_of(r#"<DF id="r1" fix="D""#, r#"<DF id="r1" fix="NOWHERE""#, "there is no fix");
+    assert_eq!(mark, None, "nobody knows where an emergency plan begins");
+}
