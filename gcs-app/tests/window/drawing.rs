@@ -255,7 +255,11 @@ fn four_clicks_around_a_village_are_an_outline_and_the_key_makes_it_a_circle() {
     };
     let shape = |window: &Window| window.plan().zones.last().map(|zone| zone.shape.clone());
     window.press(Key::Z);
-    assert!(window.shows("Keep-out zone, outline (Z: circle): click the corners; Enter, a double click or the first corner closes it"));
+    assert!(
+        window.shows(
+            "Keep-out zone (Z: circle): click the corners; the first, Enter or a double click closes it"
+        )
+    );
     clicks(&mut window, 4);
     assert!(window.shows("outline") && window.shows("circle"), "the choice stays while it is drawn");
     clicks(&mut window, 1);
@@ -264,12 +268,12 @@ fn four_clicks_around_a_village_are_an_outline_and_the_key_makes_it_a_circle() {
     window.steps(30);
     clicks(&mut window, 1);
     window.press(Key::Z);
-    assert!(window.shows("Keep-out zone, circle (Z: outline): click the rim"), "about the place clicked");
+    assert!(window.shows("Keep-out zone (Z: outline): click the rim"), "about the place clicked");
     window.click_at(at + figure(Shape::Area)[0] + vec2(60.0, 0.0));
     assert!(matches!(shape(&window), Some(ZoneShape::Circle { .. })));
     window.press(Key::V);
     window.press(Key::Z);
-    assert!(window.shows("Keep-out zone, outline"), "the next one begins as an outline");
+    assert!(window.shows("Keep-out zone (Z: circle)"), "the next one begins as an outline");
 }
 
 #[test]

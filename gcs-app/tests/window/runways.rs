@@ -148,3 +148,26 @@ fn an_emergency_plan_offers_the_direction_that_lacks_where_the_runway_was_clicke
     window.press(Key::Enter);
     assert_eq!(window.plan().emergency_plans.last().unwrap().runway.as_str(), "R23");
 }
+
+/// It came as a surprise, far away from what was clicked.
+#[test]
+fn an_emergency_plan_shows_the_hold_and_the_final_that_it_gets_while_it_is_drawn() {
+    let mut window = opened();
+    // the hold is beyond the edge
+    (0..2).for_each(|_| window.click("Zoom out"));
+    let said = "Enter adds hold and final";
+    let [middle, towards] = ends(&window);
+    window.press(Key::E);
+    assert!(!window.paints(said));
+    window.click_at(middle - (towards - middle).normalized() * 12.0);
+    let shown = window.places_of(|text| text == said)[0];
+    window.press(Key::Enter);
+    window.press(Key::V);
+    window.steps(2);
+    assert!(!window.paints(said), "it is there now");
+    let made = window.plan().emergency_plans.last().cloned().unwrap();
+    let hold = made.stages[0].legs.last().unwrap();
+    let Some(flight_plan::Place::Fix(fix)) = hold.place() else { panic!("{hold:?}") };
+    let there = window.harness.get_by_label(&format!("Fix {fix}")).rect().center();
+    assert!(there.distance(shown.left_top()) < 20.0, "{there} {shown}");
+}

@@ -80,18 +80,20 @@ fn below_the_horizon_the_vital_values_come_first() {
     }
 }
 
-/// It took three lines of the map, which is small.
+/// What stands on the map with these words, line by line.
+fn lines(window: &Window, words: &str) -> Vec<String> {
+    let shapes = window.harness.output().shapes.iter();
+    let mut texts = shapes.flat_map(|clipped| super::painted::texts(&clipped.shape));
+    let galley = &texts.find(|text| text.galley.text().contains(words)).unwrap().galley;
+    galley.rows.iter().map(|row| row.text()).collect()
+}
+
+/// They took three lines of the map, which is small.
 #[test]
 fn what_the_emergency_tool_says_takes_two_lines() {
     let mut window = opened(SQUARE);
     window.click("TF side2");
     window.press(Key::E);
-    let lines = |window: &Window, words: &str| {
-        let shapes = window.harness.output().shapes.iter();
-        let mut texts = shapes.flat_map(|clipped| super::painted::texts(&clipped.shape));
-        let galley = &texts.find(|text| text.galley.text().contains(words)).unwrap().galley;
-        galley.rows.iter().map(|row| row.text()).collect::<Vec<_>>()
-    };
     assert_eq!(lines(&window, "click the runway it leads to").len(), 1);
     let runway = window.centre("Runway R05");
     window.click_at(runway);
@@ -100,6 +102,36 @@ fn what_the_emergency_tool_says_takes_two_lines() {
     assert!(window.paints(" From side2: "));
     let lines = lines(&window, "click its places outwards");
     assert_eq!(lines.len(), 2, "{lines:?}");
+}
+
+#[test]
+fn what_other_tools_say_while_they_draw_takes_two_lines() {
+    let lead = r#"<procedures><procedure id="look" reference="36.3 -84.1"><TF id="p1" lat="36.3" lon="-84.1"/><TF id="p2" lat="36.31" lon="-84.1"/></procedure></procedures><mainPlan"#;
+    for (key, words) in [
+        (Key::Z, "Keep-out zone"),
+        (Key::A, "Scan"),
+        (Key::L, "Corridor"),
+        (Key::O, "Orbit"),
+        (Key::P, "Procedure"),
+        (Key::T, "eg"),
+    ] {
+        let mut window = opened(&SQUARE.replace("<mainPlan", lead));
+        window.click("TF side2");
+        window.press(key);
+        let at = rect(&window, "Map").center();
+        let said = (0..3).map(|clicks| {
+            window.harness.hover_at(at + vec2(45.0 * clicks as f32, 30.0 * (clicks % 2) as f32));
+            window.steps(5);
+            let said = lines(&window, words);
+            window.click_at(at + vec2(45.0 * clicks as f32, 30.0 * (clicks % 2) as f32));
+            // no double click
+            window.steps(40);
+            said
+        });
+        for said in said.collect::<Vec<_>>() {
+            assert!(said.len() <= 2 && !said.concat().contains('…'), "{key:?}: {said:?}");
+        }
+    }
 }
 
 /// The smallest window.

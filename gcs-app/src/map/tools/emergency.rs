@@ -2,6 +2,7 @@
 //! cursor or the selected leg: the way from there into the plan is flown ahead while it is drawn.
 
 use super::bands::{self, Band};
+use super::besides::Besides;
 use super::new_leg::{self, Aim};
 use super::pen::{Figure, Mark, Pen};
 use super::pick::{is_nearer_to_end, runway_near};
@@ -30,6 +31,8 @@ pub struct DrawEmergency {
     raised: Option<Raised>,
     /// The way from there to where it begins.
     trials: Trials,
+    /// What is made besides the places that were clicked.
+    besides: Besides,
 }
 
 /// Where an alarm would be raised.
@@ -70,6 +73,7 @@ impl Default for DrawEmergency {
             other: None,
             raised: None,
             trials: Trials::default(),
+            besides: Besides::default(),
         }
     }
 }
@@ -113,6 +117,12 @@ impl DrawEmergency {
         self.pen.pointer().map(|mark| mark.at).or(self.pen.last())
     }
 
+    /// Shows what Enter would make of the places that were clicked.
+    fn complement(&mut self, canvas: &Canvas<'_>) {
+        let outwards = self.pen.clicked().skip(1).map(|mark| mark.place.clone()).collect();
+        self.besides.follow(self.runway.as_ref().map(|runway| (runway, outwards)), canvas);
+    }
+
     /// Flies from where the alarm would be raised to where it begins, as the aircraft would: directly, from its course.
     fn fly(&mut self, canvas: &Canvas<'_>) {
         self.raised = raised(canvas.scene);
@@ -123,17 +133,16 @@ impl DrawEmergency {
         self.trials.divert(direct, &aim, raised.at, canvas);
     }
 
-    /// From where it would be flown, and how far and how long it is from there.
-    fn way_in(&self, scene: &Scene<'_>) -> String {
-        let Some(raised) = &self.raised else { return " Select a leg to see the way in.".into() };
-        let Some((trial, to)) = self.trials.get().zip(self.begins()) else { return String::new() };
+    /// What to do, and from where it would be flown, how far and how long it is from there. A fault stands alone: there is room for
+    /// two lines.
+    fn drawing(&self, runway: &Id, scene: &Scene<'_>) -> String {
+        let hint = format!("To {runway}: click its places outwards; Enter ends, Esc gives up.");
+        let Some(raised) = &self.raised else { return format!("{hint} Select a leg to see the way in.") };
+        let Some((trial, to)) = self.trials.get().zip(self.begins()) else { return hint };
         let leg = scene.document.label(&raised.leg);
         match &trial.fault {
-            Some(fault) => format!(" From {leg} it can't be flown so: {fault}."),
-            None => {
-                let way = trial.words(raised.at.from, to, scene.units());
-                format!(" From {leg}: {way}.")
-            }
+            Some(fault) => format!("To {runway}: from {leg} it can't be flown so: {fault}."),
+            None => format!("{hint} From {leg}: {}.", trial.words(raised.at.from, to, scene.units())),
         }
     }
 }
@@ -155,10 +164,7 @@ impl Tool for DrawEmergency {
                     "You clicked the end of {runway}: “{ADD_OTHER}” lets it land from there. Or click its places outwards."
                 )
             }
-            Some(runway) => format!(
-                "To {runway}: click its places outwards; Enter ends, Esc gives up.{}",
-                self.way_in(scene)
-            ),
+            Some(runway) => self.drawing(runway, scene),
         })
     }
 
@@ -179,6 +185,7 @@ impl Tool for DrawEmergency {
             self.leave();
         }
         self.fly(canvas);
+        self.complement(canvas);
     }
 
     fn press(&mut self, pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
@@ -222,6 +229,7 @@ impl Tool for DrawEmergency {
         self.pen.clear();
         self.trials.clear();
         (self.runway, self.raised, self.other, self.is_at_end) = (None, None, None, false);
+        self.besides = Besides::default();
     }
 
     fn is_busy(&self) -> bool {
@@ -239,6 +247,7 @@ impl Tool for DrawEmergency {
                 None => bands::paint(painter, canvas, raised.at.from, &[Band { to, is_alternate: true }], p),
             }
         }
+        self.besides.paint(painter, canvas, p);
         self.pen.paint(painter, canvas, false, p);
     }
 }

@@ -5,6 +5,7 @@
 //! To add a tool: a file here with a value that implements [`Tool`], and its line in [`all`].
 
 mod bands;
+mod besides;
 mod corner;
 mod draw_leg;
 mod emergency;

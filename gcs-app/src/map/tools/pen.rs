@@ -166,10 +166,10 @@ impl Pen {
         self.marks.clear();
     }
 
-    /// What to do next.
+    /// What to do next, so short that two lines of a small map hold it.
     pub fn hint(&self) -> &'static str {
         if self.fault.is_some() {
-            return "the outline crosses itself; Backspace takes the last corner back";
+            return "the outline crosses itself; Backspace takes one back";
         }
         match (self.figure, self.len()) {
             (Figure::Segment, 0) => "click where it begins",
@@ -177,15 +177,11 @@ impl Pen {
             (Figure::Circle, 0) => "click the middle",
             (Figure::Circle, _) => "click the rim",
             (Figure::Line, 0) => "click the points of the line; Enter or a double click ends it",
-            (Figure::Ring, 0) => "click the corners; Enter, a double click or the first corner closes it",
-            (Figure::Line, 1) => {
-                "click the next point; Enter or a double click ends the line, Backspace takes the last back"
-            }
-            (Figure::Ring, 1 | 2) => {
-                "click the next corner; from the third on Enter, a double click or the first corner closes it, Backspace takes the last back"
-            }
-            (Figure::Line, _) => "Enter or a double click ends the line",
-            (Figure::Ring, _) => "Enter, a double click or the first corner closes it",
+            (Figure::Line, 1) => "click the next point; Enter or a double click ends it",
+            (Figure::Line, _) => "Enter or a double click ends it; Backspace takes one back",
+            (Figure::Ring, 0) => "click the corners; the first, Enter or a double click closes it",
+            (Figure::Ring, 1 | 2) => "click the next; the first, Enter or a double click closes it",
+            (Figure::Ring, _) => "Enter, a double click or the first closes it; Backspace takes one back",
         }
     }
 
@@ -204,6 +200,11 @@ impl Pen {
     /// What was clicked, and where the pointer is.
     pub fn begun(&self) -> Vec<Mark> {
         self.marks.iter().chain(&self.pointer).cloned().collect()
+    }
+
+    /// The places that were clicked.
+    pub fn clicked(&self) -> impl Iterator<Item = &Mark> {
+        self.marks.iter()
     }
 
     /// The place that was drawn last.

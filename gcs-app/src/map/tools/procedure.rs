@@ -3,7 +3,7 @@
 use super::bands::{self, Band};
 use super::new_leg::{self, Aim, Side, choose_side, whose, words};
 use super::pen::{Figure, Mark, Pen};
-use super::trial::Trials;
+use super::trial::{Trial, Trials};
 use super::{Canvas, Card, Tool, Touch};
 use crate::command::{Queue, Selection};
 use crate::panels::{Scene, field};
@@ -17,6 +17,9 @@ use geometry::geodesy::normalise_360;
 
 /// Without a leg before it, the path comes from so far, metres.
 const FROM_M: f64 = 1000.0;
+
+/// It needs no bearing.
+const AS_WRITTEN: &str = "Enter leaves it as it was written";
 
 /// The tool.
 #[derive(Debug)]
@@ -94,23 +97,27 @@ impl Tool for PlaceProcedure {
                 "Procedure: there is none. Right-click legs and make a procedure of them first.".into(),
             );
         };
-        let (plan, mut place) = (scene.document.plan(), words(&aim, scene.document.plan()));
-        place.extend(whose(&aim, plan).map(|whose| format!(", in {whose}")));
-        let next = match (self.pen.last(), self.pen.pointer()) {
-            (None, _) => "click its anchor".into(),
-            (Some(_), None) => "click where it points; Enter leaves it as it was written".into(),
-            (Some(anchor), Some(to)) => {
-                format!(
-                    "bearing {}; Enter leaves it as it was written",
-                    units::bearing(anchor.bearing_deg(to.at))
-                )
+        let name = name(procedure);
+        // on a small map there is room for two lines
+        let trial = match self.trials.get() {
+            Some(Trial { fault: Some(fault), .. }) => {
+                return Some(format!("Procedure {name} can't be flown there: {fault}."));
             }
+            trial => trial.and_then(|trial| trial.cost_words(scene.units())),
         };
-        let trial = self.trials.get().map_or(String::new(), |trial| match &trial.fault {
-            Some(fault) => format!(" It can't be flown so: {fault}."),
-            None => trial.cost_words(scene.units()).map_or(String::new(), |cost| format!(" {cost}.")),
-        });
-        Some(format!("Procedure {} {place}: {next}.{trial}", name(procedure)))
+        let cost = trial.map_or(String::new(), |cost| format!(" {cost}."));
+        Some(match (self.pen.last(), self.pen.pointer()) {
+            (None, _) => {
+                let plan = scene.document.plan();
+                let whose = whose(&aim, plan).map_or(String::new(), |whose| format!(", in {whose}"));
+                format!("Procedure {name} {}{whose}: click its anchor.{cost}", words(&aim, plan))
+            }
+            (Some(_), None) => format!("Procedure {name}: click where it points; {AS_WRITTEN}.{cost}"),
+            (Some(anchor), Some(to)) => {
+                let bearing = units::bearing(anchor.bearing_deg(to.at));
+                format!("Procedure {name}: bearing {bearing}; {AS_WRITTEN}.{cost}")
+            }
+        })
     }
 
     fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {

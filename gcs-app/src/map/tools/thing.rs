@@ -212,13 +212,10 @@ impl Tool for DrawZone {
     }
 
     fn status(&self, _scene: &Scene<'_>) -> Option<String> {
-        let (figure, other) = match self.pen.figure() {
-            Figure::Circle => ("circle", "outline"),
-            _ => ("outline", "circle"),
-        };
+        let other = if self.pen.figure() == Figure::Circle { "outline" } else { "circle" };
         let (zone, hint) = (zone_name(self.kind), self.pen.hint());
         let other = if self.pen.may_change() { format!(" (Z: {other})") } else { String::new() };
-        Some(format!("{zone}, {figure}{other}: {hint}. Esc ends it."))
+        Some(format!("{zone}{other}: {hint}. Esc ends it."))
     }
 
     fn again(&mut self) {

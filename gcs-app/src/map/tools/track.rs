@@ -68,7 +68,7 @@ impl Track {
                     || way(from, to, scene.units()),
                     |trial| trial.words(from, to, scene.units()),
                 );
-                format!("Next leg: {words}. Backspace takes the last back, Enter or a double click ends it.")
+                format!("Next leg: {words}. Enter or a double click ends, Backspace takes one back.")
             }
         }
     }
@@ -89,7 +89,7 @@ impl Tool for Track {
             (false, _) => match (&self.pointer, self.approach) {
                 (Some(to), Some(at)) => self.next_in_words(at.from, to.at, scene),
                 _ => {
-                    "Draw legs: click where to fly next. Backspace takes the last back, Enter or a double click ends it.".into()
+                    "Click where to fly next. Enter or a double click ends, Backspace takes one back.".into()
                 }
             },
         })
