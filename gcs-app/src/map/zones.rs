@@ -54,6 +54,9 @@ fn draw_zone(sheet: &Sheet<'_>, zone: &Zone, (selected, colour): (bool, Color32)
 
 fn ask_name(sheet: &Sheet<'_>, zone: &Zone, (seen, selected, colour): (Rect, bool, Color32)) {
     let text = label(zone, sheet.scene.units());
+    // letters are thin: a fainter red could not be read in the light
+    let is_faulty = colour == sheet.p.warning;
+    let colour = if zone.kind == ZoneKind::KeepOut && !is_faulty { sheet.p.text } else { colour };
     let corners: Vec<Pos2> = match &zone.shape {
         ZoneShape::Polygon(corners) => corners.iter().map(|at| sheet.place(*at)).collect(),
         ZoneShape::Circle { .. } => Vec::new(),
