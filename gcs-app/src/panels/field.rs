@@ -1,10 +1,14 @@
 //! Fields: numbers with units, expressions, and buttons that must be held.
 
+mod list;
+
 use crate::theme;
 use crate::units::Unit;
 use egui::text::{CCursor, CCursorRange, LayoutJob, TextFormat};
 use egui::text_edit::TextEditState;
-use egui::{Color32, Context, DragValue, FontId, Id, Key, Response, RichText, Sense, Stroke, Ui, vec2};
+use egui::{
+    Color32, Context, DragValue, FontId, Id, IdSalt, Key, Response, RichText, Sense, Stroke, Ui, vec2,
+};
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
 
@@ -215,16 +219,11 @@ fn outcome<T>(response: &Response, value: T) -> Change<T> {
 /// A choice among several: the index of the one that was chosen now. A text that is too long is cut, and whole in the tooltip.
 pub fn choice(ui: &mut Ui, name: &str, options: &[&str], now: Option<usize>) -> Option<usize> {
     let shown = now.and_then(|now| options.get(now)).copied().unwrap_or("choose …");
-    let mut chosen = None;
+    let button = ui.make_persistent_id(IdSalt::new(("choice", name)));
     let width = (ui.available_width() - 8.0).clamp(40.0, 170.0);
     let combo = egui::ComboBox::from_id_salt(("choice", name)).width(width).truncate().selected_text(shown);
-    let response = combo.show_ui(ui, |ui| {
-        for (index, option) in options.iter().enumerate() {
-            if ui.selectable_label(now == Some(index), *option).clicked() && now != Some(index) {
-                chosen = Some(index);
-            }
-        }
-    });
+    let response = combo.show_ui(ui, |ui| list::show(ui, button, options, now));
+    let chosen = response.inner.flatten().filter(|chosen| now != Some(*chosen));
     let (name, enabled) = (name.to_owned(), ui.is_enabled());
     response.response.on_hover_text(shown).widget_info(move || {
         let mut info = egui::WidgetInfo::labeled(egui::Role::ComboBox, enabled, &name);

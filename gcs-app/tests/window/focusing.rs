@@ -1,6 +1,7 @@
 //! The keyboard alone: Tab goes through the window, and what has the keyboard is to be seen.
 
 use super::{SQUARE, Window};
+use egui::accesskit::Role;
 use egui::{Key, Modifiers, Rect, Shape};
 use egui_kittest::kittest::{NodeT, Queryable};
 
@@ -75,4 +76,36 @@ fn tab_leads_through_the_window_and_what_has_the_keyboard_is_seen() {
     ] {
         assert!(seen.iter().any(|label| label == name), "{name} among {seen:?}");
     }
+}
+
+/// Space or Enter opens it, arrows choose, Enter takes, Escape leaves it as it was.
+#[test]
+fn a_choice_is_made_by_keyboard() {
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.click("TF side2");
+    let before = window.plan();
+    let to =
+        |window: &Window| window.harness.get_by_role_and_label(Role::ComboBox, "To").accesskit_node().value();
+    let options = |window: &Window| window.harness.query_all_by_label("a position").count();
+    for (opens, keys, taken) in [
+        (Key::Space, vec![Key::ArrowDown, Key::Enter], "a position"),
+        (Key::Enter, vec![Key::ArrowUp, Key::Space], "a fix"),
+        (Key::Space, vec![Key::ArrowDown, Key::ArrowDown, Key::Escape], "a fix"),
+    ] {
+        window.harness.get_by_role_and_label(Role::ComboBox, "To").focus();
+        window.steps(2);
+        window.press(opens);
+        assert!(options(&window) > 0, "{opens:?} opens it");
+        assert_eq!(focused(&window).map(|(label, _)| label).as_deref(), to(&window).as_deref(), "{opens:?}");
+        for key in keys {
+            window.press(key);
+        }
+        assert_eq!(to(&window).as_deref(), Some(taken), "{opens:?}");
+        assert_eq!(options(&window), 0, "it is closed");
+        assert_eq!(window.selected(), "side2", "the keys go nowhere else");
+    }
+    window.press_ctrl(Key::Z);
+    window.press_ctrl(Key::Z);
+    assert_eq!(window.plan(), before);
 }
