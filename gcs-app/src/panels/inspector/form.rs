@@ -67,10 +67,13 @@ fn one_of(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
         let chosen = match alone {
             Some((Row::Property(property), [])) if !is_position(property) => {
                 let chosen = within(ui, WAY_WIDTH, |ui| field::choice(ui, &name, &labels, way));
-                let room = ui.available_width() - if place.is_some() { bind::WIDTH } else { 0.0 };
+                let room = room_before(ui, place.is_some());
                 (chosen, Some((property, within(ui, room, |ui| value::field(ui, page, property)))))
             }
-            _ => (field::choice(ui, &name, &labels, way), None),
+            _ => {
+                let room = room_before(ui, place.is_some());
+                (within(ui, room, |ui| field::choice(ui, &name, &labels, way)), None)
+            }
         };
         if let Some((leg, name)) = &place {
             bind::place(ui, page, leg, name);
@@ -107,6 +110,11 @@ fn variable(page: &Page<'_, '_>, inside: &[Row]) -> Option<String> {
 fn has_room(ui: &Ui, inside: &[Row]) -> bool {
     let is_number = matches!(inside, [Row::Property(property)] if matches!(property.kind, Kind::Value(_)));
     !is_number || ui.available_width() >= WAY_WIDTH + bind::NUMBER_WIDTH
+}
+
+/// What is left of the row before the button that binds a place, where there is one: beyond it the panel would cut it off.
+fn room_before(ui: &Ui, has_button: bool) -> f32 {
+    ui.available_width() - if has_button { bind::WIDTH } else { 0.0 }
 }
 
 fn within<R>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
