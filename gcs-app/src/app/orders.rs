@@ -104,16 +104,27 @@ impl App {
             DocumentCommand::LoadTheirs => self.load_theirs(),
             DocumentCommand::KeepMine => self.keep_mine(),
             DocumentCommand::Undo => {
+                let left = self.document.plan().clone();
                 if self.shelf.undo(&mut self.document) {
                     self.show_another();
+                    self.tell_of_turn(&left, ("Undone", "Redo (Ctrl+Y)"), now_s);
                 }
             }
             DocumentCommand::Redo => {
+                let left = self.document.plan().clone();
                 if self.shelf.redo(&mut self.document) {
                     self.show_another();
+                    self.tell_of_turn(&left, ("Redone", "Undo (Ctrl+Z)"), now_s);
                 }
             }
         }
+    }
+
+    /// Another plan is shown in the place of this one: what was done, and what leads back.
+    fn tell_of_turn(&mut self, left: &FlightPlan, (done, back): (&str, &str), now_s: f64) {
+        let (left, shown) = (&left.name, &self.document.plan().name);
+        let text = format!("{done}: the plan “{shown}” is shown. {back} brings “{left}” back");
+        self.toasts.add(now_s, Level::Info, text);
     }
 
     /// Says why it could not be made, or else what should be known of it.

@@ -102,3 +102,25 @@ fn what_is_typed_at_once_takes_the_place_of_the_name_and_not_of_the_format() {
     window.steps(2);
     assert_eq!(window.app().view().browsing.as_ref().unwrap().name, "mine.xml");
 }
+
+/// Another plan stood there, and nothing said why.
+#[test]
+fn undo_and_redo_that_lead_to_another_plan_say_so_and_what_leads_back() {
+    let mut window = window(SQUARE);
+    edit(&mut window);
+    let before = window.plan().name;
+    window.press_ctrl(Key::N);
+    window.click("Discard the changes");
+    let new = window.plan().name;
+    assert!(new != before && !window.shows("Undone") && !window.shows("Redone"));
+    window.press_ctrl(Key::Z);
+    assert_eq!(window.plan().name, before);
+    assert!(
+        window.shows(&format!("Undone: the plan “{before}” is shown. Redo (Ctrl+Y) brings “{new}” back"))
+    );
+    window.press_ctrl(Key::Y);
+    assert_eq!(window.plan().name, new);
+    assert!(
+        window.shows(&format!("Redone: the plan “{new}” is shown. Undo (Ctrl+Z) brings “{before}” back"))
+    );
+}
