@@ -5,6 +5,7 @@ use super::tools::{Asked, Canvas, new_leg};
 use crate::command::{PreviewCommand, Queue, Selection, ViewCommand};
 use crate::map::path;
 use crate::map::tools::pen::way;
+use crate::panels::leading;
 use crate::panels::tree::menu as tree_menu;
 use crate::panels::what_if::{self, CAUSES};
 use crate::panels::{Scene, tree};
@@ -13,7 +14,7 @@ use crate::units;
 use egui::containers::menu::menu_style;
 use egui::{Layout, Popup, PopupAnchor, PopupKind, Pos2, RichText, Ui, ViewportCommand};
 use flight_plan::create::{self, Drawn, LegChoice};
-use flight_plan::{Edit, Id, Place, Thing, Value, Variable, VariableValue};
+use flight_plan::{Edit, Id, LegContext, Place, Thing, Value, Variable, VariableValue};
 use geometry::LatLon;
 use new_leg::{Aim, Side};
 
@@ -89,6 +90,9 @@ fn which(ui: &mut Ui, canvas: &Canvas<'_>, things: &[Selection], queue: &mut Que
 
 /// True if something is to be pasted here.
 fn here(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) -> bool {
+    legs_here(canvas.scene, &opened.things)
+        .iter()
+        .for_each(|leg| leading::direct(ui, canvas.scene, leg, queue));
     for thing in &opened.things {
         ui.menu_button(name(canvas.scene, thing), |ui| with(ui, canvas.scene, thing, queue));
     }
@@ -115,6 +119,21 @@ fn here(ui: &mut Ui, canvas: &Canvas<'_>, opened: &Opened, queue: &mut Queue) ->
     place_is_here(ui, canvas.scene, opened.place, queue);
     what_is_here(ui, canvas, opened.place);
     pastes
+}
+
+/// The aircraft is led to so many legs here.
+const MOST: usize = 4;
+
+/// The legs here, and those that go to a fix here.
+fn legs_here(scene: &Scene<'_>, things: &[Selection]) -> Vec<Id> {
+    let Some(aboard) = &scene.vehicle.aboard else { return Vec::new() };
+    let is_here = |context: &LegContext<'_>| match context.leg.place() {
+        _ if things.contains(&Selection::Leg(context.leg.id.clone())) => true,
+        Some(Place::Fix(fix)) => things.contains(&Selection::Fix(fix.clone())),
+        _ => false,
+    };
+    let legs = aboard.plan.all_legs().into_iter().filter(is_here);
+    legs.map(|context| context.leg.id.clone()).take(MOST).collect()
 }
 
 /// What can be done with a thing.

@@ -71,6 +71,21 @@ pub fn all(scene: &Scene<'_>) -> Vec<(String, Command)> {
     legs.chain(landings).collect()
 }
 
+/// Where a place was pointed at: by the leg's name.
+pub fn direct(ui: &mut Ui, scene: &Scene<'_>, leg: &Id, queue: &mut Queue) {
+    let Some(command) = to(scene, leg) else { return };
+    let name = scene.vehicle.name_of(leg);
+    let text = match command {
+        Command::ReturnToMain { .. } => format!("Return to the main plan at {name}…"),
+        _ => format!("Direct to {name}…"),
+    };
+    if ui.button(text).on_hover_text(ASKS).clicked() {
+        queue.consider(command);
+    }
+}
+
+const ASKS: &str = "Shows what would follow, then asks";
+
 /// The button for it, which asks what would follow; true if it was clicked.
 pub fn button(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) -> bool {
     let Some(command) = to(scene, id) else { return false };
@@ -80,7 +95,7 @@ pub fn button(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) -> boo
         _ if is_leg => "Go to this leg…",
         _ => "Land now: go to this landing…",
     };
-    let clicked = ui.button(text).on_hover_text("Shows what would follow, then asks").clicked();
+    let clicked = ui.button(text).on_hover_text(ASKS).clicked();
     if clicked {
         queue.consider(command);
     }

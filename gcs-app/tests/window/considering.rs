@@ -450,3 +450,17 @@ fn in_an_emergency_one_command_leads_to_a_leg() {
     let asked = std::iter::from_fn(|| window.asked()).last();
     assert_eq!(asked.map(|(_, call)| call), Some(Call::Foresee(Some(back))));
 }
+
+/// It was two menus away, and a fix had none.
+#[test]
+fn what_is_pointed_at_on_the_map_is_led_to_directly_once_what_follows_was_shown() {
+    let mut window = flying_its_plan();
+    let side3 = window.centre("Fix C");
+    window.right_click_at(side3);
+    window.click("Direct to side3…");
+    let asked = std::iter::from_fn(|| window.asked()).map(|(_, call)| call);
+    let asked: Vec<Call> =
+        asked.filter(|call| matches!(call, Call::Foresee(Some(_)) | Call::Plan(_))).collect();
+    assert_eq!(asked, [Call::Foresee(Some(Command::GoTo { leg: "side3".into() }))], "nothing is done yet");
+    assert!(window.shows("Looking ahead"));
+}
