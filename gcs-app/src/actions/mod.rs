@@ -9,6 +9,7 @@ pub mod answers;
 pub mod bindings;
 pub mod flight;
 pub mod fuzzy;
+pub mod layers;
 pub mod offers;
 pub mod places;
 mod table;

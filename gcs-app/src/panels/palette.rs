@@ -3,7 +3,8 @@
 use super::{Scene, field};
 use crate::actions::fuzzy::Score;
 use crate::actions::{
-    Action, Fittings, Kind, aliases, all, alternates, answers, bindings, flight, fuzzy, offers, places,
+    Action, Fittings, Kind, aliases, all, alternates, answers, bindings, flight, fuzzy, layers, offers,
+    places,
 };
 use crate::command::{Queue, ViewCommand};
 use crate::theme;
@@ -190,7 +191,8 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
 fn of_the_moment(query: &str, scene: &Scene<'_>) -> Vec<Action> {
     let connect = flight::connect_to(query, scene).into_iter().collect();
     let plan = [alternates::of(scene), bindings::of(scene), offers::of(scene)].concat();
-    [plan, flight::of(scene), connect, answers::of(scene), places::of(scene.document)].concat()
+    let shown = [layers::of(scene), places::of(scene.document)].concat();
+    [plan, flight::of(scene), connect, answers::of(scene), shown].concat()
 }
 
 /// All that one query or another finds.

@@ -119,6 +119,12 @@ fn a_map_that_is_dropped_is_shown_and_remembered() {
     let mut window = window();
     drop_file(&mut window, &path);
     window.until("a tile", |app| app.layers().iter().any(|layer| app.map().pictures_of(layer.id) == 1));
+    let is_shown = |window: &Window| window.app().layers().iter().all(|layer| layer.kept.shown);
+    for (words, shown) in [("hide the layer world", false), ("show the layer world", true)] {
+        window.ask_for(words);
+        window.press(Key::Enter);
+        assert_eq!(is_shown(&window), shown, "{words}");
+    }
     let mut next = Memory::of(&mut window).window();
     next.until("a tile", |app| app.layers().iter().any(|layer| app.map().pictures_of(layer.id) == 1));
     next.click("Legwork");
