@@ -43,7 +43,7 @@ pub fn line(painter: &Painter, path: &[Pos2], (stroke, style): (Stroke, Style)) 
     }
 }
 
-/// What the looks mean, and on how much of the path.
+/// What the looks mean, and on how much of the path once all of it is worked out: shares of a few points would say nothing of it.
 pub fn legend(ui: &mut Ui, coverage: &Coverage) {
     let p = theme::of(ui);
     // nothing there is clicked: rows hardly higher than their text
@@ -54,9 +54,15 @@ pub fn legend(ui: &mut Ui, coverage: &Coverage) {
             let (rect, _) = ui.allocate_exact_size(vec2(34.0, 12.0), Sense::hover());
             let ends = [rect.left_center(), rect.right_center()];
             line(ui.painter(), &ends, look(Some(reach), p));
-            let text = format!("{}: {:.0} %", reach_name(reach), coverage.share(reach) * 100.0);
-            ui.label(RichText::new(text).size(11.5).color(p.text));
+            ui.label(RichText::new(words(reach, coverage)).size(11.5).color(p.text));
         });
+    }
+}
+
+fn words(reach: Reach, coverage: &Coverage) -> String {
+    match coverage.is_complete() {
+        true => format!("{}: {:.0} %", reach_name(reach), coverage.share(reach) * 100.0),
+        false => reach_name(reach).into(),
     }
 }
 
@@ -80,7 +86,10 @@ mod tests {
         let mut coverage = Coverage::of(&Forecast { points: points.clone(), ..Forecast::default() });
         // three points: the first, then the last
         coverage.push(None);
+        let said = |coverage: &Coverage| words(Reach::Out, coverage);
+        assert!(!said(&coverage).contains('%'), "a part of it: {}", said(&coverage));
         coverage.push(Some((Reach::Out, Cause::Engine)));
+        assert!(said(&coverage).ends_with(": 100 %"), "{}", said(&coverage));
         let parts = parts(&points, &coverage);
         let found: Vec<_> = parts.iter().map(|(reach, part)| (*reach, part.len())).collect();
         assert_eq!(found, [(None, 11), (Some(Reach::Out), 6)]);

@@ -3,7 +3,7 @@
 
 pub mod aircraft;
 pub mod basemap;
-mod chips;
+pub mod chips;
 pub mod clipboard;
 pub mod coverage;
 mod draw;

@@ -4,7 +4,7 @@
 use super::Scene;
 use crate::command::{DocumentCommand, Queue, ViewCommand};
 use crate::jobs::Job;
-use crate::map::tool_chip;
+use crate::map::{chips, tool_chip};
 use crate::state::Level;
 use crate::state::toasts::Toast;
 use crate::theme;
@@ -18,6 +18,8 @@ use egui::{
 const WIDTH: f32 = 320.0;
 /// Clear of the corner, where the map names its sources.
 const MARGIN: egui::Vec2 = vec2(10.0, 30.0);
+/// From the lowest one to what the map says below it, screen points.
+const BETWEEN: f32 = 6.0;
 /// Least height of the room for one.
 const HEIGHT: f32 = 44.0;
 
@@ -35,6 +37,7 @@ pub fn show(ui: &Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     if is_in_the_way(ui, id) {
         return;
     }
+    let room = above_chips(ui, room);
     // the newest where there is no room for all
     let fit = ((room.height() - 2.0 * MARGIN.y) / HEIGHT).max(1.0) as usize;
     let toasts = toasts.get(toasts.len().saturating_sub(fit.saturating_sub(jobs.len()).max(1))..);
@@ -51,6 +54,13 @@ pub fn show(ui: &Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
             }
         }
     });
+}
+
+/// The room above what the map says in that corner.
+fn above_chips(ui: &Ui, room: Rect) -> Rect {
+    let chips = chips::shown(ui.ctx()).filter(|chips| chips.is_positive() && room.intersects(*chips));
+    let above = chips.map(|chips| room.with_max_y(chips.top() + MARGIN.y - BETWEEN));
+    above.filter(|above| above.height() > HEIGHT + 2.0 * MARGIN.y).unwrap_or(room)
 }
 
 /// Somebody draws there: they come again when the pointer has gone.
