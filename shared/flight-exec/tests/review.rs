@@ -609,27 +609,6 @@ fn a_glide_that_ends_in_a_hill() {
     assert!(poor.iter().any(|p| p.code == "glide-out-of-reach"), "{:?}", shown(&poor));
 }
 
-/// To name the fallback for an engine failure changes what counts, not what is flown: the two figures can be compared.
-#[test]
-fn an_alternate_that_is_named_says_how_it_would_count_unnamed() {
-    let out_of_glide = |document: &str| {
-        let found = verdict_over(document.as_bytes());
-        found.into_iter().find(|p| p.code == "glide-out-of-reach").unwrap().message
-    };
-    let unnamed = String::from_utf8(rectangle("", "")).unwrap();
-    let named = unnamed.replace(
-        r#"<mainPlan emergency="home">"#,
-        r#"<mainPlan emergency="home"><emergency cause="engine" plan="home"/>"#,
-    );
-    let (unnamed, named) = (out_of_glide(&unnamed), out_of_glide(&named));
-    let share = unnamed.split(" % of the flight").next().and_then(|text| text.rsplit(' ').next()).unwrap();
-    assert!(unnamed.contains("so a glide straight to the runway counts"), "{unnamed}");
-    // as What if calls them
-    let along = "by a glide along all of it";
-    let straight = format!("by a glide straight to the runway it is {share} %");
-    assert!(named.contains(along) && named.contains(&straight), "{unnamed}\n{named}");
-}
-
 /// The same margin is the same word as in What if: the greater it is asked to be, the first ones to lose theirs are just reached.
 #[test]
 fn a_glide_that_only_lacks_its_margin_is_just_reached() {

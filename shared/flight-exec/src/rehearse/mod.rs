@@ -4,6 +4,7 @@
 //! will be sent.
 
 mod changes;
+mod engine_out;
 mod equivalence;
 mod flight;
 mod glide;
@@ -15,9 +16,11 @@ mod start;
 mod what_if;
 
 pub use aircraft::glide::GlidePoint;
+pub(crate) use engine_out::Best;
+pub use engine_out::{Glide, Reach, is_near_runway};
 pub(crate) use glide::{names_engine, route};
 pub(crate) use rehearsal::end_in_ground;
-pub use rehearsal::{Diversion, Glide, Glided, Kept, Powered, Reach, Rehearsal, glide_instead};
+pub use rehearsal::{Diversion, Glided, Kept, Powered, Rehearsal, glide_instead};
 pub use scenario::{Act, Scenario, Trigger, When};
 pub use start::Start;
 pub use what_if::WhatIf;

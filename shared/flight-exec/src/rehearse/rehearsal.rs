@@ -14,7 +14,7 @@
 mod diversion;
 
 pub(crate) use diversion::end_in_ground;
-pub use diversion::{Diversion, Glide, Glided, Powered, Reach, glide_instead};
+pub use diversion::{Diversion, Glided, Powered, glide_instead};
 
 use super::changes::{Changes, reads_flight};
 use super::equivalence::are_equivalent;

@@ -2,7 +2,6 @@
 
 use super::View;
 use super::flown::Flown;
-use crate::rehearse::route;
 use aircraft::{Profile, Wind};
 use flight_plan::{EmergencyPlan, Id, Runway};
 use geometry::LatLon;
@@ -14,8 +13,6 @@ pub(super) struct Alternate<'a> {
     /// Where it is entered, and how high, metres AMSL.
     pub entry: LatLon,
     pub entry_amsl_m: f64,
-    /// Where it leads from there to the threshold, without the laps of holdings.
-    pub route: Vec<LatLon>,
     /// Energy from the entry to the landing, joules.
     pub energy_j: f64,
     /// How high the home is from which it was flown, metres AMSL.
@@ -70,7 +67,6 @@ fn alternate<'a>(view: &'a View, index: usize, flown: &Flown) -> Option<Alternat
         runway,
         entry: entry.waypoint.position,
         entry_amsl_m: entry.wanted_amsl_m,
-        route: route(view.program, plan, runway, &view.variables),
         energy_j: landed.used_j - entered.used_j,
         home_m: flown.home_m,
     })

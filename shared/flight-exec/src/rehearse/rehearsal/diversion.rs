@@ -4,25 +4,20 @@
 //! aboard. Where the engine fails the plan is also flown without it, and judged by where that ends; where it might, the glide is worked
 //! out beside it.
 
+use super::super::engine_out::{AT_RUNWAY_M, Air, Glide, Reach};
 use super::super::flight::{Circumstances, Flight};
 use super::super::scenario::{Act, Trigger, When};
 use super::super::situation::Situation;
-use super::super::{LegPassage, Preview, PreviewError, TrackPoint, names_engine, route};
+use super::super::{LegPassage, Preview, PreviewError, TrackPoint, names_engine};
 use super::{Flown, Rehearsal};
 use crate::api::{Branching, Command};
 use crate::layout::homeward::end_of;
 use crate::layout::path::distance_and_course;
-use aircraft::glide::{GlidePoint, GlideStart, glide};
+use aircraft::glide::{GlidePoint, GlideStart};
 use aircraft::{Profile, Winds};
 use flight_plan::{Cause, EmergencyPlan, FlightPlan, Id, Program, Runway, StageKind, Variables};
-use geometry::{LatLon, PathElement};
+use geometry::LatLon;
 use terrain::Terrain;
-
-/// Distance between points of a glide, metres, and the most of them between two places.
-const SPACING_M: f64 = 150.0;
-const MAX_SAMPLES: f64 = 500.0;
-/// So near to an end of a runway the ground is the runway's.
-const AT_RUNWAY_M: f64 = 400.0;
 
 /// An engine that has failed is noticed aboard so much later, seconds: it is told once a second, and has stood for a second then.
 const NOTICED_S: f64 = 2.0;
@@ -75,32 +70,6 @@ pub struct Glided {
     pub missed_m: f64,
 }
 
-/// A glide to a runway.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Glide {
-    /// Along the emergency plan, which names the cause `engine`; else straight, for that plan was made for a flight with an engine.
-    pub along_plan: bool,
-    /// To the threshold, or to where it ends in the ground; empty, if the wind does not let it get there.
-    pub path: Vec<GlidePoint>,
-    /// From the failure to the threshold, seconds; infinite, if the wind does not let it get there.
-    pub time_s: f64,
-    /// Height above the threshold with which it arrives, metres; what is lacking, if it is negative.
-    pub margin_m: f64,
-    /// Where it runs into a hill.
-    pub hill: Option<LatLon>,
-}
-
-/// How a way out ends, the worst first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Reach {
-    /// Not on the runway.
-    Out,
-    /// On the runway, but less than the reserve is left.
-    Tight,
-    /// On the runway with the reserve.
-    Good,
-}
-
 /// A point of a flight at which an alarm is raised.
 struct Here<'a> {
     rehearsal: &'a Rehearsal,
@@ -121,13 +90,17 @@ impl Rehearsal {
         Here::of(self, time_s)?.diversion(cause)
     }
 
+    /// What the stage is for that the last flight is in so many seconds after its start.
+    pub fn stage_at(&self, time_s: f64) -> Option<StageKind> {
+        let Here { flown, leg, .. } = Here::of(self, time_s)?;
+        Some(flown.program.stage(&flown.program.path(&leg)?)?.kind)
+    }
+
     /// How the worst alarm would end so many seconds after the start, and which that is; `None`: nothing was flown, or the aircraft
     /// is taking off or landing then. The reserves are those of [`Diversion::reach`].
     pub fn worst(&self, time_s: f64, glide_m: f64, energy_share: f64) -> Option<(Reach, Cause)> {
         let here = Here::of(self, time_s)?;
-        let program = &here.flown.program;
-        let kind = program.stage(&program.path(&here.leg)?)?.kind;
-        if matches!(kind, StageKind::TakeOff | StageKind::Land) {
+        if matches!(self.stage_at(time_s)?, StageKind::TakeOff | StageKind::Land) {
             return None;
         }
         let mut worst = (here.diversion(Cause::Engine)?.reach(glide_m, energy_share), Cause::Engine);
@@ -212,26 +185,19 @@ impl<'a> Here<'a> {
 
     /// Over the ground, to the end at which there is more to spare.
     fn straight_m(&self, named: &Runway) -> Option<f64> {
-        let Rehearsal { profile, winds, terrain, .. } = self.rehearsal;
-        let plan = &self.flown.program.plan;
-        let wind = winds.at(named.elevation_amsl_m);
-        let drawn = plan.runways.iter().map(end_of);
-        let other = end_of(named).other(profile, wind, drawn, |place| terrain.elevation_m(place));
-        let other =
-            other.map(|end| Runway { elevation_amsl_m: end.elevation_amsl_m, ..named.from_other_end() });
-        let arrives_m = |runway: &Runway| {
-            let points = glide(profile, *winds, self.start, &[runway.threshold], runway.heading_deg);
-            let glide = Glide::of(false, points, runway, terrain.as_ref());
-            glide.hill.is_none().then_some(glide.margin_m).filter(|metres| metres.is_finite())
-        };
-        [Some(named), other.as_ref()].into_iter().flatten().filter_map(arrives_m).reduce(f64::max)
+        let glides = Glide::straight(&self.flown.program, self.air(), self.start, (named, true));
+        glides.iter().filter_map(Glide::arrives_m).reduce(f64::max)
     }
 
     fn glide(&self, (plan, runway): Answer) -> Glide {
-        let (program, rehearsal) = (&self.flown.program, self.rehearsal);
-        let named = names_engine(program, &self.leg);
-        let (winds, terrain) = (rehearsal.winds, rehearsal.terrain.as_ref());
-        glide_home(program, (&rehearsal.profile, winds, terrain), self.start, (plan, runway), named)
+        let program = &self.flown.program;
+        let way = (plan, runway, names_engine(program, &self.leg));
+        Glide::home(program, self.air(), &Variables::initial(program.flown()), self.start, way)
+    }
+
+    fn air(&self) -> Air<'_> {
+        let Rehearsal { profile, winds, terrain, .. } = self.rehearsal;
+        (profile, *winds, terrain.as_ref())
     }
 }
 
@@ -252,7 +218,8 @@ pub fn glide_instead(
     let choice =
         program.emergency_choice(&leg, Cause::Engine).and_then(|choice| choice.plan_for(Cause::Engine));
     let named = names_engine(program, &leg) && choice == Some(&plan.id);
-    let glide = glide_home(program, (profile, winds.into(), terrain), start, (plan, runway), named);
+    let (air, variables) = ((profile, winds.into(), terrain), Variables::initial(program.flown()));
+    let glide = Glide::home(program, air, &variables, start, (plan, runway, named));
     Some((runway.id.clone(), glide))
 }
 
@@ -262,20 +229,6 @@ const JUST_BEFORE_S: f64 = 1.0;
 fn answer<'p>(program: &'p Program, plan: &Id) -> Option<Answer<'p>> {
     let plan = program.flown().emergency_plans.iter().find(|other| other.id == *plan)?;
     Some((plan, program.plan.runway(&plan.runway)?))
-}
-
-/// `named`: the plan is named for an engine failure, and all of it is glided along.
-fn glide_home(
-    program: &Program,
-    (profile, winds, terrain): (&Profile, Winds, &dyn Terrain),
-    start: GlideStart,
-    (plan, runway): Answer,
-    named: bool,
-) -> Glide {
-    let variables = Variables::initial(program.flown());
-    let way = if named { route(program, plan, runway, &variables) } else { vec![runway.threshold] };
-    let points = glide(profile, winds, start, &way, runway.heading_deg);
-    Glide::of(named, points, runway, terrain)
 }
 
 impl Flown {
@@ -303,7 +256,7 @@ impl Diversion {
     pub fn reach(&self, glide_m: f64, energy_share: f64) -> Reach {
         if self.cause == Cause::Engine {
             let along = self.glide.as_ref().map_or(Reach::Out, |glide| glide.reach(glide_m));
-            let straight = self.straight_m.map_or(Reach::Out, |metres| reach_by_height(metres, glide_m));
+            let straight = self.straight_m.map_or(Reach::Out, |metres| Reach::by_height(metres, glide_m));
             return reach_glided(along.max(straight), self.glided.as_ref());
         }
         reach_powered(&self.powered, energy_share)
@@ -342,35 +295,6 @@ fn reach_powered(powered: &Result<Powered, String>, energy_share: f64) -> Reach 
     match powered {
         Ok(flown) if flown.landed && flown.battery_left >= energy_share => Reach::Good,
         Ok(flown) if flown.landed => Reach::Tight,
-        _ => Reach::Out,
-    }
-}
-
-impl Glide {
-    fn of(along_plan: bool, points: Option<Vec<GlidePoint>>, runway: &Runway, terrain: &dyn Terrain) -> Self {
-        let arrives = points.as_ref().and_then(|points| points.last().copied());
-        let (path, hill) = until_ground(points.unwrap_or_default(), runway, terrain);
-        Self {
-            along_plan,
-            path,
-            hill,
-            time_s: arrives.map_or(f64::INFINITY, |last| last.time_s),
-            margin_m: arrives
-                .map_or(f64::NEG_INFINITY, |last| last.altitude_amsl_m - runway.elevation_amsl_m),
-        }
-    }
-
-    /// How it ends; the reserve is a height above the threshold, metres.
-    pub fn reach(&self, reserve_m: f64) -> Reach {
-        if self.hill.is_some() { Reach::Out } else { reach_by_height(self.margin_m, reserve_m) }
-    }
-}
-
-/// By the height above the threshold, and the reserve of that, metres.
-fn reach_by_height(over_m: f64, reserve_m: f64) -> Reach {
-    match over_m {
-        over_m if over_m >= reserve_m => Reach::Good,
-        over_m if over_m >= 0.0 => Reach::Tight,
         _ => Reach::Out,
     }
 }
@@ -457,35 +381,4 @@ fn ground_m(place: LatLon, (runway, own_m): (&Runway, f64), terrain: &dyn Terrai
     let near = ends.into_iter().any(|end| distance_and_course(place, end).0 < AT_RUNWAY_M)
         || strip.beside_m(place) < TOLERANCE_M;
     terrain.elevation_m(place).filter(|_| !near).unwrap_or(own_m)
-}
-
-/// A glide in small steps, up to where it is in the ground: short of the runway, or in a hill, which is given.
-fn until_ground(
-    places: Vec<GlidePoint>,
-    runway: &Runway,
-    terrain: &dyn Terrain,
-) -> (Vec<GlidePoint>, Option<LatLon>) {
-    let mut path: Vec<GlidePoint> = places.first().copied().into_iter().collect();
-    for (from, to) in places.iter().zip(places.iter().skip(1)) {
-        let way = PathElement::Line { from: from.position, to: to.position };
-        let (length_m, _) = distance_and_course(from.position, to.position);
-        let samples = (length_m / SPACING_M).ceil().clamp(1.0, MAX_SAMPLES);
-        for sample in 1..=samples as u32 {
-            let share = f64::from(sample) / samples;
-            let point = GlidePoint {
-                time_s: from.time_s + share * (to.time_s - from.time_s),
-                position: way.point_at(length_m * share),
-                altitude_amsl_m: from.altitude_amsl_m + share * (to.altitude_amsl_m - from.altitude_amsl_m),
-            };
-            path.push(point);
-            let near = distance_and_course(point.position, runway.threshold).0 < AT_RUNWAY_M;
-            let ground_m = terrain.elevation_m(point.position).filter(|_| !near);
-            if point.altitude_amsl_m < ground_m.unwrap_or(runway.elevation_amsl_m) {
-                // below the runway it would have ended in any ground
-                let is_hill = !near && point.altitude_amsl_m > runway.elevation_amsl_m;
-                return (path, is_hill.then_some(point.position));
-            }
-        }
-    }
-    (path, None)
 }
