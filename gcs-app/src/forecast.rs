@@ -17,7 +17,7 @@ mod underway;
 mod worker;
 
 pub use aboard::Aboard;
-pub use coverage::Coverage;
+pub use coverage::{Coverage, Ending};
 pub use left_out::LeftOut;
 pub use line::Line;
 pub use outline::{Heights, Outline, Places};

@@ -1,8 +1,8 @@
 //! How alarms would end, all along a path.
 
 use super::Forecast;
-use flight_exec::rehearse::Reach;
-use flight_plan::Cause;
+use flight_exec::rehearse::{Reach, is_near_runway};
+use flight_plan::{Cause, StageKind};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,6 +14,24 @@ const MAX_POINTS: f64 = 150.0;
 /// One point in so many is found out first, then those halfway between, and so on. A power of two.
 const COARSEST: usize = 8;
 
+/// How the worst alarm would end at a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ending {
+    /// How.
+    pub reach: Reach,
+    /// Which alarm that is.
+    pub cause: Cause,
+    /// What is being flown there.
+    pub stage: StageKind,
+}
+
+impl Ending {
+    /// An engine failure near the runway: there no plan makes it end better, and no problem is told of it.
+    fn is_engine_near_runway(&self) -> bool {
+        self.cause == Cause::Engine && is_near_runway(self.stage)
+    }
+}
+
 /// How the worst alarm would end at points of a path that are equally far apart in time. It grows as it is worked out, from coarse
 /// to fine.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +39,7 @@ pub struct Coverage {
     every_s: f64,
     /// The points in the order in which they are found out.
     order: Arc<[usize]>,
-    known: BTreeMap<usize, Option<(Reach, Cause)>>,
+    known: BTreeMap<usize, Option<Ending>>,
 }
 
 impl Coverage {
@@ -45,7 +63,7 @@ impl Coverage {
     }
 
     /// The answer for that point; `None`: the aircraft is on the runway, or about to be.
-    pub fn push(&mut self, worst: Option<(Reach, Cause)>) {
+    pub fn push(&mut self, worst: Option<Ending>) {
         if let Some(point) = self.next() {
             self.known.insert(point, worst);
         }
@@ -63,7 +81,7 @@ impl Coverage {
 
     /// How the worst alarm would end at a time, and which that is, as finely as that is known; `None` where it is not known or not
     /// asked.
-    pub fn at(&self, time_s: f64) -> Option<(Reach, Cause)> {
+    pub fn at(&self, time_s: f64) -> Option<Ending> {
         let point = (time_s / self.every_s).max(0.0) as usize;
         let coarser = std::iter::successors(Some(1), |step| (*step < COARSEST).then_some(step * 2));
         let mut nearest = coarser.map(|step| point - point % step);
@@ -72,9 +90,22 @@ impl Coverage {
 
     /// Share of the points judged that end like this, 0..=1.
     pub fn share(&self, reach: Reach) -> f64 {
+        self.share_of(|ending| ending.reach == reach)
+    }
+
+    /// What of that share is nothing but an engine failure near the runway, 0..=1, and the kinds of stages there, in the order of a flight.
+    pub fn near_runway(&self, reach: Reach) -> (f64, Vec<StageKind>) {
+        let is_near = |ending: &Ending| ending.reach == reach && ending.is_engine_near_runway();
+        let flown = [StageKind::Departure, StageKind::Arrival, StageKind::Approach];
+        let is_there =
+            |kind: &StageKind| self.share_of(|ending| is_near(ending) && ending.stage == *kind) > 0.0;
+        (self.share_of(is_near), flown.into_iter().filter(is_there).collect())
+    }
+
+    fn share_of(&self, is_meant: impl Fn(&Ending) -> bool) -> f64 {
         let judged = self.known.values().flatten();
         let all = judged.clone().count().max(1);
-        judged.filter(|(r, _)| *r == reach).count() as f64 / all as f64
+        judged.filter(|ending| is_meant(ending)).count() as f64 / all as f64
     }
 }
 
@@ -98,7 +129,8 @@ mod tests {
     #[test]
     fn it_grows_from_coarse_to_fine_to_the_whole_path() {
         let mut coverage = Coverage::of(&forecast(62.0));
-        let (out, good) = (Some((Reach::Out, Cause::Engine)), Some((Reach::Good, Cause::Link)));
+        let ending = |reach, cause| Some(Ending { reach, cause, stage: StageKind::Mission });
+        let (out, good) = (ending(Reach::Out, Cause::Engine), ending(Reach::Good, Cause::Link));
         let mut times = Vec::new();
         for answer in [None, out, good, good] {
             times.extend(coverage.next_s());

@@ -1,12 +1,10 @@
 //! From a plan to its forecast, by flying it with the code that flies it aboard; from plan to plan only what has changed.
 
-use super::{Alarm, Forecast, Outline, Passage, Point, Shared, left_out};
+use super::{Alarm, Ending, Forecast, Outline, Passage, Point, Shared, left_out};
 use aircraft::{Autopilot, Profile, Winds};
-use flight_exec::rehearse::{
-    Diversion, Kept, Options, Preview, PreviewError, Reach, Rehearsal, Start, WhatIf,
-};
+use flight_exec::rehearse::{Diversion, Kept, Options, Preview, PreviewError, Rehearsal, Start, WhatIf};
 use flight_exec::review::Margins;
-use flight_plan::{Cause, FlightPlan, Id, Program};
+use flight_plan::{FlightPlan, Id, Program};
 use geometry::LocalFrame;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -63,9 +61,10 @@ impl Forecaster {
     }
 
     /// How the worst alarm would end at a time of the last flight.
-    pub fn worst(&self, time_s: f64) -> Option<(Reach, Cause)> {
+    pub fn worst(&self, time_s: f64) -> Option<Ending> {
         let Margins { glide_m, energy_share, .. } = Margins::default();
-        self.rehearsal.worst(time_s, glide_m, energy_share)
+        let (reach, cause) = self.rehearsal.worst(time_s, glide_m, energy_share)?;
+        Some(Ending { reach, cause, stage: self.rehearsal.stage_at(time_s)? })
     }
 
     /// From now on in this world.

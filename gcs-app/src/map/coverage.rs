@@ -22,7 +22,7 @@ pub fn look(reach: Option<Reach>, p: &Palette) -> (Stroke, Style) {
 
 /// The path in parts that end alike, each with the first point of the next so that the line has no gap.
 pub fn parts<'a>(points: &'a [Point], coverage: &Coverage) -> Vec<(Option<Reach>, &'a [Point])> {
-    let reach = |point: &Point| coverage.at(point.time_s).map(|(reach, _)| reach);
+    let reach = |point: &Point| coverage.at(point.time_s).map(|ending| ending.reach);
     let reaches: Vec<Option<Reach>> = points.iter().map(reach).collect();
     let mut first = 0;
     let parts = reaches.chunk_by(|a, b| a == b).filter_map(|same| {
@@ -54,23 +54,77 @@ pub fn legend(ui: &mut Ui, coverage: &Coverage) {
             let (rect, _) = ui.allocate_exact_size(vec2(34.0, 12.0), Sense::hover());
             let ends = [rect.left_center(), rect.right_center()];
             line(ui.painter(), &ends, look(Some(reach), p));
-            ui.label(RichText::new(words(reach, coverage)).size(11.5).color(p.text));
+            ui.label(RichText::new(words(coverage, reach)).size(11.5).color(p.text));
         });
     }
 }
 
-fn words(reach: Reach, coverage: &Coverage) -> String {
-    match coverage.is_complete() {
-        true => format!("{}: {:.0} %", reach_name(reach), coverage.share(reach) * 100.0),
-        false => reach_name(reach).into(),
+/// `not reached: 10 %, all of it on departure and approach`: there no problem is told of it, for nothing helps.
+fn words(coverage: &Coverage, reach: Reach) -> String {
+    if !coverage.is_complete() {
+        return reach_name(reach).into();
+    }
+    let share = coverage.share(reach);
+    let (near, kinds) = coverage.near_runway(reach);
+    let of_all = format!("{}: {:.0} %", reach_name(reach), share * 100.0);
+    if reach == Reach::Good || kinds.is_empty() {
+        return of_all;
+    }
+    let names: Vec<String> = kinds.into_iter().map(|kind| kind.name().to_lowercase()).collect();
+    let (names, elsewhere) = (in_a_row(&names), share - near);
+    match elsewhere > 0.0 {
+        true => format!("{of_all}, {:.0} % of it not on {names}", 100.0 * elsewhere / share),
+        false => format!("{of_all}, all of it on {names}"),
+    }
+}
+
+/// `departure, arrival and approach`.
+fn in_a_row(names: &[String]) -> String {
+    match names {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        _ => names.concat(),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::forecast::Ending;
     use crate::forecast::Forecast;
-    use flight_plan::Cause;
+    use flight_plan::{Cause, StageKind};
+
+    fn out(stage: StageKind) -> Option<Ending> {
+        Some(Ending { reach: Reach::Out, cause: Cause::Engine, stage })
+    }
+
+    /// A green plan showed a path that is partly red, and nobody said why.
+    #[test]
+    fn what_is_out_of_reach_near_the_runway_is_said_apart() {
+        let point = |time_s: f64| Point {
+            time_s,
+            distance_m: 0.0,
+            position: geometry::LatLon::new(0.0, 0.0),
+            altitude_amsl_m: 0.0,
+            ground_amsl_m: None,
+            passage: 0,
+        };
+        let said = |endings: [Option<Ending>; 4]| {
+            let points = vec![point(0.0), point(19.0)];
+            let mut coverage = Coverage::of(&Forecast { points, ..Forecast::default() });
+            endings.into_iter().for_each(|ending| coverage.push(ending));
+            words(&coverage, Reach::Out)
+        };
+        let good = |stage| Some(Ending { reach: Reach::Good, cause: Cause::Link, stage });
+        let (mission, leaves, comes) = (StageKind::Mission, StageKind::Departure, StageKind::Approach);
+        assert_eq!(said([good(mission), None, good(comes), good(leaves)]), "not reached: 0 %");
+        let all = said([good(mission), out(leaves), out(comes), good(mission)]);
+        assert_eq!(all, "not reached: 50 %, all of it on departure and approach");
+        let some = said([out(mission), out(leaves), out(comes), out(StageKind::Arrival)]);
+        assert_eq!(some, "not reached: 100 %, 25 % of it not on departure, arrival and approach");
+        assert_eq!(said([out(mission); 4]), "not reached: 100 %");
+        let link = Some(Ending { reach: Reach::Out, cause: Cause::Link, stage: leaves });
+        assert_eq!(said([link; 4]), "not reached: 100 %", "that is no engine failure");
+    }
 
     #[test]
     fn the_path_falls_into_parts_without_gaps() {
@@ -86,9 +140,9 @@ mod tests {
         let mut coverage = Coverage::of(&Forecast { points: points.clone(), ..Forecast::default() });
         // three points: the first, then the last
         coverage.push(None);
-        let said = |coverage: &Coverage| words(Reach::Out, coverage);
+        let said = |coverage: &Coverage| words(coverage, Reach::Out);
         assert!(!said(&coverage).contains('%'), "a part of it: {}", said(&coverage));
-        coverage.push(Some((Reach::Out, Cause::Engine)));
+        coverage.push(out(StageKind::Mission));
         assert!(said(&coverage).ends_with(": 100 %"), "{}", said(&coverage));
         let parts = parts(&points, &coverage);
         let found: Vec<_> = parts.iter().map(|(reach, part)| (*reach, part.len())).collect();
