@@ -3,7 +3,9 @@
 
 use super::bench::profile_of;
 use super::worker::{Found, Outbox};
-use flight_exec::review::{Conditions, leave_zones_out, put_remedies, review, review_extremes};
+use flight_exec::review::{
+    Conditions, bring_within_glide, leave_zones_out, put_remedies, review, review_extremes,
+};
 use flight_plan::{Problem, Program};
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
@@ -82,10 +84,12 @@ impl Reviewer {
         let conditions = Conditions::default();
         let known = self.known.as_mut().map(|(_, found)| found)?;
         let mut go_on = || {
-            next = paths.try_recv().ok();
+            next = next.take().or_else(|| paths.try_recv().ok());
             next.is_none()
         };
-        let remedied = leave_zones_out(&path.program, &profile, &self.terrain, conditions, known, &mut go_on);
+        let (program, terrain) = (&path.program, &self.terrain);
+        let mut remedied = leave_zones_out(program, &profile, terrain, conditions, known, &mut go_on);
+        remedied.extend(bring_within_glide(program, &profile, terrain, conditions, known, &mut go_on));
         if !remedied.is_empty() {
             put_remedies(known, remedied.clone());
             if !outbox.send(Found::Remedies(path.version, remedied)) {

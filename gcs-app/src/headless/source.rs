@@ -5,7 +5,7 @@ use super::output::DASH;
 use super::tiles;
 use aircraft::Profile;
 use anyhow::Context;
-use flight_exec::{Conditions, leave_zones_out, put_remedies, review, review_extremes};
+use flight_exec::{Conditions, bring_within_glide, leave_zones_out, put_remedies, review, review_extremes};
 use flight_plan::suggest::did_you_mean;
 use flight_plan::{FlightPlan, Problem, Program, Reading};
 use interchange::Note;
@@ -184,6 +184,9 @@ impl Loaded {
         self.with_program(|program, profile| {
             let mut found = review(program, profile, &self.terrain, conditions);
             let remedied = leave_zones_out(program, profile, &self.terrain, conditions, &found, &mut || true);
+            put_remedies(&mut found, remedied);
+            let remedied =
+                bring_within_glide(program, profile, &self.terrain, conditions, &found, &mut || true);
             put_remedies(&mut found, remedied);
             let more =
                 review_extremes(program, profile, &self.terrain, conditions, &found, &mut report_progress);

@@ -27,7 +27,7 @@ pub use layout::above_ground::{clears_ground, clears_way_in};
 pub use layout::homeward::safe_runways;
 pub use rehearse::{Preview, PreviewError, preview};
 pub use review::{
-    Conditions, Margins, compile_and_review, compile_and_review_ahead, foresee, leave_zones_out,
-    put_remedies, review, review_ahead, review_command, review_extremes, review_turn,
+    Conditions, Margins, bring_within_glide, compile_and_review, compile_and_review_ahead, foresee,
+    leave_zones_out, put_remedies, review, review_ahead, review_command, review_extremes, review_turn,
 };
 pub use value::Config;

@@ -4,7 +4,7 @@
 use aircraft::{Profile, Wind};
 use flight_exec::rehearse::{Options, Reach, Rehearsal, Start, is_near_runway};
 use flight_exec::review::Margins;
-use flight_exec::{Conditions, compile_and_review};
+use flight_exec::{Conditions, bring_within_glide, compile_and_review, put_remedies};
 use flight_plan::template::{Extent, Outline, Template};
 use flight_plan::{Cause, FlightPlan, Problem, Runway, compile, write};
 use geometry::LatLon;
@@ -101,4 +101,42 @@ fn to_name_the_fallback_for_an_engine_failure_makes_nothing_worse() {
     assert!(unnamed.contains("the best glide to `RWY`, the runway of `return`, ends "), "{unnamed}");
     assert!(named.contains("; at the entry of `return` it would be "), "{named}");
     assert!(unnamed.contains(" m above the runway), ") && unnamed.contains("to a runway within "));
+}
+
+/// With the remedies that have to be tried.
+fn remedied(plan: &FlightPlan) -> Vec<Problem> {
+    let (profile, conditions) = (Profile::default(), Conditions::default());
+    let mut found = problems(plan);
+    let program = Arc::new(compile(Arc::new(plan.clone()), &profile, flat().as_ref()).unwrap());
+    let remedied = bring_within_glide(&program, &profile, &flat(), conditions, &found, &mut || true);
+    put_remedies(&mut found, remedied);
+    found
+}
+
+/// It lifted by what was lacking at one place, and wanted pressing again and again.
+#[test]
+fn one_press_of_its_fix_brings_a_survey_within_the_glide() {
+    let plan = survey(1200.0, 150.0);
+    let found = remedied(&plan);
+    let [problem] = found.as_slice() else { panic!("{found:?}") };
+    assert!(problem.message.contains(". The fix flies `"), "{problem}");
+    let higher = problem.fix.as_ref().unwrap().apply(&plan).unwrap();
+    assert_eq!(problems(&higher), []);
+    assert_eq!(coverage(&higher).0, Reach::Good);
+}
+
+/// A runway that somebody draws beside the survey is all that it takes.
+#[test]
+fn a_runway_in_reach_becomes_the_one_for_an_engine_failure() {
+    let mut plan = survey(1600.0, 180.0);
+    let threshold = LatLon::new(46.0, 8.0).destination(180.0, 1000.0).destination(270.0, 300.0);
+    plan.runways.push(Runway { id: "NEAR".into(), threshold, priority: 2, ..plan.runways[0].clone() });
+    let found = remedied(&plan);
+    let [problem] = found.as_slice() else { panic!("{found:?}") };
+    assert!(
+        problem.message.contains(". The fix names a plan to `NEAR` for the cause `engine` on `"),
+        "{problem}"
+    );
+    let named = problem.fix.as_ref().unwrap().apply(&plan).unwrap();
+    assert_eq!(problems(&named), []);
 }

@@ -58,7 +58,7 @@ fn a_leg_that_is_still_climbing_has_to_begin_higher() {
     let problem = with_code(&problems, "low-clearance");
     // the ridge is in the middle of its way: half of what its end is raised by arrives there
     assert!(problem.message.starts_with("raise this leg by 4"), "{problem}");
-    assert!(problem.message.ends_with("40 m is the least of a path as flown"), "{problem}");
+    assert!(problem.message.ends_with("40 m above it is the least of a path as flown"), "{problem}");
 }
 
 /// A leg behind a fork is come to from two places, by the other branch along a ridge.

@@ -242,8 +242,42 @@ fn an_edit_counts_from_what_the_altitude_counted_from() {
         };
         assert_eq!(altitude.reference.name(), reference);
         let Value::Constant(metres) = altitude.metres else { panic!("a formula") };
-        assert!((raised_m..raised_m + 3.0).contains(&metres), "{metres}");
+        assert!((raised_m..=raised_m + 10.0).contains(&metres) && metres % 10.0 == 0.0, "{metres}");
     }
+}
+
+/// A ridge on the way from D to a circle around A, and a hill south of it.
+struct RidgeAndHill;
+impl Terrain for RidgeAndHill {
+    fn elevation_m(&self, at: LatLon) -> Option<f64> {
+        let is_ridge = (at.lat_deg - 36.3175).abs() < 0.001 && (at.lon_deg + 84.20).abs() < 0.01;
+        let is_hill = (at.lat_deg - 36.2946).abs() < 0.001 && (at.lon_deg + 84.20).abs() < 0.002;
+        Some(if is_ridge {
+            545.0
+        } else if is_hill {
+            600.0
+        } else {
+            300.0
+        })
+    }
+}
+
+/// Over the ridge it is still climbing, over the hill it is too low itself: that took two remedies, one after the other.
+#[test]
+fn one_edit_clears_all_places_of_a_leg() {
+    let legs = r#"<orbit id="low" radius="600" turns="1" turn="left" altitude="620" altitudeReference="amsl"><centre fix="A"/></orbit>"#;
+    let plan = flight_plan::read(rectangle("", legs)).plan;
+    let ground: Arc<dyn Terrain> = Arc::new(RidgeAndHill);
+    let low = |plan: &FlightPlan| {
+        let program = Arc::new(compile(plan.clone(), &Profile::default(), ground.as_ref()).unwrap());
+        let found = review(&program, &Profile::default(), &ground, Conditions::default());
+        found.into_iter().find(|p| p.code == "low-clearance" && p.subject == Some("low".into()))
+    };
+    let problem = low(&plan).unwrap();
+    let Some(Edit::All(raised)) = problem.fix.as_deref() else { panic!("{problem:?}") };
+    assert_eq!(raised.len(), 2, "the circle, and what is flown before it");
+    let repaired = problem.fix.as_ref().unwrap().apply(&plan).unwrap();
+    assert_eq!(low(&repaired), None, "{problem:?}");
 }
 
 /// A rectangle of legs over flat ground at 300 m, with a runway inside; the zones are given.

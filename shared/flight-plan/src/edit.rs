@@ -334,12 +334,21 @@ pub enum EditError {
     Variable(#[from] VariableError),
 }
 
+/// What is raised is raised to whole multiples of this, metres: somebody who flies at 437 m has calculated, and nobody did.
+const RAISED_TO_M: f64 = 10.0;
+
 impl Edit {
     /// Another altitude for a leg or stage that is at `metres` now: `by_m` higher or a little more, to whole metres of the same
     /// reference.
     pub fn relevel(of: &Id, metres: f64, reference: AltitudeReference, by_m: f64) -> Self {
         let wanted_m = metres + by_m;
         let metres = Value::Constant(if by_m > 0.0 { wanted_m.ceil() } else { wanted_m.floor() });
+        Self::SetAltitude { of: of.clone(), altitude: Some(Altitude { metres, reference }) }
+    }
+
+    /// Another altitude for a leg or stage that is at `metres` now: at least `by_m` higher, to tens of metres of the same reference.
+    pub fn raise(of: &Id, metres: f64, reference: AltitudeReference, by_m: f64) -> Self {
+        let metres = Value::Constant(((metres + by_m) / RAISED_TO_M).ceil() * RAISED_TO_M);
         Self::SetAltitude { of: of.clone(), altitude: Some(Altitude { metres, reference }) }
     }
 

@@ -84,7 +84,7 @@ impl Glide {
 
     /// Straight to each end of a runway that a glide may land at, the one that is named first. `lines_up`: it turns in line with the runway
     /// there.
-    pub(super) fn straight(
+    pub(crate) fn straight(
         program: &Program,
         (profile, winds, terrain): Air,
         start: GlideStart,

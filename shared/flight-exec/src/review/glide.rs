@@ -12,7 +12,7 @@ use super::emergency_coverage::Engine;
 use super::flights::points;
 use crate::rehearse::{Best, Glide, Reach, is_near_runway, route};
 use aircraft::glide::{GlideStart, glide};
-use flight_plan::{EmergencyPlan, FlownAt, Problem, Runway};
+use flight_plan::{EmergencyPlan, FlownAt, Id, Problem, Runway};
 use geometry::LatLon;
 
 /// Seconds between points from which a glide is tried, at least, and most points of a flight.
@@ -21,13 +21,18 @@ const MOST_POINTS: f64 = 2000.0;
 
 pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     for (is_off_plan, points) in flown(view) {
-        let glides: Vec<Tried> = points.into_iter().filter_map(|from| Tried::from(view, from)).collect();
-        for (index, plan) in view.program.flown().emergency_plans.iter().enumerate() {
-            let here: Vec<&Tried> = glides.iter().filter(|glide| glide.index == index).collect();
+        let glides = Tried::all(view, points);
+        for plan in &view.program.flown().emergency_plans {
+            let here: Vec<&Tried> = glides.iter().filter(|glide| *glide.plan == plan.id).collect();
             let found = Found::of(&here, glides.len());
             problems.extend(found.map(|found| found.problem(view, plan, is_off_plan)));
         }
     }
+}
+
+/// The glides from the flight as planned.
+pub(super) fn on_planned_flight<'a>(view: &'a View) -> Vec<Tried<'a>> {
+    flown(view).into_iter().next().map(|(_, points)| Tried::all(view, points)).unwrap_or_default()
 }
 
 /// Points of the flight as planned, then of those that take other branches (true); where none of them ends, of those that are laid out.
@@ -43,37 +48,41 @@ fn flown(view: &View) -> Vec<(bool, Vec<Origin>)> {
 }
 
 /// The best glide from a point of a flight.
-struct Tried<'a> {
-    from: Origin,
+pub(super) struct Tried<'a> {
+    pub from: Origin,
     /// The emergency plan that answers there, its runway, and whether it is named for an engine failure.
-    index: usize,
+    pub plan: &'a Id,
     runway: &'a Runway,
     named: bool,
     glide: Glide,
-    reach: Reach,
+    pub reach: Reach,
 }
 
 impl<'a> Tried<'a> {
+    fn all(view: &'a View, points: Vec<Origin>) -> Vec<Self> {
+        points.into_iter().filter_map(|from| Self::from(view, from)).collect()
+    }
+
     /// `None`: it is not counted there, or nothing answers.
     fn from(view: &'a View, from: Origin) -> Option<Self> {
         view.stage_kind(&from.leg).filter(|kind| !is_near_runway(*kind))?;
-        let Engine { plan: index, named } = view.emergency_coverage.engine(&from.leg)?;
-        let plan = view.program.flown().emergency_plans.get(index)?;
+        let Engine { plan, named } = view.emergency_coverage.engine(&from.leg)?;
+        let plan = view.program.flown().emergency_plans.get(plan)?;
         let runway = view.program.plan.runway(&plan.runway)?;
         let air = (view.profile, view.conditions.wind.into(), view.terrain);
         let (way, reserve_m) = ((plan, runway, named), view.conditions.margins.glide_m);
         let best = Best::of(view.program, air, &view.variables, start(&from), way, reserve_m)?;
         let Best { glide, reach } = best;
-        Some(Self { from, index, runway, named, glide, reach })
+        Some(Self { from, plan: &plan.id, runway, named, glide, reach })
     }
 
     /// So much higher it would arrive with its margin, metres; infinite if the wind does not let it.
-    fn missing_m(&self, view: &View) -> f64 {
+    pub fn missing_m(&self, view: &View) -> f64 {
         view.conditions.margins.glide_m - self.glide.margin_m
     }
 }
 
-fn start(from: &Origin) -> GlideStart {
+pub(super) fn start(from: &Origin) -> GlideStart {
     let Origin { position, altitude_amsl_m, course_deg, .. } = *from;
     GlideStart { position, altitude_amsl_m, course_deg }
 }

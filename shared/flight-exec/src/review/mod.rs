@@ -13,7 +13,7 @@
 //! [`compile_and_review`] is check and review together. The FP Manager runs it for each proposal on a thread of its own, with the
 //! wind and the time of day of now; `legwork check` and the window run it for each edit. The last two then try the extremes of the
 //! variables' bounds ([`review_extremes`]: the same plan with other initial values, at most [`MAX_TRIALS`] times), and look for
-//! remedies that have to be tried ([`leave_zones_out`]). On board a proposal is answered without both. A plan that was accepted is
+//! remedies that have to be tried ([`leave_zones_out`], [`bring_within_glide`]). On board a proposal is answered without both. A plan that was accepted is
 //! not reviewed again after a restart. For a flight under way see the module `ahead`.
 
 mod ahead;
@@ -53,6 +53,7 @@ mod unknown_terrain;
 mod unseen;
 mod waypoints;
 mod wind;
+mod within_glide;
 mod zones;
 
 use crate::rehearse::Start;
@@ -74,6 +75,7 @@ use prepared::Zones;
 use std::collections::HashSet;
 use std::sync::Arc;
 use terrain::Terrain;
+pub use within_glide::bring_within_glide;
 
 /// What a plan is reviewed for, besides the aircraft and the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -239,11 +241,22 @@ impl View<'_> {
     /// Another altitude for a leg that the plan has as it is written (not only by a call): `by_m` above the one that leads to
     /// `wanted_amsl_m` now, counted from what that one counts from.
     fn relevelled(&self, leg: &Id, wanted_amsl_m: f64, by_m: f64) -> Option<Edit> {
-        let (metres, reference) = match self.program.written(leg)?.altitude() {
-            Some(written) => (self.number(&written.metres)?, written.reference),
-            None => (wanted_amsl_m, AltitudeReference::Amsl),
-        };
+        let (metres, reference) = self.counted(leg, wanted_amsl_m)?;
         Some(Edit::relevel(leg, metres, reference, by_m))
+    }
+
+    /// The same, higher by at least `by_m`, in tens of metres.
+    fn raised(&self, leg: &Id, wanted_amsl_m: f64, by_m: f64) -> Option<Edit> {
+        let (metres, reference) = self.counted(leg, wanted_amsl_m)?;
+        Some(Edit::raise(leg, metres, reference, by_m))
+    }
+
+    /// The altitude of a leg as it is written, metres, and what that counts from.
+    fn counted(&self, leg: &Id, wanted_amsl_m: f64) -> Option<(f64, AltitudeReference)> {
+        match self.program.written(leg)?.altitude() {
+            Some(written) => Some((self.number(&written.metres)?, written.reference)),
+            None => Some((wanted_amsl_m, AltitudeReference::Amsl)),
+        }
     }
 
     /// Points of the flights of the main plan, so many seconds apart.

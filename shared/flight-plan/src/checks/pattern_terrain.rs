@@ -3,7 +3,7 @@
 //! The review sees the ground below all of it, but it flies no plan that has an error anywhere.
 
 use super::Inspection;
-use super::remedy::relevelled;
+use super::remedy::raise;
 use super::step::Step;
 use crate::uses::Part;
 use crate::{LegKind, Problem};
@@ -22,7 +22,7 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
         "raise this leg by {:.0} m: it goes into the ground, which is {ground_m:.0} m AMSL high at one of its places",
         lacks_m.ceil()
     );
-    let fix = relevelled(view, &step.leg.id, step.altitude(), flown_m, lacks_m);
+    let fix = raise(view, &step.leg.id, step.altitude(), flown_m, lacks_m);
     problems.push(Problem::error("below-terrain", message).of(&step.leg.id).perhaps_fixed_by(fix));
 }
 

@@ -55,11 +55,32 @@ pub(super) fn relevelled(
     is_amsl_m: f64,
     by_m: f64,
 ) -> Option<Edit> {
-    let (metres, reference) = match written {
-        Some(written) => (view.number(&written.metres)?, written.reference),
-        None => (is_amsl_m, AltitudeReference::Amsl),
-    };
+    let (metres, reference) = counted(view, written, is_amsl_m)?;
     Some(Edit::relevel(of, metres, reference, by_m))
+}
+
+/// The same, higher by at least `by_m`, in tens of metres.
+pub(super) fn raise(
+    view: &Inspection,
+    of: &Id,
+    written: Option<&Altitude>,
+    is_amsl_m: f64,
+    by_m: f64,
+) -> Option<Edit> {
+    let (metres, reference) = counted(view, written, is_amsl_m)?;
+    Some(Edit::raise(of, metres, reference, by_m))
+}
+
+/// An altitude as it is written, metres, and what it counts from.
+fn counted(
+    view: &Inspection,
+    written: Option<&Altitude>,
+    is_amsl_m: f64,
+) -> Option<(f64, AltitudeReference)> {
+    match written {
+        Some(written) => Some((view.number(&written.metres)?, written.reference)),
+        None => Some((is_amsl_m, AltitudeReference::Amsl)),
+    }
 }
 
 /// A direction as degrees true in 0..360; `None` if it is no number.

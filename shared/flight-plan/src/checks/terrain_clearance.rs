@@ -1,7 +1,7 @@
 //! `below-terrain`: a leg goes into the ground; `low-clearance`: it comes nearer than the margin, away from runways.
 
 use super::Inspection;
-use super::remedy::relevelled;
+use super::remedy::raise;
 use super::step::{Point, Step};
 use crate::{Edit, LegKind, Problem, StageKind};
 
@@ -29,7 +29,7 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
         }
         clearance_m if clearance_m < MARGIN_M && !near_runway => {
             let what = format!(
-                "it passes {:.0} m above the ground, and a plan is written to keep {MARGIN_M:.0} m",
+                "it passes {:.0} m above the ground, and a plan is written to keep {MARGIN_M:.0} m above it",
                 clearance_m.floor()
             );
             ("low-clearance", format!("{}: {what}", advice()))
@@ -37,7 +37,7 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
         _ => return,
     };
     let problem = if lowest.clearance_m < 0.0 { Problem::error } else { Problem::warning };
-    let fix = raised(view, step, &lowest);
+    let fix = raised(view, step);
     problems.push(problem(code, message).of(&step.leg.id).perhaps_fixed_by(fix));
 }
 
@@ -50,6 +50,27 @@ struct Lowest {
     share: f64,
     /// How much lower than its end the leg still is there, metres.
     below_end_m: f64,
+}
+
+/// By how much a leg has to be raised so that no place of it is too low, metres.
+#[derive(Default)]
+struct Lift {
+    /// What it begins with: the end of what is flown before.
+    begin_m: f64,
+    end_m: f64,
+}
+
+impl Lift {
+    fn over(places: impl Iterator<Item = Lowest>) -> Self {
+        places.filter(|place| place.lacks_m() > 0.0).fold(Self::default(), |lift, place| {
+            let on_the_way = |metres| if place.is_on_the_way() { metres } else { 0.0 };
+            let (begin_m, end_m) = match place.begin_higher_by_m() {
+                Some(by_m) => (by_m, 0.0),
+                None => (on_the_way(place.lacks_m()), place.lacks_m()),
+            };
+            Self { begin_m: lift.begin_m.max(begin_m), end_m: lift.end_m.max(end_m) }
+        })
+    }
 }
 
 impl Lowest {
@@ -94,20 +115,25 @@ fn is_high(view: &Inspection, step: &Step) -> Option<bool> {
     Some(lowest_m - view.terrain.at_most_m(south_west, north_east)? >= MARGIN_M)
 }
 
-/// Begun higher, where it only has to climb before; else raised by what it lacks, at both ends if it is nearest to the ground on the way.
-/// To whole metres.
-fn raised(view: &Inspection, step: &Step, lowest: &Lowest) -> Option<Edit> {
-    let lift = |of: &Step, by_m| relevelled(view, &of.leg.id, of.altitude(), of.end?.altitude_amsl_m?, by_m);
-    let before = view.before(step);
-    if let Some(by_m) = lowest.begin_higher_by_m() {
-        return lift(before?, by_m);
+/// High enough all along: begun higher where it only has to climb before, else raised, at both ends if it is too low on the way.
+fn raised(view: &Inspection, step: &Step) -> Option<Edit> {
+    let Lift { begin_m, end_m } = Lift::over(places(view, step)?);
+    let lift = |of: &Step, by_m| raise(view, &of.leg.id, of.altitude(), of.end?.altitude_amsl_m?, by_m);
+    let before = view.before(step).filter(|_| begin_m > 0.0);
+    match (before, end_m > 0.0) {
+        (Some(before), true) => Some(Edit::All(vec![lift(before, begin_m)?, lift(step, end_m)?])),
+        (Some(before), false) => lift(before, begin_m),
+        (None, true) => lift(step, end_m),
+        (None, false) => None,
     }
-    let end = lift(step, lowest.lacks_m())?;
-    let Some(before) = before.filter(|_| lowest.is_on_the_way()) else { return Some(end) };
-    Some(Edit::All(vec![lift(before, lowest.lacks_m())?, end]))
 }
 
 fn lowest(view: &Inspection, step: &Step) -> Option<Lowest> {
+    places(view, step)?.min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m))
+}
+
+/// The end of a leg and places along it, as far as their ground is known.
+fn places<'a>(view: &'a Inspection, step: &'a Step) -> Option<impl Iterator<Item = Lowest> + 'a> {
     // the preview flies patterns, and sees the ground below all of them
     let end = step.end.filter(|_| !matches!(step.leg.kind, LegKind::Pattern(_)))?;
     let to_m = end.altitude_amsl_m?;
@@ -117,19 +143,18 @@ fn lowest(view: &Inspection, step: &Step) -> Option<Lowest> {
         share: 1.0,
         below_end_m: 0.0,
     });
-    let along = step.start.zip(step.path).and_then(|(start, path)| {
+    let along = step.start.zip(step.path.as_ref()).and_then(|(start, path)| {
         let from_m = start.altitude_amsl_m?;
         let samples = (path.length_m() / SPACING_M).ceil().clamp(1.0, MAX_SAMPLES);
-        let lowest_at = |(share, position)| {
+        let lowest_at = move |(share, position)| {
             let below_end_m = (to_m - from_m) * (1.0 - share);
             let there = Point { position, altitude_amsl_m: None };
             let (clearance_m, ground_m) = clearance_m(view, there, to_m - below_end_m)?;
             Some(Lowest { clearance_m, ground_m, share, below_end_m })
         };
-        let samples = path.along(start.position, end.position, samples as u32);
-        samples.filter_map(lowest_at).min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m))
+        Some(path.along(start.position, end.position, samples as u32).filter_map(lowest_at))
     });
-    at_end.into_iter().chain(along).min_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m))
+    Some(at_end.into_iter().chain(along.into_iter().flatten()))
 }
 
 /// `(height above the ground, ground elevation there)`, metres.
@@ -181,6 +206,34 @@ mod tests {
         let same = plan_with(&low.replace("700", "500"));
         let found = check(&read(same).plan, &Profile::default(), &Ridge(470.0));
         assert!(found[0].message.starts_with("raise this leg and `a` before it by 20 m"), "{found:?}");
+    }
+
+    /// Two ridges between A and B: from 500 m to 700 m the one is passed too low because the leg is still climbing, the other because
+    /// even its end is too low.
+    struct Ridges;
+    impl Terrain for Ridges {
+        fn elevation_m(&self, p: LatLon) -> Option<f64> {
+            let is_at = |lon_deg: f64| (p.lon_deg - lon_deg).abs() < 0.001;
+            let [early, late] = [-84.19, -84.175].map(is_at);
+            Some(if early {
+                560.0
+            } else if late {
+                655.0
+            } else {
+                300.0
+            })
+        }
+    }
+
+    /// It had to be pressed once for each ridge.
+    #[test]
+    fn one_remedy_clears_all_places_of_a_leg() {
+        let low = r#"<IF id="a" fix="A"/><TF id="b" fix="B" altitude="700" altitudeReference="amsl"/>"#;
+        let plan = read(plan_with(low)).plan;
+        let found = check(&plan, &Profile::default(), &Ridges);
+        let [problem] = found.as_slice() else { panic!("{found:?}") };
+        let repaired = problem.fix.as_ref().unwrap().apply(&plan).unwrap();
+        assert_eq!(check(&repaired, &Profile::default(), &Ridges), []);
     }
 
     /// A leg that leads too low, from one that is high enough, over flat ground at 300 m.
