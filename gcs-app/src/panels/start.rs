@@ -201,7 +201,10 @@ fn height_remark(ui: &mut Ui, guide: &Guide, scene: &Scene<'_>) {
     match flown_m - guide.height_m > ROUND_M {
         true => {
             let flown = scene.units().altitude().show(flown_m);
-            said(ui, &format!("⚠ {flown} above the runway: the ground around asks for that"), p.caution);
+            let asked = scene.units().altitude().show(guide.height_m);
+            let text =
+                format!("⚠ flown {flown} above the runway, not {asked}: the ground around asks for that");
+            said(ui, &text, p.caution);
         }
         false => said(ui, "above the runway; more where the ground asks for it", p.weak),
     }
@@ -225,14 +228,14 @@ fn survey_remark(ui: &mut Ui, guide: &Guide, scene: &Scene<'_>) {
     ));
 }
 
-/// `Tracks 50 m apart: 71 % side overlap at 150 m AGL`.
+/// `Tracks 50 m apart: 71 % side overlap at 150 m above the ground`.
 fn survey_words(survey: &Survey, u: Units) -> String {
     let Survey { spacing_m, side_overlap, above_ground_m } = *survey;
     let apart = format!("Tracks {} apart", u.length().show(spacing_m));
     let height = u.altitude().show(above_ground_m);
     match side_overlap > 0.0 {
-        true => format!("{apart}: {:.0} % side overlap at {height} AGL", 100.0 * side_overlap),
-        false => format!("{apart}: more than is seen from {height} AGL"),
+        true => format!("{apart}: {:.0} % side overlap at {height} above the ground", 100.0 * side_overlap),
+        false => format!("{apart}: more than is seen from {height} above the ground"),
     }
 }
 

@@ -33,7 +33,7 @@ pub fn other_direction(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queu
 
 fn add(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) {
     let Ok(other) = runways::other_direction(scene.document.plan(), id, scene.ground.0) else { return };
-    let begins = format!("{}, from {}", other.id, scene.units().altitude().show(other.elevation_amsl_m));
+    let begins = format!("{}, from {} AMSL", other.id, scene.units().altitude().show(other.elevation_amsl_m));
     if ui.button(ADD_OTHER).on_hover_text(begins).clicked() {
         let made = Selection::Runway(other.id.clone());
         queue.edit(Edit::Add(Box::new(Thing::Runway(other))));

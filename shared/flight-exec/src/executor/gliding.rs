@@ -85,7 +85,7 @@ impl Executor {
         let TouchDown { over_m, behind_m, beyond_m } = end;
         let reason = format!(
             "the engine is out, and the height can't be lost on the way ahead: it comes over the threshold of `{runway}` at least \
-             {over_m:.0} m high, touches down {behind_m:.0} m behind it, and comes to rest about {beyond_m:.0} m beyond the runway's end"
+             {over_m:.0} m above it, touches down {behind_m:.0} m behind it, and comes to rest about {beyond_m:.0} m beyond the runway's end"
         );
         let code = "glide-long".into();
         out.push(Output::Event(Event::ProblemAhead { leg: Some(leg), code, reason }));

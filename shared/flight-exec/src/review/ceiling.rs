@@ -22,7 +22,7 @@ pub(super) fn check(view: &View, problems: &mut Vec<Problem>) {
     for leg in order {
         let Some(amsl_m) = highest.get(leg) else { continue };
         let message = format!(
-            "lower this leg by {:.0} m: over the ground that it passes it leads above the aircraft's ceiling of {ceiling_m:.0} m",
+            "lower this leg by {:.0} m: over the ground that it passes it leads above the aircraft's ceiling of {ceiling_m:.0} m AMSL",
             amsl_m - ceiling_m
         );
         let fix = view.relevelled(leg, *amsl_m, ceiling_m - amsl_m);

@@ -97,7 +97,9 @@ fn place(_: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
 fn altitude(c: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
     let (h, ceiling) = (w.altitude_amsl_m, c.profile.ceiling_amsl_m);
     let bad = !ALTITUDES_M.contains(&h) || h > ceiling;
-    bad.then(|| fault("altitude", format!("{h:.0} m AMSL is out of range; the ceiling is {ceiling:.0} m.")))
+    bad.then(|| {
+        fault("altitude", format!("{h:.0} m AMSL is out of range; the ceiling is {ceiling:.0} m AMSL."))
+    })
 }
 
 fn speed(c: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Fault> {
@@ -155,7 +157,7 @@ fn above_terrain(c: &Context, _: Option<&Waypoint>, w: &Waypoint) -> Option<Faul
     (h < least_m).then(|| {
         let by_m = (least_m - h).ceil();
         let sentence = format!(
-            "{h:.0} m AMSL is too low over ground of {ground_m:.0} m; raise its leg by {by_m:.0} m, or move it to lower ground."
+            "{h:.0} m AMSL is too low over ground of {ground_m:.0} m AMSL; raise its leg by {by_m:.0} m, or move it to lower ground."
         );
         fault("below-terrain", sentence)
     })

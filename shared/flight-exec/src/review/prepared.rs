@@ -212,9 +212,11 @@ impl Prepared {
         self.parts.iter().map(off_m).fold(0.0, f64::max)
     }
 
+    /// Its altitude is above mean sea level, whatever the limits count from.
     fn breach(&self, part: &(Datum, Ground), piece: &Piece) -> Option<Breach> {
         let (zone, stretch) = self.held_against(part, piece);
-        zone.breach(stretch)
+        let breach = zone.breach(stretch)?;
+        Some(Breach { altitude_m: piece.amsl.altitude_at_m(breach.distance_m), ..breach })
     }
 
     fn held_against<'p>(

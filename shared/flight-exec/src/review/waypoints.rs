@@ -67,7 +67,7 @@ fn low_landing(view: &View, waypoint: &Waypoint) -> Option<String> {
         runway.id, runway.elevation_amsl_m
     );
     let why = format!(
-        "{:.0} m AMSL, as high as a landing is there, is too low over ground of {ground_m:.0} m.",
+        "{:.0} m AMSL, as high as a landing is there, is too low over ground of {ground_m:.0} m AMSL.",
         waypoint.altitude_amsl_m
     );
     Some(refused(&advice, &why))

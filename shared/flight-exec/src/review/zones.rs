@@ -180,7 +180,7 @@ impl Found<'_> {
                 (
                     "keep-out",
                     format!(
-                        "move this leg by {horizontal_m} m{remedy}{after}: it goes into the zone `{zone}` {place}, {altitude_m:.0} m high"
+                        "move this leg by {horizontal_m} m{remedy}{after}: it goes into the zone `{zone}` {place}, at {altitude_m:.0} m AMSL"
                     ),
                 )
             }
@@ -191,7 +191,7 @@ impl Found<'_> {
             ZoneKind::KeepIn => (
                 "keep-in",
                 format!(
-                    "change this leg's altitude by {vertical_m} m{after}: {place} it is {altitude_m:.0} m high, outside the limits of the zone `{zone}`"
+                    "change this leg's altitude by {vertical_m} m{after}: {place} it is at {altitude_m:.0} m AMSL, outside the limits of the zone `{zone}`"
                 ),
             ),
         };

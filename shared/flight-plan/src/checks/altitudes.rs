@@ -54,7 +54,7 @@ fn bounds(
     let ceiling_m = view.profile.ceiling_amsl_m;
     if let Some(amsl_m) = amsl_m.filter(|m| *m > ceiling_m) {
         let message = format!(
-            "lower the altitude to {ceiling_m:.0} m AMSL or less: {amsl_m:.0} m is above the aircraft's ceiling"
+            "lower the altitude to {ceiling_m:.0} m AMSL or less: {amsl_m:.0} m AMSL is above the aircraft's ceiling"
         );
         let fix = relevelled(view, of, written, amsl_m, ceiling_m - amsl_m);
         problems.push(Problem::error("above-ceiling", message).of(of).perhaps_fixed_by(fix));

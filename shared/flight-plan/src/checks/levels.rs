@@ -65,7 +65,7 @@ fn wrong(
     (last_m > ceiling_m).then(|| {
         let fits = ((ceiling_m - first_m) / step_m).floor() + 1.0;
         let message =
-            format!("begin lower, or fly fewer levels: the last one is above the aircraft's ceiling of {ceiling_m:.0} m");
+            format!("begin lower, or fly fewer levels: the last one is above the aircraft's ceiling of {ceiling_m:.0} m AMSL");
         (message, levels.filter(|_| fits >= 1.0).and_then(|_| with_levels(leg, fits)))
     })
 }

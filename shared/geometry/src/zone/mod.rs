@@ -171,6 +171,12 @@ impl Stretch {
         self.end_altitude_m
     }
 
+    /// Altitude after so much of the way, metres.
+    pub fn altitude_at_m(&self, along_m: f64) -> f64 {
+        let length_m = self.element.length_m();
+        self.altitude_m(if length_m > 0.0 { (along_m / length_m).clamp(0.0, 1.0) } else { 0.0 })
+    }
+
     /// Altitude after a share of the way, metres.
     fn altitude_m(&self, share: f64) -> f64 {
         self.start_altitude_m + share * (self.end_altitude_m - self.start_altitude_m)

@@ -59,7 +59,7 @@ impl<'a> Runways<'a> {
         if let Some(same) = self.list.iter().find(is_same) {
             if (same.elevation_amsl_m - point.1).abs() > SAME_M {
                 let message = format!(
-                    "the altitude of this landing, {:.0} m AMSL, is left out: runway `{}` is {:.0} m high",
+                    "the altitude of this landing, {:.0} m AMSL, is left out: runway `{}` is at {:.0} m AMSL",
                     point.1, same.id, same.elevation_amsl_m
                 );
                 notes.push("runway-elevation", place, message);
