@@ -266,10 +266,13 @@ async fn a_flood_of_a_strangers_values_hides_no_true_one() {
     net.end().await;
 }
 
+/// After so much silence it is done again.
+const AGAIN: Duration = Duration::from_secs(1);
+
 #[tokio::test(flavor = "multi_thread")]
 async fn everything_is_followed_and_every_answer_told_with_its_caller() {
     let net = Net::open(|config| config).await;
-    let (sender, receiver) = std::sync::mpsc::channel();
+    let (sender, mut receiver) = tokio::sync::mpsc::unbounded_channel();
     let _everything = net
         .client
         .follow_everything(Start::Remembered, move |raw| {
@@ -278,24 +281,20 @@ async fn everything_is_followed_and_every_answer_told_with_its_caller() {
         .unwrap();
     net.add(2.0).await.unwrap();
     net.add(-1.0).await.unwrap_err();
-    let seen = tokio::task::spawn_blocking(move || {
-        let mut seen = Vec::new();
-        while seen.iter().filter(|(name, _)| name == "audit").count() < 2
-            || !seen.iter().any(|(name, _)| name == "sum")
-            || !seen.iter().any(|(name, _)| name == "added")
-        {
-            match receiver.recv_timeout(DEADLINE).unwrap() {
-                Raw::Sample { key, payload, .. } => {
-                    assert_eq!(key.service, "adder");
-                    seen.push((key.name, payload));
-                }
-                Raw::Gap { missed } => panic!("{missed} lost"),
+    let mut seen = Vec::new();
+    while seen.iter().filter(|name| *name == "audit").count() < 2
+        || !["sum", "added"].iter().all(|wanted| seen.iter().any(|name| name == wanted))
+    {
+        match tokio::time::timeout(AGAIN, receiver.recv()).await.map(Option::unwrap) {
+            Ok(Raw::Sample { key, .. }) => {
+                assert_eq!(key.service, "adder");
+                seen.push(key.name);
             }
+            Ok(Raw::Gap { missed }) => panic!("{missed} lost"),
+            // a variable is told to those who are known to follow it then, and nobody knew that yet
+            Err(_) => drop(net.add(2.0).await.unwrap()),
         }
-        seen
-    });
-    let seen = within(seen).await.unwrap();
-    assert!(!seen.is_empty());
+    }
     let mut trail = net.client.listen(audit("adder"), Start::Remembered).unwrap();
     let mut next = async || match within(trail.recv()).await.unwrap() {
         Occurrence::Event { event, .. } => event.value,
@@ -305,7 +304,12 @@ async fn everything_is_followed_and_every_answer_told_with_its_caller() {
     let (first, second) = (next().await, next().await);
     let nameless = Session::open(usal::Config::client("uav1", &net.endpoint)).await.unwrap();
     within(nameless.call(ADD, &Add { addend: 1.0 }, DEADLINE)).await.unwrap_err();
-    let third = next().await;
+    let third = loop {
+        let told = next().await;
+        if told.caller.is_none() {
+            break told;
+        }
+    };
     assert_eq!((first.invocation.as_str(), first.caller.as_deref()), ("add", Some("tester")));
     assert_eq!(first.request, serde_json::json!({"addend": 2.0}));
     assert!(first.accepted && first.answer.get("sum").is_some() && first.id.is_some());
