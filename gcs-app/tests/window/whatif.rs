@@ -299,6 +299,21 @@ fn without_window(window: &Window, seconds: f64) -> flight_exec::Preview {
     preview(&program, &profile, &terrain, Wind::CALM, Start::Runway, &scenario, &options).unwrap()
 }
 
+/// They covered it while it was read.
+#[test]
+fn messages_stand_above_the_legend_of_the_coverage() {
+    let mut window = opened(SQUARE);
+    choose(&mut window, "Coverage of the whole path");
+    window.until("the coverage", |app| app.analysis().coverage().is_some());
+    window.ask_for("emergency plan that lands on R05");
+    window.press(egui::Key::Enter);
+    window.until("the coverage", |app| app.analysis().coverage().is_some());
+    window.steps(3);
+    let message = window.harness.get_by_label_contains("Put aside: Nothing leads to").rect();
+    let legend = window.harness.get_by_label("Put the coverage away").rect();
+    assert!(message.bottom() < legend.top(), "{message} {legend}");
+}
+
 #[test]
 fn the_coverage_tells_parts_that_are_reached_from_parts_that_are_not() {
     let mut window = opened(FIRE_WATCH);
@@ -317,7 +332,7 @@ fn the_coverage_tells_parts_that_are_reached_from_parts_that_are_not() {
     }
     assert_ne!(look(Reach::Good).0.color, look(Reach::Out).0.color);
     assert_ne!(look(Reach::Good).1, look(Reach::Out).1);
-    assert!(window.shows("not reached: ") && window.shows("How the worst alarm would end"));
+    assert!(window.shows("not reached") && window.shows("How the worst alarm would end"));
     // who selects a leg asks why it is red: what is selected lies below the colours
     let colour = look(Reach::Good).0.color;
     let below = |window: &Window| window.lines_below("Vertical profile", p.text, colour);
