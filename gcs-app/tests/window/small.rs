@@ -373,3 +373,17 @@ fn a_message_is_no_wider_than_the_map() {
         );
     }
 }
+
+/// The choice before it took all of the row, and the panel cut the rest off.
+#[test]
+fn the_inspector_of_a_scan_that_is_bound_is_not_cut_off() {
+    let variable = r#"<variables><variable name="burnt_area_of_the_north" type="polygon" initial="36.33 -84.185, 36.33 -84.175, 36.325 -84.18"/></variables><mainPlan"#;
+    let scan = r#"<scan id="sweep" spacing="60"><area polygon="= burnt_area_of_the_north"/></scan>"#;
+    let plan = SQUARE.replace(r#"<TF id="side3" fix="C"/>"#, scan).replacen("<mainPlan", variable, 1);
+    let mut window = opened(&plan);
+    window.select_row(("SCAN sweep", 0));
+    window.steps(3);
+    let bind = rect(&window, "Area: bind to a variable");
+    let panel = rect(&window, "Hide Inspector");
+    assert!(bind.right() <= panel.right() + 4.0 && bind.right() < SMALL.x, "{bind} {panel}");
+}

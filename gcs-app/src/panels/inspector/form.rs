@@ -114,7 +114,7 @@ fn has_room(ui: &Ui, inside: &[Row]) -> bool {
 
 /// What is left of the row before the button that binds a place, where there is one: beyond it the panel would cut it off.
 fn room_before(ui: &Ui, has_button: bool) -> f32 {
-    ui.available_width() - if has_button { bind::WIDTH } else { 0.0 }
+    ui.available_width() - if has_button { BINDS } else { 0.0 }
 }
 
 fn within<R>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
@@ -132,5 +132,7 @@ fn is_position(property: &Property) -> bool {
 
 /// Bytes of a way that has room beside its value.
 const SHORT: usize = 10;
+/// Of the button that binds a place, with the gap before it, screen points.
+const BINDS: f32 = 38.0;
 /// Of the choice of a way beside its value, screen points.
 const WAY_WIDTH: f32 = 92.0;
