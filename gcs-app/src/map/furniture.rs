@@ -208,6 +208,11 @@ fn legend_at(map: Rect, lift: f32, tools: usize, scene: &Scene<'_>) -> Option<Re
     Some(Rect::from_min_size(origin, size).expand2(LEGEND_EDGE))
 }
 
+/// Where the legend lies on a map with so many tools, if it does.
+pub fn legend(map: Rect, tools: usize, scene: &Scene<'_>) -> Option<Rect> {
+    legend_at(map, 0.0, tools, scene)
+}
+
 fn legend_id() -> egui::Id {
     egui::Id::unique("legend of the map")
 }

@@ -199,10 +199,10 @@ impl MapState {
         self.begin_ways(scene);
         // a large plan has no places yet
         if self.fit && !self.sketch.is_busy() {
-            self.fit_now(ui.available_size());
+            self.fit_now(ui, scene);
         }
         if let Some(corners) = self.fit_to.take() {
-            self.show_all(&corners, ui.available_size());
+            self.show_all(&corners, ui, scene);
         }
         if let Some(at) = self.begin.take() {
             self.begin_now(at, ui.available_width());
@@ -280,18 +280,21 @@ impl MapState {
         self.memory.center_at(lat_lon(at.lat_deg, at.lon_deg - f64::from(aside) * degrees_per_point));
     }
 
-    fn fit_now(&mut self, size: egui::Vec2) {
+    fn fit_now(&mut self, ui: &Ui, scene: &Scene<'_>) {
         self.fit = false;
         let places = self.sketch.places();
-        if !self.show_all(&places, size) {
+        if !self.show_all(&places, ui, scene) {
             self.memory.center_at(lat_lon(WORLD.lat_deg, WORLD.lon_deg));
             let _ = self.memory.set_zoom(WORLD_ZOOM);
         }
     }
 
     /// False: there is nothing to be shown.
-    fn show_all(&mut self, places: &[LatLon], size: egui::Vec2) -> bool {
-        let Some((centre, zoom)) = View::fit(places, size) else { return false };
+    fn show_all(&mut self, places: &[LatLon], ui: &Ui, scene: &Scene<'_>) -> bool {
+        let map = ui.available_rect_before_wrap();
+        let legend = furniture::legend(map, self.tools.cards().count(), scene);
+        let legend = legend.map(|legend| legend.translate(-map.min.to_vec2()));
+        let Some((centre, zoom)) = View::fit_beside(places, map.size(), legend) else { return false };
         self.memory.center_at(centre);
         // fit keeps within the map's range of zooms
         let _ = self.memory.set_zoom(zoom);

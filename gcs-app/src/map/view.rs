@@ -191,6 +191,36 @@ impl View {
         let middle = Mercator { x: (low.x + high.x) / 2.0, y: (low.y + high.y) / 2.0 + aside }.to_geo();
         Some((lat_lon(middle.lat_deg, middle.lon_deg), zoom))
     }
+
+    /// The same; where one of the points would lie under what lies over the map's left, all are shown beside that. `over`: from the
+    /// map's upper left corner.
+    pub fn fit_beside(
+        points: &[LatLon],
+        size: egui::Vec2,
+        over: Option<Rect>,
+    ) -> Option<(walkers::Position, f64)> {
+        let fitted = Self::fit(points, size)?;
+        let is_hidden = |over: &Rect| {
+            let over = over.expand(ROOM);
+            points.iter().filter(|at| at.is_valid()).any(|at| over.contains(place_in(fitted, size, *at)))
+        };
+        let Some(over) = over.filter(is_hidden) else { return Some(fitted) };
+        let (centre, zoom) = Self::fit(points, size - egui::vec2(over.right(), 0.0))?;
+        let mut middle = Mercator::from(LatLon::new(centre.y(), centre.x()));
+        middle.x -= f64::from(over.right()) / 2.0 / (256.0 * zoom.exp2());
+        let middle = middle.to_geo();
+        Some((lat_lon(middle.lat_deg, middle.lon_deg), zoom))
+    }
+}
+
+/// Between a point and what lies over the map, screen points.
+const ROOM: f32 = 12.0;
+
+/// Where a place is on a map of this size, from its upper left corner.
+fn place_in((centre, zoom): (walkers::Position, f64), size: egui::Vec2, at: LatLon) -> Pos2 {
+    let (middle, at) = (Mercator::from(LatLon::new(centre.y(), centre.x())), Mercator::from(at));
+    let points = |share: f64| (share * 256.0 * zoom.exp2()) as f32;
+    pos2(points(at.x - middle.x), points(at.y - middle.y)) + size / 2.0
 }
 
 #[cfg(test)]
@@ -235,7 +265,27 @@ mod tests {
         let clear = Rect::from_min_max(rect.min, pos2(rect.max.x, rect.max.y - STRIP)).shrink(MARGIN - 1.0);
         for p in &points[..2] {
             assert!(clear.contains(view.place(*p)), "{:?}", view.place(*p));
+            assert!(view.place(*p).distance(place_in((centre, zoom), size, *p)) < 0.3);
         }
         assert!(View::fit(&points[2..], size).is_none());
+    }
+
+    /// The legend lay over the path.
+    #[test]
+    fn what_is_fitted_lies_beside_the_legend() {
+        let points = [LatLon::new(36.45, -84.36), LatLon::new(36.65, -84.0)];
+        let size = vec2(700.0, 500.0);
+        let over = Rect::from_min_max(pos2(6.0, 330.0), pos2(130.0, 470.0));
+        let Some(plain) = View::fit(&points, size) else { panic!("nothing fitted") };
+        assert!(over.expand(ROOM).contains(place_in(plain, size, points[0])), "it would lie there");
+        let Some(beside) = View::fit_beside(&points, size, Some(over)) else { panic!("nothing fitted") };
+        let places = points.map(|at| place_in(beside, size, at));
+        assert!(places[0].x > over.right() + ROOM && places[1].x < size.x - MARGIN + 1.0, "{places:?}");
+        let elsewhere = over.translate(vec2(0.0, -300.0));
+        assert_eq!(
+            View::fit_beside(&points, size, Some(elsewhere)),
+            Some(plain),
+            "nothing moves without need"
+        );
     }
 }

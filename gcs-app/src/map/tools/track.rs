@@ -88,9 +88,7 @@ impl Tool for Track {
             }
             (false, _) => match (&self.pointer, self.approach) {
                 (Some(to), Some(at)) => self.next_in_words(at.from, to.at, scene),
-                _ => {
-                    "Click where to fly next. Enter or a double click ends, Backspace takes one back.".into()
-                }
+                _ => "Draw legs: click where to fly next; Enter or a double click ends.".into(),
             },
         })
     }
