@@ -1,6 +1,7 @@
 //! The maps and elevations that users bring, and the servers of map tiles that they name: which there are, in which order,
 //! and what became of each. They are opened on threads of their own.
 
+mod lazy;
 mod open;
 
 pub use open::tiles_in;

@@ -1,5 +1,6 @@
 //! What a file or folder is, by what is in it.
 
+use super::lazy::LazyTiles;
 use super::{Content, Server, Source};
 use crate::jobs::Progress;
 use crate::tiles::{About, Folder, Health, Mbtiles, Online, PmTiles, Reader, Template};
@@ -12,7 +13,9 @@ use terrain::{Raster, Tile, Tiles};
 
 /// Most entries of a folder that are looked at.
 const MOST_ENTRIES: usize = 20_000;
-/// Most bytes of elevation tiles that are taken from a folder.
+/// So deep are folders in folders looked into.
+const DEEPEST: usize = 4;
+/// Most bytes of elevation tiles that are kept in memory.
 const MOST_BYTES: u64 = 512 << 20;
 /// Bytes of the larger kind of elevation tile.
 const LARGEST_TILE: u64 = 3601 * 3601 * 2;
@@ -88,7 +91,7 @@ fn is_hgt(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("hgt"))
 }
 
-fn tile(path: &Path) -> Result<Tile, String> {
+pub(super) fn tile(path: &Path) -> Result<Tile, String> {
     let unreadable = |error: std::io::Error| format!("it can't be read ({error})");
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(unreadable)?;
@@ -97,43 +100,92 @@ fn tile(path: &Path) -> Result<Tile, String> {
     Tile::from_hgt(&name, &bytes).map_err(|error| error.to_string())
 }
 
-/// The elevation tiles in a folder, by their names.
+/// The elevation tiles in a folder and in those in it: finer ones after coarser ones, else by their names.
 ///
 /// # Errors
 /// It can't be read.
 pub fn tiles_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    let paths = std::fs::read_dir(folder)?.take(MOST_ENTRIES).filter_map(|entry| Some(entry.ok()?.path()));
-    let mut tiles: Vec<PathBuf> = paths.filter(|path| is_hgt(path)).collect();
-    tiles.sort();
-    Ok(tiles)
+    let (mut found, mut left) = (Vec::new(), MOST_ENTRIES);
+    look_into(folder, DEEPEST, &mut left, &mut found)?;
+    found.sort();
+    Ok(found.into_iter().map(|(_, path)| path).collect())
 }
 
-/// The elevation tiles in a folder, as many as there is memory for.
+/// Takes down the tiles with their lengths, bytes. What can't be read below the folder is left out.
+fn look_into(
+    folder: &Path,
+    deep: usize,
+    left: &mut usize,
+    found: &mut Vec<(u64, PathBuf)>,
+) -> std::io::Result<()> {
+    for entry in std::fs::read_dir(folder)?.filter_map(Result::ok) {
+        let Some(fewer) = left.checked_sub(1) else { return Ok(()) };
+        *left = fewer;
+        let path = entry.path();
+        if is_hgt(&path) {
+            found.push((length(&path), path));
+        } else if deep > 0 && path.is_dir() {
+            let _ = look_into(&path, deep - 1, left, found);
+        }
+    }
+    Ok(())
+}
+
+fn length(path: &Path) -> u64 {
+    path.metadata().map_or(0, |meta| meta.len())
+}
+
+/// The elevation tiles in a folder: at once, or where there is no memory for all of them, as they are needed.
 fn folder(path: &Path, progress: &Progress) -> Result<Content, String> {
     let paths = tiles_in(path).map_err(|error| format!("it can't be read ({error})"))?;
-    let (mut tiles, mut left_out, mut bytes) = (Vec::new(), 0, 0);
+    if paths.iter().map(|path| length(path)).sum::<u64>() > MOST_BYTES {
+        return lazily(paths);
+    }
+    let (mut tiles, mut left_out) = (Vec::new(), 0);
     for (done, path) in paths.iter().enumerate() {
         progress.set(done as u64, paths.len() as u64);
         if progress.is_cancelled() {
             return Err("it was cancelled".into());
-        }
-        bytes += path.metadata().map_or(0, |meta| meta.len());
-        if bytes > MOST_BYTES {
-            return Err(format!(
-                "it holds more than {} MB of elevations: put those of the area that you fly in into a folder of their own",
-                MOST_BYTES >> 20
-            ));
         }
         match tile(path) {
             Ok(tile) => tiles.push(tile),
             Err(_) => left_out += 1,
         }
     }
-    match (tiles.is_empty(), left_out) {
-        (true, 0) => Err("there are no elevation tiles (N36W085.hgt and the like) in this folder".into()),
-        (true, _) => Err(format!("none of its {left_out} elevation tiles can be read: get them again")),
-        (false, _) => Ok(ground(tiles, left_out)),
+    if tiles.is_empty() { Err(nothing_in_it(left_out)) } else { Ok(ground(tiles, left_out)) }
+}
+
+/// By their names and lengths alone.
+fn lazily(paths: Vec<PathBuf>) -> Result<Content, String> {
+    let number = paths.len();
+    let files: Vec<_> = paths
+        .into_iter()
+        .filter_map(|path| {
+            let (name, bytes) = (path.file_name()?.to_string_lossy().into_owned(), length(&path));
+            Some((terrain::tile::announced(&name, bytes)?, path, bytes))
+        })
+        .collect();
+    let left_out = number - files.len();
+    let tiles = LazyTiles::new(files, MOST_BYTES);
+    if tiles.len() == 0 {
+        return Err(nothing_in_it(left_out));
     }
+    let detail = format!("{}, read where they are needed", number_of(tiles.len(), left_out));
+    Ok(Content::Ground { bounds: tiles.bounds(), terrain: Arc::new(tiles), detail })
+}
+
+fn nothing_in_it(left_out: usize) -> String {
+    match left_out {
+        0 => "there are no elevation tiles (N36W085.hgt and the like) in this folder".into(),
+        _ => format!("none of its {left_out} elevation tiles can be read: get them again"),
+    }
+}
+
+/// `elevations, 3 tiles, 1 unreadable and left out`.
+fn number_of(tiles: usize, left_out: usize) -> String {
+    let unreadable =
+        if left_out > 0 { format!(", {left_out} unreadable and left out") } else { String::new() };
+    format!("elevations, {tiles} tile{}{unreadable}", if tiles == 1 { "" } else { "s" })
 }
 
 fn ground(tiles: Vec<Tile>, left_out: usize) -> Content {
@@ -149,8 +201,49 @@ fn ground(tiles: Vec<Tile>, left_out: usize) -> Content {
         ));
         all.add(tile);
     }
-    let unreadable =
-        if left_out > 0 { format!(", {left_out} unreadable and left out") } else { String::new() };
-    let detail = format!("elevations, {number} tile{}{unreadable}", if number == 1 { "" } else { "s" });
+    let detail = number_of(number, left_out);
     Content::Ground { terrain: Arc::new(all), bounds: corners, detail }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_in_a_folder_are_looked_into_and_finer_tiles_come_last() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |path: &str, bytes: usize| {
+            let path = folder.path().join(path);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, vec![0; bytes]).unwrap();
+        };
+        at("N36/1s/N36W085.hgt", 9);
+        at("N36/3s/N36W085.HGT", 3);
+        at("N37W085.hgt", 5);
+        at("a/b/c/d/N38W085.hgt", 7);
+        at("a/b/c/d/e/N39W085.hgt", 8);
+        let found = tiles_in(folder.path()).unwrap();
+        let found: Vec<_> = found.iter().map(|path| path.strip_prefix(folder.path()).unwrap()).collect();
+        let expected = ["N36/3s/N36W085.HGT", "N37W085.hgt", "a/b/c/d/N38W085.hgt", "N36/1s/N36W085.hgt"];
+        assert_eq!(found, expected.map(Path::new));
+    }
+
+    /// It was refused.
+    #[test]
+    fn a_folder_that_is_larger_than_memory_is_taken() {
+        let folder = tempfile::tempdir().unwrap();
+        let sparse = |name: String| {
+            let file = File::create(folder.path().join(name)).unwrap();
+            file.set_len(LARGEST_TILE).unwrap();
+        };
+        (0..22).for_each(|n| sparse(format!("N{:02}E007.hgt", 40 + n)));
+        std::fs::write(folder.path().join("N30E007.hgt"), b"cut off").unwrap();
+        let (jobs, source) = (crate::jobs::Progress::default(), Source::File(folder.path().into()));
+        let Ok(Content::Ground { terrain, bounds, detail }) = open(&source, Folder::default(), &jobs) else {
+            panic!("refused")
+        };
+        assert_eq!(detail, "elevations, 22 tiles, 1 unreadable and left out, read where they are needed");
+        assert_eq!(bounds, Some((LatLon::new(40.0, 7.0), LatLon::new(62.0, 8.0))));
+        assert_eq!(terrain.elevation_m(LatLon::new(40.5, 7.5)), Some(0.0));
+    }
 }

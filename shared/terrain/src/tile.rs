@@ -7,6 +7,7 @@
 // the bytes come from outside
 #![warn(clippy::indexing_slicing, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
+use crate::METRES_PER_DEGREE;
 use crate::grid::Grid;
 use geometry::LatLon;
 
@@ -78,6 +79,11 @@ impl Tile {
         1.0 / self.last()
     }
 
+    /// Distance between samples along a meridian, metres, roughly.
+    pub fn spacing_m(&self) -> f64 {
+        self.spacing_deg() * METRES_PER_DEGREE
+    }
+
     /// The box around everything that is known: `(south-west, north-east)`.
     pub fn known_box(&self) -> (LatLon, LatLon) {
         let ((left, right), (top, bottom)) = self.grid.known();
@@ -116,6 +122,12 @@ impl Tile {
             f64::from(self.west_deg) + column as f64 * step,
         )
     }
+}
+
+/// The corner that a tile's file name gives, and whether it is as long as a tile of one of the resolutions, bytes.
+pub fn announced(name: &str, bytes: u64) -> Option<(i32, i32)> {
+    let is_whole = SIDES.iter().any(|side| bytes == (side * side * 2) as u64);
+    corner(name).filter(|_| is_whole)
 }
 
 fn sample(pair: [u8; 2]) -> i16 {

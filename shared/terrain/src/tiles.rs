@@ -1,6 +1,6 @@
 //! Several tiles as one terrain.
 
-use crate::{METRES_PER_DEGREE, Terrain, Tile, TileError};
+use crate::{Terrain, Tile, TileError};
 use geometry::LatLon;
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, Default)]
 pub struct Tiles {
     /// By south-west corner.
-    by_corner: BTreeMap<(i32, i32), Tile>,
+    by_corner: BTreeMap<Corner, Tile>,
 }
 
 impl Tiles {
@@ -42,36 +42,47 @@ impl Tiles {
     }
 }
 
+/// South-west corner of a tile, whole degrees: latitude and longitude.
+pub type Corner = (i32, i32);
+
+/// The tiles that may know a place, its own first: one on a whole degree is also on the edge of the tile to the south or west.
+pub fn corners_at(p: LatLon) -> impl Iterator<Item = Corner> {
+    let valid = p.is_valid().then_some(p);
+    valid.into_iter().flat_map(|p| {
+        let wests = before(p.lon_deg);
+        before(p.lat_deg).flat_map(move |south| wests.clone().map(move |west| (south, west)))
+    })
+}
+
+/// The tiles that may know some place in a box; `None`: it is no box.
+pub fn corners_in(south_west: LatLon, north_east: LatLon) -> Option<impl Iterator<Item = Corner>> {
+    if !south_west.is_valid() || !north_east.is_valid() {
+        return None;
+    }
+    // what ends where the box begins may answer, too
+    let degrees = |from: f64, to: f64| from.ceil() as i32 - 1..=to.floor() as i32;
+    let wests = degrees(south_west.lon_deg, north_east.lon_deg);
+    let souths = degrees(south_west.lat_deg, north_east.lat_deg);
+    Some(souths.flat_map(move |south| wests.clone().map(move |west| (south, west))))
+}
+
+/// The whole degree before a place, and of a whole degree that before it.
+fn before(degrees: f64) -> impl Iterator<Item = i32> + Clone {
+    let whole = degrees.floor() as i32;
+    std::iter::once(whole).chain((degrees == f64::from(whole)).then_some(whole - 1))
+}
+
 impl Terrain for Tiles {
     fn elevation_m(&self, p: LatLon) -> Option<f64> {
-        if !p.is_valid() {
-            return None;
-        }
-        let (south, west) = (p.lat_deg.floor() as i32, p.lon_deg.floor() as i32);
-        // a point on a whole degree is also the edge of the tile to the south or west
-        let souths = [Some(south), (p.lat_deg == f64::from(south)).then_some(south - 1)];
-        let wests = [Some(west), (p.lon_deg == f64::from(west)).then_some(west - 1)];
-        souths
-            .into_iter()
-            .flatten()
-            .flat_map(|s| wests.into_iter().flatten().map(move |w| (s, w)))
-            .find_map(|corner| self.by_corner.get(&corner)?.elevation_m(p))
+        corners_at(p).find_map(|corner| self.by_corner.get(&corner)?.elevation_m(p))
     }
 
     fn spacing_m(&self, at: LatLon) -> Option<f64> {
-        let corner = (at.lat_deg.floor() as i32, at.lon_deg.floor() as i32);
-        Some(self.by_corner.get(&corner)?.spacing_deg() * METRES_PER_DEGREE)
+        Some(self.by_corner.get(&corners_at(at).next()?)?.spacing_m())
     }
 
     fn at_most_m(&self, south_west: LatLon, north_east: LatLon) -> Option<f64> {
-        if !south_west.is_valid() || !north_east.is_valid() {
-            return None;
-        }
-        // the degree before, whose edge may answer too
-        let degrees = |from: f64, to: f64| from.floor() as i32 - 1..=to.floor() as i32;
-        let corners = degrees(south_west.lat_deg, north_east.lat_deg)
-            .flat_map(|s| degrees(south_west.lon_deg, north_east.lon_deg).map(move |w| (s, w)));
-        let tiles = corners.filter_map(|corner| self.by_corner.get(&corner));
+        let tiles = corners_in(south_west, north_east)?.filter_map(|corner| self.by_corner.get(&corner));
         let highest = tiles.filter_map(|tile| tile.at_most_m(south_west, north_east)).reduce(f64::max);
         // where nothing is known, nothing is in the way
         highest.or(Some(f64::NEG_INFINITY))
