@@ -104,7 +104,8 @@ fn problems(ui: &mut Ui, scene: &Scene<'_>) {
     let Some(found) = scene.analysis.what_if_problems().filter(|_| !scene.view.what_if.is_nothing()) else {
         return;
     };
-    let known = |message: &str| scene.analysis.problems.iter().any(|p| p.message == message);
+    // with a remedy that was tried, a problem says more
+    let known = |message: &str| scene.analysis.problems.iter().any(|p| p.message.contains(message));
     let new: Vec<_> = found.iter().filter(|problem| !known(&problem.message)).collect();
     let p = theme::of(ui);
     let world = &scene.view.what_if;
