@@ -1,7 +1,7 @@
 //! What if: other worlds for the preview, and alarms at its cursor.
 
 use super::painted::texts;
-use super::{SQUARE, Window};
+use super::{PATIENCE, SQUARE, Window};
 use aircraft::{Profile, Wind};
 use egui::accesskit::Role;
 use egui::vec2;
@@ -13,6 +13,7 @@ use gcs_app::app::App;
 use gcs_app::forecast::Coverage;
 use gcs_app::panels::what_if::CAUSES;
 use std::sync::Arc;
+use std::time::Instant;
 
 pub const FIRE_WATCH: &str = include_str!("../../../assets/plans/fire-watch.xml");
 
@@ -307,10 +308,15 @@ fn messages_stand_above_the_legend_of_the_coverage() {
     window.until("the coverage", |app| app.analysis().coverage().is_some());
     window.ask_for("emergency plan that lands on R05");
     window.press(egui::Key::Enter);
-    window.until("the coverage", |app| app.analysis().coverage().is_some());
-    window.steps(3);
-    let message = window.harness.get_by_label_contains("Put aside: Nothing leads to").rect();
-    let legend = window.harness.get_by_label("Put the coverage away").rect();
+    let (message, legend) = ("Put aside: Nothing leads to", "Put the coverage away");
+    // what is changed is worked out anew, and no coverage is shown meanwhile
+    let deadline = Instant::now() + PATIENCE;
+    while !(window.shows(message) && window.shows(legend)) {
+        assert!(Instant::now() < deadline, "waited in vain for both");
+        window.wait();
+    }
+    let message = window.harness.get_by_label_contains(message).rect();
+    let legend = window.harness.get_by_label(legend).rect();
     assert!(message.bottom() < legend.top(), "{message} {legend}");
 }
 
