@@ -15,7 +15,7 @@ pub fn of_handle(scene: &Scene<'_>, what: &Handled) -> Option<String> {
     let plan = scene.document.plan();
     let (legs, is_shared) = match what {
         Handled::Fix(fix) => (legs_to(plan, |place| matches!(place, Place::Fix(id) if id == fix)), true),
-        Handled::Variable(name) => {
+        Handled::Variable(name) | Handled::Area(name, _) => {
             let contexts = plan.all_legs().into_iter();
             let bound = contexts.filter(|context| bound_to(context.leg).as_ref() == Some(name));
             (bound.map(|context| context.leg.id.clone()).collect(), true)

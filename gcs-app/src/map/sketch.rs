@@ -1,6 +1,7 @@
 //! A plan's places, before anything is flown: what can be dragged, areas, and the lines of emergency
 //! plans. Broken drafts give what can be made of them.
 
+mod area;
 mod axes;
 mod calls;
 mod handle;
@@ -12,6 +13,7 @@ mod reader;
 mod ruler;
 mod ways;
 
+pub use area::{AreaPart, set as set_area};
 use calls::Calls;
 pub use handle::{Handle, Handled};
 pub use placed::Placed;
@@ -323,6 +325,7 @@ impl Sketch {
                 self.handles.push(Handle { what: Handled::Variable(variable.name.clone()), at: variable.at });
             }
         }
+        self.handles.extend(area::handles(&self.areas));
     }
 
     /// The middle of what a rim belongs to.

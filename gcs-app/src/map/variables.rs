@@ -63,12 +63,12 @@ pub fn draw_areas(sheet: &Sheet<'_>) {
             continue;
         }
         let seen = bounds.intersect(view.rect);
-        let spots = [
-            (seen.center_top() - vec2(0.0, 4.0), Align2::CENTER_BOTTOM),
-            (seen.center_bottom() + vec2(0.0, 4.0), Align2::CENTER_TOP),
-            (seen.center_top() + vec2(0.0, 4.0), Align2::CENTER_TOP),
-            (seen.center(), Align2::CENTER_CENTER),
-        ];
+        let above = (seen.center_top() - vec2(0.0, 4.0), Align2::CENTER_BOTTOM);
+        let below = (seen.center_bottom() + vec2(0.0, 4.0), Align2::CENTER_TOP);
+        let top = (seen.center_top() + vec2(0.0, 4.0), Align2::CENTER_TOP);
+        let middle = (seen.center(), Align2::CENTER_CENTER);
+        // the name of the selected one is grabbed with its area
+        let spots = if selected { [top, middle, above, below] } else { [above, below, top, middle] };
         let (rank, text) = (Rank::Place.or_selected(selected), name(variable));
         sheet.ask(Name { rank, spots, text, size: 11.5, colour: p.text, ground: Ground::Halo });
     }

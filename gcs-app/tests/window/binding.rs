@@ -177,6 +177,38 @@ fn a_variable_that_is_an_area_is_drawn_with_its_name_and_selected_on_the_map() {
     assert_eq!(window.selected(), "burnt_area");
 }
 
+/// It had no handles: whoever dragged it moved the map.
+#[test]
+fn an_area_variable_is_moved_as_a_whole_and_by_its_corners_one_step_each() {
+    let area = r#"<variables><variable name="burnt_area" type="polygon" initial="36.33 -84.185, 36.33 -84.175, 36.325 -84.18"/></variables><mainPlan"#;
+    let mut window = Window::open(&SQUARE.replacen("<mainPlan", area, 1));
+    window.until_analysed();
+    assert!(!window.shows("Corner 1 of burnt_area"), "only those of the selected one");
+    window.click("Variable burnt area");
+    window.steps(4);
+    let corners = |window: &Window| match &window.plan().variables[0].initial {
+        flight_plan::VariableValue::Polygon(corners) => corners.clone(),
+        other => panic!("{other:?}"),
+    };
+    let before = corners(&window);
+    let middle = window.centre("Middle of burnt_area");
+    // all of it by its middle and by what is inside, a corner alone, and a mark that becomes one
+    let inside = middle + egui::vec2(14.0, -6.0);
+    let corner = window.centre("Corner 3 of burnt_area");
+    let mark = window.centre("New corner 2 of burnt_area");
+    for (from, len, moved) in [(middle, 3, 3), (inside, 3, 3), (corner, 3, 1), (mark, 4, 1)] {
+        window.drag(from, egui::vec2(30.0, 20.0));
+        let after = corners(&window);
+        assert_eq!(after.len(), len);
+        assert_eq!(after.iter().filter(|at| !before.contains(at)).count(), moved, "{after:?}");
+        window.press_ctrl(Key::Z);
+        assert_eq!(corners(&window), before, "one step");
+    }
+    window.click("Corner 1 of burnt_area");
+    window.press(Key::Delete);
+    assert!(corners(&window) == before && window.shows("An area has at least 3 points"));
+}
+
 #[test]
 fn the_place_that_is_nearest_is_bound_by_key() {
     let far = r#"<variables><variable name="far_away" type="position" initial="36.5 -84.0"/>"#;

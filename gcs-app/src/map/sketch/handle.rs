@@ -1,5 +1,6 @@
 //! What can be dragged or clicked on the map.
 
+use super::AreaPart;
 use super::numbers::{self, Ruler};
 use crate::document::Document;
 use flight_plan::{Id, ScanEntry};
@@ -21,6 +22,8 @@ pub enum Handled {
     Fix(Id),
     /// A variable that is a position.
     Variable(Id),
+    /// A part of a variable that is an area.
+    Area(Id, AreaPart),
     /// Where a leg goes.
     Waypoint(Id),
     /// The middle of a scan or orbit.
@@ -85,7 +88,7 @@ impl Handled {
     /// The leg it belongs to, if it is a leg's.
     pub fn leg(&self) -> Option<&Id> {
         match self {
-            Self::Fix(_) | Self::Variable(_) | Self::Between { .. } => None,
+            Self::Fix(_) | Self::Variable(_) | Self::Area(..) | Self::Between { .. } => None,
             Self::Waypoint(leg)
             | Self::Centre(leg)
             | Self::Radius(leg)
@@ -109,6 +112,7 @@ impl Handled {
         match self {
             Self::Fix(id) => format!("Fix {}", of(id)),
             Self::Variable(name) => format!("Place of {name}"),
+            Self::Area(variable, part) => part.name(variable),
             Self::Waypoint(id) => format!("Waypoint {}", of(id)),
             Self::Centre(id) => format!("Centre of {}", of(id)),
             Self::Radius(id) => format!("Radius of {}", of(id)),

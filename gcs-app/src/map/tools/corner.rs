@@ -1,14 +1,14 @@
 //! Corners of outlines and routes: what is one, and how it is removed.
 
 use crate::command::{Queue, ViewCommand};
-use crate::map::sketch::Handled;
+use crate::map::sketch::{AreaPart, Handled, Sketch};
 use flight_plan::{Area, Edit, FlightPlan, Id, LegKind, Pattern, Place, Scan, Value, ZoneShape};
 
 /// The corner that a handle is. Of a route the first point is one, too, though it is grabbed as the place of the leg; one that a
 /// variable or a fix says is not: that moves what says it.
 pub fn corner_of(plan: &FlightPlan, what: &Handled) -> Option<Handled> {
     match what {
-        Handled::Corner { .. } => Some(what.clone()),
+        Handled::Corner { .. } | Handled::Area(_, AreaPart::Corner(_)) => Some(what.clone()),
         Handled::Waypoint(leg) => {
             let leg = leg.clone();
             let is_own =
@@ -27,14 +27,26 @@ fn route(kind: &LegKind) -> Option<&[Place]> {
 }
 
 /// Removes a corner, unless too few would be left.
-pub fn remove_corner(plan: &FlightPlan, corner: &Handled, queue: &mut Queue) {
-    let Handled::Corner { leg, hole, corner } = corner else { return };
+pub fn remove_corner(plan: &FlightPlan, sketch: &Sketch, corner: &Handled, queue: &mut Queue) {
+    let (leg, hole, corner) = match corner {
+        Handled::Corner { leg, hole, corner } => (leg, hole, corner),
+        Handled::Area(variable, AreaPart::Corner(corner)) => {
+            return match sketch.remove_area_corner(variable, *corner) {
+                Some(edit) => queue.edit(edit),
+                None => queue.view(too_few("An area", 3)),
+            };
+        }
+        _ => return,
+    };
     let (have, least, what) = points_of(plan, leg, *hole);
     if have <= least {
-        let why = format!("{what} has at least {least} points: delete the whole of it instead.");
-        return queue.view(ViewCommand::Notice(why));
+        return queue.view(too_few(what, least));
     }
     queue.edit(Edit::RemoveCorner { leg: leg.clone(), hole: *hole, corner: *corner });
+}
+
+fn too_few(what: &str, least: usize) -> ViewCommand {
+    ViewCommand::Notice(format!("{what} has at least {least} points: delete the whole of it instead."))
 }
 
 /// How many points a ring or route has, how many it must have, and what it is.

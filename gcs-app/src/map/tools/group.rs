@@ -3,11 +3,12 @@
 use super::pen::way;
 use super::{Canvas, Grip};
 use crate::command::{DocumentCommand, Queue, Selection};
+use crate::map::sketch::set_area;
 use crate::map::text;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use flight_plan::transform::{self, Motion};
-use flight_plan::{FlightPlan, Id, Leg, Place};
+use flight_plan::{Edit, FlightPlan, Id, Leg, Place};
 use geometry::LatLon;
 use std::sync::Arc;
 
@@ -48,11 +49,30 @@ impl Does {
     }
 }
 
+/// What a drag moves, as it was.
+#[derive(Debug)]
+enum Moved {
+    /// Things of a plan.
+    Set(Arc<FlightPlan>, Vec<Id>),
+    /// A variable that is an area, with its corners.
+    Area(Id, Vec<LatLon>),
+}
+
+impl Moved {
+    fn edit(&self, motion: &Motion) -> Edit {
+        match self {
+            Self::Set(plan, set) => motion.edit(plan, set),
+            Self::Area(variable, corners) => {
+                set_area(variable, corners.iter().map(|at| motion.place(*at)).collect())
+            }
+        }
+    }
+}
+
 /// A drag on its way. It always begins from the plan as it was, so that it ends exactly where it leads.
 #[derive(Debug)]
 struct Drag {
-    plan: Arc<FlightPlan>,
-    set: Vec<Id>,
+    moved: Moved,
     does: Does,
     /// Where the grip was.
     from: Pos2,
@@ -84,8 +104,7 @@ impl Group {
         self.drag = around(canvas).filter(|_| !clicks).map(|around| {
             let pivot = canvas.view.geo(around.center());
             Drag {
-                plan: canvas.scene.document.plan().clone(),
-                set: canvas.scene.selected_set(),
+                moved: Moved::Set(canvas.scene.document.plan().clone(), canvas.scene.selected_set()),
                 does: *does,
                 from: does.at(around),
                 pivot,
@@ -96,16 +115,19 @@ impl Group {
     }
 
     /// A drag begins that moves one thing as a whole.
-    pub fn move_one(&mut self, what: Id, from: Pos2, canvas: &Canvas<'_>) {
+    pub fn move_one(&mut self, what: &Selection, from: Pos2, canvas: &Canvas<'_>) {
+        let moved = match what {
+            Selection::Variable(name) => {
+                canvas.sketch.area(name).map(|corners| Moved::Area(name.clone(), corners.to_vec()))
+            }
+            Selection::Zone(zone) => {
+                Some(Moved::Set(canvas.scene.document.plan().clone(), vec![zone.clone()]))
+            }
+            _ => None,
+        };
+        let Some(moved) = moved else { return };
         let pivot = canvas.view.geo(from);
-        self.drag = Some(Drag {
-            plan: canvas.scene.document.plan().clone(),
-            set: vec![what],
-            does: Does::Move,
-            from,
-            pivot,
-            motion: Motion::shift(pivot, pivot),
-        });
+        self.drag = Some(Drag { moved, does: Does::Move, from, pivot, motion: Motion::shift(pivot, pivot) });
     }
 
     /// The pressed grip is dragged; true if there is one.
@@ -113,7 +135,7 @@ impl Group {
         let Some(drag) = &mut self.drag else { return false };
         drag.motion = motion(drag, to, canvas);
         if drag.motion.to.is_valid() {
-            queue.document(DocumentCommand::DragEdit(drag.motion.edit(&drag.plan, &drag.set)));
+            queue.document(DocumentCommand::DragEdit(drag.moved.edit(&drag.motion)));
         }
         true
     }

@@ -5,7 +5,7 @@ use super::pen::length;
 use super::pick::selection;
 use crate::command::Selection;
 use crate::map::names::{self, Ground, Name, Rank, Spot};
-use crate::map::sketch::{Handle, Handled, Sketch, numbers};
+use crate::map::sketch::{AreaPart, Handle, Handled, Sketch, numbers};
 use crate::map::text;
 use crate::map::view::View;
 use crate::panels::Scene;
@@ -29,7 +29,7 @@ pub fn near<'a>(view: &View, sketch: &'a Sketch, scene: &Scene<'_>) -> Vec<Near<
         Handled::Number { .. } | Handled::ArcCentre(_) | Handled::Entry { .. } | Handled::Side { .. } => {
             scene.view.also.is_empty() && scene.is_selected(&selection(plan, &handle.what))
         }
-        Handled::Radius(_) | Handled::Corner { .. } | Handled::Ghost { .. } => {
+        Handled::Radius(_) | Handled::Corner { .. } | Handled::Ghost { .. } | Handled::Area(..) => {
             scene.is_selected(&selection(plan, &handle.what))
         }
         Handled::Centre(id) => plan.zone(id).is_none() || scene.is_selected(&Selection::Zone(id.clone())),
@@ -95,12 +95,12 @@ pub fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: b
         Handled::Waypoint(_) => {
             text::disc(painter, at, size * 0.8, fill, stroke);
         }
-        Handled::Centre(_) => {
+        Handled::Centre(_) | Handled::Area(_, AreaPart::Middle) => {
             text::disc(painter, at, size, fill, stroke);
             painter.line_segment([at - vec2(size, 0.0), at + vec2(size, 0.0)], stroke);
             painter.line_segment([at - vec2(0.0, size), at + vec2(0.0, size)], stroke);
         }
-        Handled::Ghost { .. } | Handled::Between { .. } => {
+        Handled::Ghost { .. } | Handled::Between { .. } | Handled::Area(_, AreaPart::Ghost(_)) => {
             let size = if hot { 6.0 } else { 3.5 };
             painter.circle(at, size, p.halo.gamma_multiply(0.8), Stroke::new(1.4, p.accent));
             if hot {
@@ -121,7 +121,7 @@ pub fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: b
             painter.circle(at, size * 0.9, p.halo, stroke);
             text::haloed(painter, at, Align2::CENTER_CENTER, "⇄", 11.0, p.text, p);
         }
-        Handled::Radius(_) | Handled::Corner { .. } => {
+        Handled::Radius(_) | Handled::Corner { .. } | Handled::Area(_, AreaPart::Corner(_)) => {
             let rect = Rect::from_center_size(at, Vec2::splat(size * 1.6));
             painter.rect(rect, 1.0, fill, stroke, egui::StrokeKind::Middle);
         }

@@ -108,7 +108,7 @@ fn end_of(runway: &Runway) -> LatLon {
 pub fn selection(plan: &FlightPlan, what: &Handled) -> Selection {
     match what {
         Handled::Fix(id) => Selection::Fix(id.clone()),
-        Handled::Variable(name) => Selection::Variable(name.clone()),
+        Handled::Variable(name) | Handled::Area(name, _) => Selection::Variable(name.clone()),
         Handled::Waypoint(id)
         | Handled::Centre(id)
         | Handled::Radius(id)

@@ -11,7 +11,7 @@ use super::snap::{self, snap_but};
 use super::{Canvas, Card, Grip, Pointer, Tool, Touch, whole};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
 use crate::map::guard;
-use crate::map::sketch::{Handle, Handled, Sketch, numbers, radius_edit};
+use crate::map::sketch::{AreaPart, Handle, Handled, Sketch, numbers, radius_edit};
 use crate::map::text;
 use crate::panels::{Scene, inspector};
 use crate::theme::Palette;
@@ -35,10 +35,10 @@ pub struct Select {
     inserting: Option<(String, Handled)>,
     /// The leg whose line was grabbed.
     line: Option<Id>,
-    /// The zone that is moved as a whole.
-    zone: Option<Id>,
+    /// The zone or area that is moved as a whole.
+    whole: Option<Selection>,
     /// It was: a press alone moves nothing.
-    zone_moves: bool,
+    whole_moves: bool,
     /// What the last click may have meant.
     among: Vec<Selection>,
     /// The handles around several selected legs.
@@ -70,11 +70,16 @@ impl Select {
     }
 
     /// A mark between two corners, in the middle of a leg or anywhere on its line, becomes what it stands for.
-    fn insert(&mut self, mark: &Handled, name: String, at: LatLon, plan: &FlightPlan, queue: &mut Queue) {
+    fn insert(&mut self, mark: &Handled, name: String, at: LatLon, canvas: &Canvas<'_>, queue: &mut Queue) {
+        let plan = canvas.scene.document.plan();
         let (edit, becomes) = match mark {
             Handled::Ghost { leg, hole, before } => {
                 let edit = Edit::InsertCorner { leg: leg.clone(), hole: *hole, before: *before, at };
                 (edit, Handled::Corner { leg: leg.clone(), hole: *hole, corner: *before })
+            }
+            Handled::Area(variable, part @ AreaPart::Ghost(before)) => {
+                let Some(edit) = canvas.sketch.drag_area(variable, *part, at) else { return };
+                (edit, Handled::Area(variable.clone(), AreaPart::Corner(*before)))
             }
             Handled::Between { leg, .. } => {
                 let place = Drawn::Place(Place::Position(Value::Constant(at)));
@@ -120,8 +125,8 @@ impl Tool for Select {
         // below the others
         let line = self.line_grip(&grips, canvas);
         let is_free = line.is_none() && self.inserting.is_none();
-        let zone = whole::grip(self.zone.as_ref(), &grips, canvas).filter(|_| is_free);
-        zone.into_iter().chain(line).chain(grips).collect()
+        let whole = whole::grip(self.whole.as_ref(), &grips, canvas).filter(|_| is_free);
+        whole.into_iter().chain(line).chain(grips).collect()
     }
 
     fn hover(&mut self, _at: Option<Pos2>, canvas: &Canvas<'_>) {
@@ -131,11 +136,11 @@ impl Tool for Select {
     }
 
     fn press(&mut self, mut pointer: Pointer, canvas: &Canvas<'_>, queue: &mut Queue) {
-        (self.line, self.zone) = (None, None);
-        if let Some(below @ (LINE | whole::ZONE)) = pointer.grip {
+        (self.line, self.whole) = (None, None);
+        if let Some(below @ (LINE | whole::KEY)) = pointer.grip {
             match (below, pointer.clicks) {
                 (LINE, false) => return self.grab_line(canvas, queue),
-                (_, false) => return self.grab_zone(canvas),
+                (_, false) => return self.grab_whole(canvas),
                 _ => pointer.grip = None,
             }
         }
@@ -188,14 +193,14 @@ impl Tool for Select {
             return;
         }
         if self.group.drag(to, canvas, queue) {
-            self.zone_moves = self.zone.is_some();
+            self.whole_moves = self.whole.is_some();
             return;
         }
         let plan = canvas.scene.document.plan();
         if let (Some(leg), true) = (self.line.take(), self.inserting.is_none()) {
             let (name, at) = (line_name(&leg, canvas), canvas.view.geo(to));
             return if at.is_valid() {
-                self.insert(&Handled::Between { leg, gap_m: 0 }, name, at, plan, queue)
+                self.insert(&Handled::Between { leg, gap_m: 0 }, name, at, canvas, queue)
             };
         }
         let Some(handle) = canvas.sketch.handles.get(grip) else { return };
@@ -206,7 +211,7 @@ impl Tool for Select {
         self.dragged = Some(mark);
         if is_mark(handle) {
             return if to.is_valid() {
-                self.insert(&handle.what, handle.what.name(canvas.scene.document), to, plan, queue)
+                self.insert(&handle.what, handle.what.name(canvas.scene.document), to, canvas, queue)
             };
         }
         let what = self.bent.as_ref().unwrap_or(&handle.what);
@@ -230,9 +235,12 @@ impl Tool for Select {
 
     fn release(&mut self, queue: &mut Queue) {
         self.inserting = None;
-        if self.zone.take().is_some() && std::mem::take(&mut self.zone_moves) {
+        if let Some(whole) = self.whole.take()
+            && std::mem::take(&mut self.whole_moves)
+        {
             // who meant the map sees what he did
-            queue.view(ViewCommand::Toast("Moved the selected zone. Ctrl+Z takes it back.".into()));
+            let kind = whole::kind(&whole);
+            queue.view(ViewCommand::Toast(format!("Moved the selected {kind}. Ctrl+Z takes it back.")));
         }
         self.group.release();
         (self.grabbed, self.dragged, self.bent) = (None, None, None);
@@ -248,7 +256,7 @@ impl Tool for Select {
 
     fn key(&mut self, _key: Key, canvas: &Canvas<'_>, queue: &mut Queue) {
         if let Some(corner) = self.corner.take() {
-            remove_corner(canvas.scene.document.plan(), &corner, queue);
+            remove_corner(canvas.scene.document.plan(), canvas.sketch, &corner, queue);
         }
     }
 
@@ -284,12 +292,12 @@ impl Select {
         why.into_iter().for_each(|why| queue.view(ViewCommand::Notice(why)));
     }
 
-    /// A drag begins inside of the selected zone.
-    fn grab_zone(&mut self, canvas: &Canvas<'_>) {
-        self.zone = canvas.pointer.and_then(|at| whole::selected(at, canvas));
-        self.refused = self.zone.is_none();
-        if let (Some(zone), Some(at)) = (&self.zone, canvas.pointer) {
-            self.group.move_one(zone.clone(), at, canvas);
+    /// A drag begins inside of the selected zone or area.
+    fn grab_whole(&mut self, canvas: &Canvas<'_>) {
+        self.whole = canvas.pointer.and_then(|at| whole::selected(at, canvas));
+        self.refused = self.whole.is_none();
+        if let (Some(whole), Some(at)) = (&self.whole, canvas.pointer) {
+            self.group.move_one(whole, at, canvas);
         }
     }
 
@@ -302,6 +310,7 @@ impl Select {
                 | Handled::Waypoint(_)
                 | Handled::Centre(_)
                 | Handled::Corner { .. }
+                | Handled::Area(_, AreaPart::Corner(_))
         );
         if !snaps {
             return Mark::at(canvas.view.geo(to));
@@ -377,7 +386,10 @@ fn line_name(leg: &Id, canvas: &Canvas<'_>) -> String {
 
 /// Not there yet: it is when it is dragged.
 fn is_mark(handle: &Handle) -> bool {
-    matches!(handle.what, Handled::Ghost { .. } | Handled::Between { .. })
+    matches!(
+        handle.what,
+        Handled::Ghost { .. } | Handled::Between { .. } | Handled::Area(_, AreaPart::Ghost(_))
+    )
 }
 
 /// The edit that moves what a handle stands for.
@@ -389,6 +401,9 @@ fn edit(plan: &FlightPlan, sketch: &Sketch, what: &Handled, to: LatLon) -> Optio
         Handled::Variable(name) => {
             Some(Edit::SetVariable { name: name.clone(), value: VariableValue::Position(to) })
         }
+        // a mark has become a corner before it gets here
+        Handled::Area(_, AreaPart::Ghost(_)) => None,
+        Handled::Area(variable, part) => sketch.drag_area(variable, *part, to),
         Handled::Fix(fix) => Some(Edit::MoveFix { fix: fix.clone(), to }),
         Handled::Waypoint(leg) | Handled::Centre(leg) => Some(Edit::MoveWaypoint { leg: leg.clone(), to }),
         Handled::Radius(leg) => {

@@ -3,7 +3,7 @@
 use super::Canvas;
 use super::pen::Mark;
 use super::pick::handles_near;
-use crate::map::sketch::Handled;
+use crate::map::sketch::{AreaPart, Handled};
 use crate::map::text;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Stroke, vec2};
@@ -73,7 +73,10 @@ fn runway_ends<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> 
 fn corners<'a>(at: Pos2, canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> {
     let scene = canvas.scene;
     handles_near(at, SNAP, canvas).filter_map(move |handle| match &handle.what {
-        Handled::Corner { .. } | Handled::Waypoint(_) | Handled::Centre(_) => {
+        Handled::Corner { .. }
+        | Handled::Area(_, AreaPart::Corner(_))
+        | Handled::Waypoint(_)
+        | Handled::Centre(_) => {
             Some(Mark { on: Some(handle.what.name(scene.document)), ..Mark::at(handle.at) })
         }
         _ => None,
