@@ -142,7 +142,8 @@ fn a_stage_that_is_too_low_is_named_and_can_be_raised_itself() {
         1,
     );
     let mut window = opened(&low);
-    assert!(window.shows("Problem: side2: raise this leg"), "{:?}", window.errors());
+    assert!(window.shows("Problem: side2: it goes into the ground"), "{:?}", window.errors());
+    assert!(window.shows("raise this leg"));
     assert!(window.shows("it inherits 20 m AMSL from"));
     let of_leg = |window: &Window| window.plan().leg(&"side2".into()).unwrap().leg.altitude.clone();
     window.harness.get_all_by_label("Fix “circuit”").next().unwrap().scroll_to_me();

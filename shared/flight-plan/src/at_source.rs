@@ -2,8 +2,10 @@
 
 use crate::{Altitude, Edit, FlightPlan, Id, LegContext, Problem, Value};
 
-/// Problems of an altitude as such; others are of how it is reached.
-const CODES: [&str; 3] = ["below-terrain", "low-clearance", "above-ceiling"];
+/// An inherited altitude can't be reached: where it comes from is told first.
+const STEEP: &str = "too-steep";
+/// Problems of an altitude, or of how it is reached.
+const CODES: [&str; 4] = ["below-terrain", "low-clearance", "above-ceiling", STEEP];
 
 /// A remedy where the value comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +26,7 @@ pub fn mend_at_source(plan: &FlightPlan, problems: &mut [Problem]) {
         let Some(found) = problem.fix.as_deref().and_then(|fix| Inherited::of(plan, fix)) else { continue };
         let said = found.said(problem.subject.as_ref());
         problem.reword(match problem.message.split_once(": ") {
+            _ if problem.code == STEEP => format!("{said}: {}", problem.message),
             Some((advice, why)) => format!("{advice} ({said}): {why}"),
             None => format!("{} ({said})", problem.message),
         });
@@ -83,16 +86,7 @@ impl Inherited {
     /// `it inherits 20 m AMSL from `stage``.
     fn said(&self, subject: Option<&Id>) -> String {
         let who = if subject == Some(&self.leg) { "it".into() } else { format!("`{}`", self.leg) };
-        let metres = match &self.altitude.metres {
-            Value::Constant(metres) => format!("{metres:.0} m"),
-            Value::Expression(formula) => format!("`{formula}`"),
-        };
-        let reference = match self.altitude.reference {
-            crate::AltitudeReference::Amsl => "AMSL",
-            crate::AltitudeReference::Agl => "AGL",
-            crate::AltitudeReference::Home => "above home",
-        };
-        crate::legible(&format!("{who} inherits {metres} {reference} from `{}`", self.source)).into_owned()
+        said(&who, &self.source, &self.altitude)
     }
 
     /// So many legs inherit from there.
@@ -104,6 +98,20 @@ impl Inherited {
         };
         plan.all_legs().iter().filter(|context| from_there(context)).count()
     }
+}
+
+/// `it inherits 20 m AMSL from `stage``.
+pub(crate) fn said(who: &str, source: &Id, altitude: &Altitude) -> String {
+    let metres = match &altitude.metres {
+        Value::Constant(metres) => format!("{metres:.0} m"),
+        Value::Expression(formula) => format!("`{formula}`"),
+    };
+    let reference = match altitude.reference {
+        crate::AltitudeReference::Amsl => "AMSL",
+        crate::AltitudeReference::Agl => "AGL",
+        crate::AltitudeReference::Home => "above home",
+    };
+    crate::legible(&format!("{who} inherits {metres} {reference} from `{source}`")).into_owned()
 }
 
 /// The loop or stage that says the altitude of a leg without one of its own.
@@ -148,7 +156,7 @@ mod tests {
         assert!(
             problem
                 .message
-                .starts_with("raise this leg by 100 m (it inherits 250 m AMSL from `way`): it goes"),
+                .ends_with("AMSL high there (it inherits 250 m AMSL from `way`): raise this leg by 100 m"),
             "{problem}"
         );
         assert_eq!(problem.at_source, None);
@@ -168,6 +176,33 @@ mod tests {
         assert_eq!((metres(&mended, "way"), metres(&mended, "a")), (Some(350.0), None));
         let left = check(&mended, &Profile::default(), &Flat(300.0));
         assert!(left.iter().all(|problem| problem.code != "below-terrain"), "{left:?}");
+    }
+
+    /// The stage `way` is so low that its first leg can't descend to it: first alone, and where the next leg would be too steep then,
+    /// for all of them.
+    #[test]
+    fn a_leg_too_steep_for_the_altitude_it_inherits_says_so_and_has_it_changed_there() {
+        let stage = r#"<stage id="high" type="en-route" altitude="1400" altitudeReference="amsl"><IF id="h" fix="A"/></stage><stage id="way""#;
+        let found = |legs: &str| {
+            let text = plan_with(legs).replacen(r#"<stage id="way""#, stage, 1);
+            let plan = read(&text).plan;
+            let found = check(&plan, &Profile::default(), &Flat(300.0));
+            let steep: Vec<Problem> = found.into_iter().filter(|p| p.code == "too-steep").collect();
+            (plan, steep)
+        };
+        let said = "it inherits 500 m AMSL from `way`: end it at ";
+        let (plan, steep) = found(r#"<TF id="b" fix="B"/><TF id="c" fix="C"/>"#);
+        let [problem] = steep.as_slice() else { panic!("{steep:?}") };
+        assert!(problem.message.starts_with(said), "{problem}");
+        let mended = problem.at_source.as_ref().unwrap().edit.apply(&plan).unwrap();
+        assert!(metres(&mended, "way") > Some(900.0) && metres(&mended, "b").is_none());
+        // from what is reached at its end the short one can't descend to the rest
+        let (plan, steep) = found(r#"<TF id="b" fix="B"/><TF id="c" lat="36.3" lon="-84.165"/>"#);
+        let [problem] = steep.as_slice() else { panic!("{steep:?}") };
+        assert!(problem.message.starts_with(said), "{problem}");
+        let mended = problem.fix.as_ref().unwrap().apply(&plan).unwrap();
+        assert!(metres(&mended, "way") > Some(900.0) && metres(&mended, "b").is_none());
+        assert!(check(&mended, &Profile::default(), &Flat(300.0)).iter().all(|p| p.code != "too-steep"));
     }
 
     #[test]

@@ -16,9 +16,10 @@ pub enum Severity {
 
 /// What may be the cause of all others stands before them, errors too.
 const CAUSE: &str = "far-away";
-/// Warnings that stand before others, the gravest first: how the flight ends, what becomes of it after a failure, and what
-/// was not looked at.
-const GRAVE: [&str; 7] = [
+/// What stands before others, the gravest first: what ends in the ground, how the flight ends, what becomes of it after a failure,
+/// and what was not looked at.
+const GRAVE: [&str; 8] = [
+    "below-terrain",
     "no-landing",
     "glide-out-of-reach",
     "glide-into-terrain",

@@ -150,7 +150,7 @@ fn problem(view: &View, leg: &Id, lowest: &Lowest, ways: Option<&OtherWays>) -> 
     let advice = advice + &way.as_ref().map(OtherWay::told).unwrap_or_default();
     if clearance_m < 0.0 {
         let message = if known {
-            format!("{advice}: it goes into the ground at {lat:.5}, {lon:.5}")
+            format!("it goes into the ground at {lat:.5}, {lon:.5}: {advice}")
         } else {
             format!(
                 "{advice}: at {lat:.5}, {lon:.5}, where no elevation is known, it leads {:.0} m below the sea and the plan's lowest runway; if the ground is that low, load its elevations",

@@ -4,6 +4,7 @@ use super::path::SHORTEST_M;
 use super::remedy::relevelled;
 use super::step::Step;
 use super::{CLEARANCE_M, Inspection};
+use crate::at_source;
 use crate::legible::told_apart;
 use crate::{Edit, Id, IterativeForm, LegKind, Problem, StageKind};
 
@@ -38,10 +39,13 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
             (gain_m.abs() / limit * step.speed_mps).ceil()
         );
         let say = if lacking_m > GRANTED_M { Problem::error } else { Problem::warning };
-        let problem = say("too-steep", message).of(&step.leg.id);
-        let gentler = || gentler(view, step, limit).filter(|_| !is_final);
-        let fix = cause.map(|begins| begins.edit).or_else(gentler);
-        problems.push(problem.perhaps_fixed_by(fix));
+        let problem = |message| say("too-steep", message).of(&step.leg.id);
+        let problem = match (cause, Reached::of(step, limit).filter(|_| !is_final)) {
+            (Some(begins), _) => problem(message).fixed_by(begins.edit),
+            (None, Some(reached)) => reached.mends(view, step, message, problem),
+            (None, None) => problem(message),
+        };
+        problems.push(problem);
     }
 }
 
@@ -97,13 +101,44 @@ fn beginning<'a>(view: &'a Inspection, step: &Step, most_mps: f64, is_final: boo
     is_flown.then_some(Beginning { leg: &before.leg.id, altitude_amsl_m, is_higher, edit })
 }
 
-/// The altitude that is reached at the end of the leg; not where that only makes the next one too steep.
-fn gentler(view: &Inspection, step: &Step, limit_mps: f64) -> Option<Edit> {
-    let (from_m, to_m) = (step.start?.altitude_amsl_m?, step.end?.altitude_amsl_m?);
-    let possible_m = step.path?.length_m() / step.speed_mps * limit_mps;
-    let reached_m = from_m + (to_m - from_m).clamp(-possible_m, possible_m);
-    let next_is_steeper = view.after(step).is_some_and(|next| is_steeper_from(view, next, reached_m));
-    relevelled(view, &step.leg.id, step.altitude(), to_m, reached_m - to_m).filter(|_| !next_is_steeper)
+/// The altitude that is reached at the end of a leg, metres AMSL, and the one that is asked for there.
+struct Reached {
+    to_m: f64,
+    reached_m: f64,
+}
+
+impl Reached {
+    fn of(step: &Step, limit_mps: f64) -> Option<Self> {
+        let (from_m, to_m) = (step.start?.altitude_amsl_m?, step.end?.altitude_amsl_m?);
+        let possible_m = step.path?.length_m() / step.speed_mps * limit_mps;
+        let reached_m = from_m + (to_m - from_m).clamp(-possible_m, possible_m);
+        Some(Self { to_m, reached_m })
+    }
+
+    /// The leg gets the altitude that it reaches. Where that only makes the next one too steep: what says the altitude of both gets
+    /// it, if anything does.
+    fn mends(
+        &self,
+        view: &Inspection,
+        step: &Step,
+        message: String,
+        problem: impl Fn(String) -> Problem,
+    ) -> Problem {
+        let edit = |of| relevelled(view, of, step.altitude(), self.to_m, self.reached_m - self.to_m);
+        let next = view.after(step).filter(|next| is_steeper_from(view, next, self.reached_m));
+        let Some(next) = next else { return problem(message).perhaps_fixed_by(edit(&step.leg.id)) };
+        let said_by = |step: &Step| match &step.leg.altitude {
+            None => step.around.says_altitude().map(|(id, altitude)| (id.clone(), altitude.clone())),
+            Some(_) => None,
+        };
+        match said_by(step).filter(|both| said_by(next).as_ref() == Some(both)) {
+            Some((of, altitude)) => {
+                let said = at_source::said("it", &of, &altitude);
+                problem(format!("{said}: {message}")).perhaps_fixed_by(edit(&of))
+            }
+            None => problem(message),
+        }
+    }
 }
 
 /// Begun at this altitude, it takes more than the aircraft does, and more than now.

@@ -19,7 +19,7 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
     };
     let lacks_m = ground_m - flown_m + super::CLEARANCE_M;
     let message = format!(
-        "raise this leg by {:.0} m: it goes into the ground, which is {ground_m:.0} m AMSL high at one of its places",
+        "it goes into the ground, which is {ground_m:.0} m AMSL high at one of its places: raise this leg by {:.0} m",
         lacks_m.ceil()
     );
     let fix = raise(view, &step.leg.id, step.altitude(), flown_m, lacks_m);

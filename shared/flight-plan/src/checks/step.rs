@@ -108,6 +108,14 @@ impl Around {
         std::iter::once(&leg.altitude).chain(loops).find_map(Option::as_ref).or(stage)
     }
 
+    /// The loop or stage that says the altitude of a leg without one of its own, and which that is.
+    pub fn says_altitude(&self) -> Option<(&Id, &Altitude)> {
+        let loops = self.loops.iter().rev().map(|l| (&l.id, l.altitude.as_ref()));
+        let stage = (&self.stage.id, self.stage.altitude.as_ref());
+        let stage = std::iter::once(stage).filter(|_| self.stage.kind != StageKind::TakeOff);
+        loops.chain(stage).find_map(|(id, altitude)| Some((id, altitude?)))
+    }
+
     /// Likewise, the speed.
     pub fn speed_of<'a>(&'a self, leg: &'a Leg) -> Option<&'a Value<f64>> {
         let loops = self.loops.iter().rev().map(|l| &l.speed_mps);

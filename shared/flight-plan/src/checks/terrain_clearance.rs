@@ -25,7 +25,7 @@ pub(super) fn check(view: &Inspection, step: &Step, problems: &mut Vec<Problem>)
         clearance_m if clearance_m < 0.0 => {
             let ground_m = lowest.ground_m;
             let what = format!("it goes into the ground, which is {ground_m:.0} m AMSL high there");
-            ("below-terrain", format!("{}: {what}", advice()))
+            ("below-terrain", format!("{what}: {}", advice()))
         }
         clearance_m if clearance_m < MARGIN_M && !near_runway => {
             let what = format!(
@@ -198,7 +198,7 @@ mod tests {
             let found = check(&plan, &Profile::default(), &Ridge(ridge_m));
             let [problem] = found.as_slice() else { panic!("{found:?}") };
             assert_eq!(problem.code, code);
-            assert!(problem.message.starts_with("raise `a` by "), "{problem}");
+            assert!(problem.message.contains("raise `a` by "), "{problem}");
             assert!(problem.message.contains("or hold to climb (HA) behind it"), "{problem}");
             let repaired = problem.fix.as_ref().unwrap().apply(&plan).unwrap();
             assert_eq!(check(&repaired, &Profile::default(), &Ridge(ridge_m)), []);
@@ -246,7 +246,7 @@ mod tests {
             plan.leg(&id.into()).and_then(|context| context.leg.altitude.clone())
         };
         assert_eq!(altitude(&repaired, "a"), altitude(&plan, "a"));
-        assert!(message_of(legs, "below-terrain").starts_with("raise this leg by 100 m"));
+        assert!(message_of(legs, "below-terrain").ends_with(": raise this leg by 100 m"));
     }
 
     /// Over flat ground at 300 m.
