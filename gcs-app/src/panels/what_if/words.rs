@@ -125,27 +125,53 @@ pub fn diversion(diversion: &Diversion, flown: &FlightPlan, units: Units) -> Vec
         }
         (Ok(powered), None) => format!("{is_reached} on {plan}{}.", with_engine(powered)),
     };
-    let just = (reach == Reach::Tight).then(|| just(diversion.cause, &margins, units));
+    let spare = spare(diversion, reach, &margins, units);
     let ran = diversion.powered.as_ref().ok().filter(|_| diversion.glided.is_some());
     let ran = ran.map(|powered| format!("With an engine that runs: {plan}{}.", with_engine(powered)));
     // two ways without the engine: it matters which of them comes true
     let begin = if diversion.glided.is_some() { "Not flown, for comparison: a" } else { "A" };
     let glide = glide.map(|glide| format!("{begin} {}", calculated(glide, margins.glide_m, units)));
-    [format!("{alarm}: {counts}")].into_iter().chain(just).chain(glide).chain(ran).collect()
+    [format!("{alarm}: {counts}")].into_iter().chain(spare).chain(glide).chain(ran).collect()
 }
 
-/// What is meant by that word.
-fn just(cause: Cause, margins: &Margins, units: Units) -> String {
-    match cause {
-        Cause::Engine => {
-            let height = units.altitude().show(margins.glide_m);
+/// What decides between reached and just reached: that is not the height over the threshold as flown, where a glide comes low on purpose.
+fn spare(diversion: &Diversion, reach: Reach, margins: &Margins, units: Units) -> Option<String> {
+    let is_tight = reach == Reach::Tight;
+    if diversion.cause != Cause::Engine {
+        let percent = margins.energy_share * 100.0;
+        return is_tight.then(|| format!("Just: less than {percent:.0} % energy is to spare."));
+    }
+    if reach == Reach::Out || diversion.glided.is_none() {
+        return None;
+    }
+    let height = |metres| units.altitude().show(metres);
+    let least = height(margins.glide_m);
+    let (word, less) =
+        if is_tight { ("Just", format!(", less than {least},")) } else { ("To spare", String::new()) };
+    Some(match best_glide(diversion) {
+        Some((way, spare_m)) => {
+            let spare = if is_tight { format!("{} to spare", height(spare_m)) } else { height(spare_m) };
             format!(
-                "Just: at best a glide, along the plan or straight, is at the threshold less than {height} high."
+                "{word}: {spare}{less} at the threshold in a glide {way}. As flown, that height is lost before."
             )
         }
-        _ => format!("Just: less than {:.0} % energy is to spare.", margins.energy_share * 100.0),
-    }
+        None => format!(
+            "Just: at best a glide, along the plan or straight, is at the threshold less than {least} high."
+        ),
+    })
 }
+
+/// The glide with the most height at the threshold, metres, if one comes there.
+fn best_glide(diversion: &Diversion) -> Option<(&'static str, f64)> {
+    let along = diversion.glide.as_ref().filter(|glide| glide.hill.is_none());
+    let along = along
+        .map(|glide| (if glide.along_plan { "along all of the plan" } else { STRAIGHT }, glide.margin_m));
+    let straight = diversion.straight_m.map(|metres| (STRAIGHT, metres));
+    let there = along.into_iter().chain(straight).filter(|(_, metres)| metres.is_finite() && *metres >= 0.0);
+    there.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+const STRAIGHT: &str = "straight to the runway";
 
 /// Behind the word whether the runway is reached: how the plan ends that is flown with an engine.
 fn with_engine(flown: &Powered) -> String {
@@ -307,6 +333,7 @@ mod tests {
             words(&found),
             [
                 "Engine failure: R05 is reached without the engine along Return home, over the threshold 12 m high, down after 1:30.",
+                "To spare: 40 m at the threshold in a glide along all of the plan. As flown, that height is lost before.",
                 "Not flown, for comparison: a glide along all of the plan: at the threshold 40 m high, after 1:35.",
                 "With an engine that runs: Return home, after 3:20, 62 % energy left.",
             ]
@@ -325,7 +352,15 @@ mod tests {
         );
         let straight = words(&Diversion { straight_m: Some(61.0), ..found.clone() });
         assert!(straight[0].starts_with("Engine failure: R05 is reached without the engine on a part of"));
-        assert!(!straight.iter().any(|line| line.starts_with("Just")), "{straight:?}");
+        assert_eq!(
+            straight[1],
+            "To spare: 61 m at the threshold in a glide straight to the runway. As flown, that height is lost before."
+        );
+        let tight = words(&Diversion { straight_m: Some(7.0), ..found.clone() });
+        assert_eq!(
+            tight[1],
+            "Just: 7 m to spare, less than 15 m, at the threshold in a glide straight to the runway. As flown, that height is lost before."
+        );
         if let Some(glided) = &mut found.glided {
             let runway = &plan().runways[0];
             let along = |along_m: f64, amsl_m| TrackPoint {
