@@ -69,6 +69,21 @@ fn the_tracks_of_a_survey_overlap_for_a_camera() {
     assert_eq!(Outline { template: Template::Search, ..ours }.survey(&Profile::default(), &flat), None);
 }
 
+/// It was spaced by a square as large as its longest diagonal: more than a camera sees from there.
+#[test]
+fn the_tracks_of_a_drawn_survey_overlap_for_a_camera_too() {
+    let corners = [(36.3148, -84.1793), (36.3134, -84.1543), (36.2988, -84.1572), (36.3033, -84.1806)];
+    let extent = Extent::Drawn(corners.map(|(lat, lon)| LatLon::new(lat, lon)).to_vec());
+    let ours = outline(Template::Survey, LatLon::new(36.319, -84.173), 349.0, 52.0);
+    let outline = Outline { extent, ..ours };
+    let survey = outline.survey(&Profile::default(), hills().as_ref()).unwrap();
+    assert!(survey.side_overlap > 0.6, "{survey:?}");
+    for aircraft in Profile::names() {
+        let outline = Outline { aircraft: aircraft.into(), ..outline.clone() };
+        assert_eq!(problems(&outline, hills()), Vec::<String>::new(), "{aircraft}");
+    }
+}
+
 /// A hill beside the final's line, where its hold goes round.
 struct Hill(LatLon);
 impl Terrain for Hill {

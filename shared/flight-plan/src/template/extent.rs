@@ -1,5 +1,6 @@
 //! Where a mission is.
 
+use geometry::polygon::Polygon;
 use geometry::{LatLon, LocalFrame, Vec2};
 
 /// Most places of a line or an area: what one draws by hand has fewer.
@@ -50,6 +51,15 @@ impl Extent {
             (ends.1 - ends.0) / 2.0
         };
         side_m(|v| v.e).min(side_m(|v| v.n))
+    }
+
+    /// What an area covers, square metres: one that is drawn what is within its corners, another the square around its middle.
+    pub(super) fn area_m2(&self) -> f64 {
+        let drawn = match self {
+            Self::Around { .. } => None,
+            Self::Drawn(places) => self.frame().and_then(|frame| Polygon::from_geo(&frame, places, &[]).ok()),
+        };
+        drawn.map_or_else(|| 4.0 * self.half_width_m() * self.radius_m(), |area| area.area_m2())
     }
 
     fn frame(&self) -> Option<LocalFrame> {

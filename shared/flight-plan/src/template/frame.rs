@@ -19,6 +19,8 @@ pub(crate) const GLIDE_SLOPE: f64 = 0.075;
 const GATE_ROOM_M: f64 = 300.0;
 /// Share of what an aircraft can fly that its mission's tracks may take; the rest is for climbs, turns and the way there.
 const TRACKS: f64 = 0.25;
+/// The same of a survey with its turns.
+const SURVEYED: f64 = 0.5;
 /// The ground is looked at in a grid of so many by so many places.
 const GRID: u32 = 32;
 /// Along the ways themselves, from place to place, metres; so many places at most.
@@ -42,6 +44,8 @@ pub(super) struct Frame<'a> {
     pub(super) turn_radius_m: f64,
     /// The length of tracks that the energy allows, metres.
     pub(super) tracks_m: f64,
+    /// The same of a survey's with the turns between them, metres.
+    pub(super) surveyed_m: f64,
     /// From the threshold to the departure's fix, metres.
     ahead_m: f64,
     /// From the threshold back to the beginning and to the gate of the final, metres.
@@ -63,10 +67,12 @@ pub(super) struct Frame<'a> {
 impl<'a> Frame<'a> {
     pub(super) fn new(outline: &'a Outline, profile: &Profile, terrain: &dyn Terrain) -> Self {
         let turn_radius_m = profile.turn_radius_m(profile.cruise_airspeed_mps);
+        let range_m = profile.energy_j / profile.cruise_power_w * profile.cruise_airspeed_mps;
         let mut frame = Self {
             runway: &outline.runway,
             turn_radius_m,
-            tracks_m: TRACKS * profile.energy_j / profile.cruise_power_w * profile.cruise_airspeed_mps,
+            tracks_m: TRACKS * range_m,
+            surveyed_m: SURVEYED * range_m,
             ahead_m: outline.runway.length_m + (8.0 * turn_radius_m).max(1000.0),
             final_m: (20.0 * turn_radius_m).max(2600.0),
             gate_m: (9.0 * turn_radius_m).max(1200.0),

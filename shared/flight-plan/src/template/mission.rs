@@ -18,6 +18,8 @@ const STRIP_M: f64 = 200.0;
 const GROWN: f64 = 1.2;
 /// So much of what is seen on one track of a survey is seen again on the next.
 const SIDE_OVERLAP: f64 = 0.7;
+/// From track to track a turn is so many radii long, with the overshoot.
+const TURN_RADII: f64 = 6.0;
 /// How often a fire is scanned.
 const PASSES: f64 = 2.0;
 
@@ -65,12 +67,18 @@ impl Outline {
         let least_m = 2.2 * frame.turn_radius_m;
         let (half_m, radius_m) = (self.extent.half_width_m(), self.extent.radius_m());
         let scanned_m2 = match self.template {
-            Template::Survey | Template::Search => 4.0 * half_m * radius_m,
+            Template::Search => 4.0 * half_m * radius_m,
             Template::FireWatch => PASSES * 4.0 * (GROWN * half_m) * (GROWN * radius_m),
             Template::Corridor => 2.0 * radius_m * self.strip_m(),
-            Template::Circuit | Template::Patrol => 0.0,
+            Template::Survey | Template::Circuit | Template::Patrol => 0.0,
         };
-        let affordable_m = scanned_m2 / frame.tracks_m;
+        let affordable_m = match self.template {
+            Template::Survey => {
+                let turns_m2 = 2.0 * half_m * TURN_RADII * frame.turn_radius_m;
+                (self.extent.area_m2() + turns_m2) / frame.surveyed_m
+            }
+            _ => scanned_m2 / frame.tracks_m,
+        };
         let overlapping_m = camera_spacing_m(frame.above_ground_m, USUAL_ACROSS_DEG, SIDE_OVERLAP);
         match overlapping_m {
             Ok(metres) if self.template == Template::Survey => {
