@@ -302,11 +302,10 @@ impl MapState {
     }
 }
 
-/// Where the pointer is over the map, or was pressed there; not over what the tool in use says.
+/// Where the pointer is over the map, or was pressed there; not over the choices of the tool in use.
 fn pointer(ui: &Ui, view: &View) -> Option<Pos2> {
     let at = ui.input(|i| i.pointer.press_origin().or(i.pointer.hover_pos()));
-    let is_covered = |at: Pos2| tool_chip::shown(ui.ctx(), view.rect).is_some_and(|said| said.contains(at));
-    at.filter(|at| ui.rect_contains_pointer(view.rect) && !is_covered(*at))
+    at.filter(|at| ui.rect_contains_pointer(view.rect) && !tool_chip::takes(ui.ctx(), *at))
 }
 
 /// The variables as they are in flight, if what is flown is this document.

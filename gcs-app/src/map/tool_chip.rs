@@ -8,8 +8,8 @@ use crate::command::Queue;
 use crate::panels::{Scene, start};
 use crate::theme;
 use egui::{
-    Context, FontId, Id, Label, Margin, Popup, PopupCloseBehavior, Rangef, Rect, Role, Sense, Ui, UiBuilder,
-    WidgetInfo, pos2, text::LayoutJob, vec2,
+    Context, FontId, Id, Label, Margin, Popup, PopupCloseBehavior, Pos2, Rangef, Rect, Role, Sense, Ui,
+    UiBuilder, WidgetInfo, pos2, text::LayoutJob, vec2,
 };
 
 /// Least height of the line on a small map, and most of what it says there, screen points.
@@ -33,15 +33,27 @@ const CLEAR: f32 = 40.0;
 pub fn show(ui: &mut Ui, tools: &mut Toolbox, columns: &[Rect], scene: &Scene<'_>, queue: &mut Queue) {
     let map = ui.min_rect();
     let shown = tools.status(scene).map(|status| match map.width() < NARROW {
-        true => line(ui, tools, &status, columns, (scene, queue)),
+        true => {
+            let line = line(ui, tools, &status, columns, (scene, queue));
+            Shown { said: line, takes: line }
+        }
         false => whole(ui, tools, status, columns, (scene, queue)),
     });
     let takes_places = tools.takes_places();
     ui.data_mut(|data| data.insert_temp(places_id(), takes_places));
     ui.data_mut(|data| match shown {
-        Some(rect) => _ = data.insert_temp(said_id(), rect),
-        None => data.remove::<Rect>(said_id()),
+        Some(shown) => _ = data.insert_temp(said_id(), shown),
+        None => data.remove::<Shown>(said_id()),
     });
+}
+
+/// Where it is on the map.
+#[derive(Debug, Clone, Copy)]
+struct Shown {
+    /// All of it.
+    said: Rect,
+    /// What of it takes clicks: the rest lets them through.
+    takes: Rect,
 }
 
 /// Everything, in as many lines as that takes.
@@ -51,26 +63,43 @@ fn whole(
     status: String,
     columns: &[Rect],
     (scene, queue): (&Scene<'_>, &mut Queue),
-) -> Rect {
+) -> Shown {
     let map = ui.min_rect();
     // beside the card for a new mission, where that lies on the map
     let card = if start::is_wanted(scene) && start::is_on(map) { start::WIDTH + 36.0 } else { 0.0 };
     let left = columns.iter().map(|column| column.right()).fold(map.left(), f32::max) + 4.0 + card;
     let room = Rect::from_min_max(pos2(left, map.top() + BESIDE), map.right_bottom() - vec2(BUTTONS, 0.0));
-    let mut chip = ui.new_child(opaque(room));
+    let mut chip = ui.new_child(UiBuilder::new().max_rect(room).id_salt("tool status"));
+    if tools.takes_places() && is_looked_through(ui) {
+        chip.multiply_opacity(THROUGH);
+    }
+    let mut takes = Rect::NOTHING;
     theme::card(&chip).show(&mut chip, |ui| {
         // above what is said, which takes one line or two: nothing moves under the pointer
         if tools.has_options() {
-            ui.horizontal_wrapped(|ui| tools.options(ui, scene, queue));
+            let choices = opaque(UiBuilder::new());
+            let choices =
+                ui.scope_builder(choices, |ui| ui.horizontal_wrapped(|ui| tools.options(ui, scene, queue)));
+            takes = choices.response.rect;
         }
         ui.add(Label::new(status).selectable(false).wrap());
     });
-    chip.min_rect()
+    Shown { said: chip.min_rect(), takes }
 }
 
-/// What lies over the map takes clicks and drags: none goes to the map behind it.
-fn opaque(room: Rect) -> UiBuilder {
-    UiBuilder::new().max_rect(room).id_salt("tool status").sense(Sense::click_and_drag())
+/// The pointer is on what is said: a click there is for the map behind it, which is to be seen.
+fn is_looked_through(ui: &Ui) -> bool {
+    let at = ui.ctx().pointer_hover_pos();
+    let shown = ui.data(|data| data.get_temp::<Shown>(said_id()));
+    at.zip(shown).is_some_and(|(at, shown)| shown.said.contains(at) && !shown.takes.contains(at))
+}
+
+/// So much is left of it then.
+const THROUGH: f32 = 0.35;
+
+/// Choices over the map take clicks and drags, beside them, too: who misses one draws nothing behind it.
+fn opaque(place: UiBuilder) -> UiBuilder {
+    place.sense(Sense::click_and_drag())
 }
 
 fn line(
@@ -93,7 +122,7 @@ fn line(
     let height = |width: f32| ui.fonts_mut(|fonts| fonts.layout_job(letters(width - button))).size().y;
     let room = place(ui.ctx(), map, columns, tools.is_drawing(), &height);
     let letters = ui.fonts_mut(|fonts| fonts.layout_job(letters(room.width() - button)));
-    let mut chip = ui.new_child(opaque(room));
+    let mut chip = ui.new_child(opaque(UiBuilder::new().max_rect(room).id_salt("tool status")));
     theme::card(&chip).inner_margin(Margin::symmetric(8, 4)).show(&mut chip, |ui| {
         ui.set_width(ui.available_width());
         ui.horizontal(|ui| {
@@ -178,7 +207,13 @@ pub fn above(ctx: &Context, map: Rect) -> Rect {
     low.map_or(map, |said| map.with_max_y(said.top() + BELOW - 4.0))
 }
 
+/// A click there was for it in the last frame, and not for the map.
+pub fn takes(ctx: &Context, at: Pos2) -> bool {
+    ctx.data(|data| data.get_temp::<Shown>(said_id())).is_some_and(|shown| shown.takes.contains(at))
+}
+
 /// Where it was on the map in the last frame.
 pub fn shown(ctx: &Context, map: Rect) -> Option<Rect> {
-    ctx.data(|data| data.get_temp::<Rect>(said_id())).filter(|said| map.intersects(*said))
+    let shown = ctx.data(|data| data.get_temp::<Shown>(said_id()))?;
+    Some(shown.said).filter(|said| map.intersects(*said))
 }
