@@ -37,7 +37,7 @@ pub fn parts<'a>(points: &'a [Point], coverage: &Coverage) -> Vec<(Option<Reach>
 /// A line of some look, in a picture without a halo.
 pub fn line(painter: &Painter, path: &[Pos2], (stroke, style): (Stroke, Style)) {
     match style {
-        Style::Solid => drop(painter.add(Shape::line(path.to_vec(), stroke))),
+        Style::Solid | Style::Double => drop(painter.add(Shape::line(path.to_vec(), stroke))),
         Style::Dashed => painter.extend(Shape::dashed_line(path, stroke, 9.0, 6.0)),
         Style::Dotted => painter.extend(Shape::dotted_line(path, stroke.color, 6.0, stroke.width * 0.75)),
     }
@@ -65,8 +65,10 @@ fn words(coverage: &Coverage, reach: Reach) -> String {
         return reach_name(reach).into();
     }
     let share = coverage.share(reach);
+    let percent = percents(REACHES.map(|reach| coverage.share(reach)));
+    let percent = REACHES.iter().zip(percent).find(|(of, _)| **of == reach).map_or(0, |(_, percent)| percent);
     let (near, kinds) = coverage.near_runway(reach);
-    let of_all = format!("{}: {:.0} %", reach_name(reach), share * 100.0);
+    let of_all = format!("{}: {percent} %", reach_name(reach));
     if reach == Reach::Good || kinds.is_empty() {
         return of_all;
     }
@@ -77,6 +79,23 @@ fn words(coverage: &Coverage, reach: Reach) -> String {
         false => format!("{of_all}, all of it on {names}"),
     }
 }
+
+/// Shares that are all there is as whole percentages that sum to 100: rounded down, and what is left goes to those that lost most.
+fn percents(shares: [f64; 3]) -> [u32; 3] {
+    let exact = shares.map(|share| share.clamp(0.0, 1.0) * 100.0);
+    let mut whole = exact.map(|percent| (percent + EXACT).floor() as u32);
+    let mut lost: Vec<usize> = (0..exact.len()).collect();
+    lost.sort_by(|a, b| (exact[*b] - f64::from(whole[*b])).total_cmp(&(exact[*a] - f64::from(whole[*a]))));
+    let all = exact.iter().sum::<f64>().round() as usize;
+    let left = all.saturating_sub(whole.iter().sum::<u32>() as usize);
+    for index in lost.into_iter().take(left) {
+        whole[index] += 1;
+    }
+    whole
+}
+
+/// What a sum of shares may be off, percent.
+const EXACT: f64 = 1e-9;
 
 /// `departure, arrival and approach`.
 fn in_a_row(names: &[String]) -> String {
@@ -101,6 +120,18 @@ mod tests {
             altitude_amsl_m: 0.0,
             ground_amsl_m: None,
             passage: 0,
+        }
+    }
+
+    #[test]
+    fn percentages_sum_to_a_hundred() {
+        for (shares, expected) in [
+            ([0.934, 0.014, 0.052], [94, 1, 5]),
+            ([1.0, 0.0, 0.0], [100, 0, 0]),
+            ([1.0 / 3.0; 3], [34, 33, 33]),
+            ([0.935, 0.006, 0.059], [93, 1, 6]),
+        ] {
+            assert_eq!(percents(shares), expected);
         }
     }
 

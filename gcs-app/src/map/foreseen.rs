@@ -11,16 +11,20 @@ pub fn draw(sheet: &Sheet<'_>) {
     let Sheet { scene, p, .. } = *sheet;
     if let Some(Ok(foresight)) = scene.vehicle.outlook.considered().and_then(|c| c.foresight.as_ref()) {
         let path: Vec<LatLon> = foresight.path.iter().map(|point| point.position).collect();
-        path_with_name(sheet, &path, "would be flown", p.text);
+        path_with_name(sheet, &path, "would be flown", p.text, Style::Double);
     }
     if let Some(aboard) = scene.path_aboard() {
         let path: Vec<LatLon> = aboard.points.iter().map(|point| point.position).collect();
-        path_with_name(sheet, &path, "aboard", p.contingency);
+        path_with_name(sheet, &path, "aboard", p.contingency, Style::Dashed);
     }
 }
 
-fn path_with_name(sheet: &Sheet<'_>, path: &[LatLon], name: &str, colour: Color32) {
-    sheet.line(path.iter().copied(), Stroke::new(2.4, colour), Style::Dashed);
+/// Of a double line, screen points.
+const DOUBLE: f32 = 5.0;
+
+fn path_with_name(sheet: &Sheet<'_>, path: &[LatLon], name: &str, colour: Color32, style: Style) {
+    let width = if style == Style::Double { DOUBLE } else { 2.4 };
+    sheet.line(path.iter().copied(), Stroke::new(width, colour), style);
     let places: Vec<Pos2> = path.iter().map(|at| sheet.place(*at)).collect();
     if let Some(middle) = polyline::middle(&places) {
         let (rank, spots) = (Rank::Way, names::corners(middle, vec2(6.0, 6.0)));

@@ -2,6 +2,7 @@
 
 use super::graticule::{Round, round_length};
 use super::names::Names;
+use super::polyline::{self, Style};
 use super::tools::{Card, Toolbox};
 use super::view::View;
 use super::{chips, text, tool_chip};
@@ -50,7 +51,7 @@ pub fn draw(painter: &Painter, view: &View, scene: &Scene<'_>, tools: usize, nam
     let scale = scale(painter, view, map, scene.units(), p);
     let (toolbar, buttons) = (toolbar_at(view.rect, tools, scene), buttons_at(view.rect, scene));
     // also while the pointer is elsewhere: no name moves for it
-    for taken in [named, scale, toolbar, buttons, pointer_at(view.rect)] {
+    for taken in [named, scale, toolbar, buttons, pointer_at(view.rect, buttons)] {
         names.keep_clear(taken);
     }
     let plate = legend_at(view.rect, lift, tools, scene);
@@ -107,10 +108,12 @@ fn north(painter: &Painter, at: Pos2, p: &Palette) {
     text::haloed(painter, at + vec2(0.0, -17.0), Align2::CENTER_BOTTOM, "N", 10.0, p.text, p);
 }
 
-/// Where what is below the pointer is told.
-fn pointer_at(map: Rect) -> Rect {
+/// Where what is below the pointer is told: left of the buttons, where these reach down to it.
+fn pointer_at(map: Rect, buttons: Rect) -> Rect {
     let corner = map.right_bottom() - vec2(6.0, 18.0);
-    Rect::from_min_max(corner - vec2(270.0, 16.0), corner)
+    let low = Rect::from_min_max(corner - vec2(270.0, 16.0), corner);
+    let beside = if low.intersects(buttons) { low.right() - buttons.left() + 4.0 } else { 0.0 };
+    low.translate(vec2(-beside, 0.0))
 }
 
 /// Where the pointer is, and how high the ground is there.
@@ -119,7 +122,7 @@ pub fn pointer(ui: &mut Ui, view: &View, at: Option<Pos2>, scene: &Scene<'_>) {
     let ground = scene.layers.ground().elevation_m(at).map(|m| scene.units().altitude().show(m));
     let ground = ground.map_or_else(|| "elevation unknown".into(), |m| format!("ground {m}"));
     let text = format!("{} · {ground}", units::position(at));
-    let rect = pointer_at(view.rect);
+    let rect = pointer_at(view.rect, buttons_at(view.rect, scene));
     let mut line = ui.new_child(
         egui::UiBuilder::new().max_rect(rect).layout(egui::Layout::right_to_left(egui::Align::Center)),
     );
@@ -156,6 +159,11 @@ const ABOARD: Line = |painter, a, b, p| {
     painter.extend(Shape::dashed_line(&[a, b], Stroke::new(2.4, p.contingency), 8.0, 5.0));
 };
 
+/// What would follow a command that is considered.
+const FORESEEN: Line = |painter, a, b, p| {
+    polyline::draw(painter, &[vec![a, b]], Stroke::new(5.0, p.text), Style::Double, p.halo);
+};
+
 /// The lines that are always drawn alike, and what they mean.
 const LINES: [(&str, Line); 6] = [
     ("active", |painter, a, b, p| {
@@ -184,7 +192,9 @@ fn lines(scene: &Scene<'_>) -> Vec<(&'static str, Line)> {
         Some(_) => vec![("edited plan", PLANNED), ("plan aboard", ABOARD)],
         None => vec![("planned", PLANNED)],
     };
-    plans.into_iter().chain(LINES).collect()
+    let considered = scene.vehicle.outlook.considered().and_then(|considered| considered.foresight.as_ref());
+    let foreseen = considered.filter(|foresight| foresight.is_ok()).map(|_| ("would be flown", FORESEEN));
+    plans.into_iter().chain(foreseen).chain(LINES).collect()
 }
 
 /// Size of what so many of them take, screen points.

@@ -82,7 +82,12 @@ pub enum Style {
     Dashed,
     /// A contingency.
     Dotted,
+    /// What would be flown on a command: like no other line there may be.
+    Double,
 }
+
+/// So much of a double line's width is between its two lines.
+const BETWEEN: f32 = 0.45;
 
 /// Draws line parts with a halo, so that they can be read on any ground.
 pub fn draw(painter: &Painter, parts: &[Vec<Pos2>], stroke: Stroke, style: Style, halo: Color32) {
@@ -98,6 +103,10 @@ pub fn shapes(parts: &[Vec<Pos2>], stroke: Stroke, style: Style, halo: Color32) 
         match style {
             Style::Dashed if is_winding(part) => shapes.push(Shape::line(part.clone(), stroke)),
             Style::Solid => shapes.push(Shape::line(part.clone(), stroke)),
+            Style::Double => {
+                let between = Stroke::new(BETWEEN * stroke.width, halo);
+                shapes.extend([stroke, between].map(|stroke| Shape::line(part.clone(), stroke)));
+            }
             Style::Dashed => shapes.extend(Shape::dashed_line(part, stroke, 9.0, 6.0)),
             Style::Dotted => {
                 shapes.extend(Shape::dotted_line(part, stroke.color, 6.0, stroke.width * 0.75));

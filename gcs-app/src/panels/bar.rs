@@ -210,8 +210,11 @@ pub fn plan_state(scene: &Scene<'_>) -> (&'static str, Standing) {
     if is_open && status.proposed.as_deref() == Some(hash) {
         return ("proposed", Standing::Proposed);
     }
-    if status.plan.is_some() { ("edited ≠ aboard", Standing::Draft) } else { ("draft", Standing::Draft) }
+    if status.plan.is_some() { (EDITED, Standing::Draft) } else { ("draft", Standing::Draft) }
 }
+
+/// What is shown is another plan than the one aboard: both are named.
+const EDITED: &str = "edited";
 
 /// How far a plan has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -233,8 +236,12 @@ fn badge(ui: &mut Ui, scene: &Scene<'_>) {
     let (text, standing) = plan_state(scene);
     let hash = scene.analysis.hash_of(scene.document.version()).map(short_hash).unwrap_or_default();
     let (symbol, colour) = standing_style(standing, p);
-    let label = RichText::new(format!("{symbol} {text} {hash}")).color(colour);
     let aboard = scene.vehicle.active_hash().map_or_else(|| "no plan".to_owned(), |h| short_hash(&h));
+    let said = match text {
+        EDITED => format!("{symbol} aboard {aboard}, {text} {hash}"),
+        _ => format!("{symbol} {text} {hash}"),
+    };
+    let label = RichText::new(said).color(colour);
     let revision = scene.vehicle.status.as_ref().map_or(0, |s| s.value.revision);
     let label = egui::Label::new(label).truncate();
     ui.add(label).on_hover_text(format!("This document: {hash}\nAboard: {aboard}, revision {revision}"));

@@ -9,7 +9,7 @@ use crate::units::{self, Unit};
 use egui::{RichText, ScrollArea, Ui};
 use flight_exec::{Command, Foresight};
 use flight_plan::checks::CLEARANCE_M;
-use flight_plan::{Id, Value};
+use flight_plan::{Altitude, AltitudeReference, Id, Value};
 use usal::contract::GatewayState;
 
 /// Room for the button: what it does is known in more words a moment later, and nothing below moves for that, screen points.
@@ -122,7 +122,7 @@ fn effect(considered: &Considered, vehicle: &Vehicle) -> String {
 /// What would follow, in words.
 fn follows(ui: &mut Ui, considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) {
     let p = theme::of(ui);
-    ui.label(RichText::new("╌╌ on the map: the path that would be flown").color(p.text));
+    ui.label(RichText::new("══ double line on the map: the path that would be flown").color(p.text));
     ScrollArea::vertical().id_salt("consider").auto_shrink(false).show(ui, |ui| {
         for line in since(considered, scene).into_iter().chain(cautions(considered, foresight, scene)) {
             ui.label(RichText::new(format!("⚠ {line}")).color(p.caution));
@@ -208,7 +208,7 @@ fn facts(considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) -> V
         foresight.battery_left * 100.0
     );
     let rounds = begun_anew(&considered.command, vehicle);
-    let levels = change_of_level(foresight, units.altitude());
+    let levels = change_of_level(foresight, vehicle, units.altitude());
     next.into_iter()
         .chain(levels)
         .chain(rounds)
@@ -218,8 +218,9 @@ fn facts(considered: &Considered, foresight: &Foresight, scene: &Scene<'_>) -> V
         .collect()
 }
 
-/// `First descends 120 m, to 1200 m AMSL`: until the path is level from there on, or turns the other way.
-fn change_of_level(foresight: &Foresight, unit: Unit) -> Option<String> {
+/// `First descends 120 m, to 1200 m AMSL`: until the path is level from there on, or turns the other way. Where that is not the altitude
+/// of the leg that is flown next, the legs behind it go on so.
+fn change_of_level(foresight: &Foresight, vehicle: &Vehicle, unit: Unit) -> Option<String> {
     let from_m = foresight.path.first()?.altitude_amsl_m;
     let mut to_m = from_m;
     for (at, next) in foresight.path.iter().zip(foresight.path.iter().skip(1)) {
@@ -232,8 +233,25 @@ fn change_of_level(foresight: &Foresight, unit: Unit) -> Option<String> {
     }
     let by_m = to_m - from_m;
     let does = if by_m < 0.0 { "descends" } else { "climbs" };
-    let told = || format!("First {does} {}, to {} AMSL", unit.show(by_m.abs()), unit.show(to_m));
+    let next = foresight.next_leg.as_ref().and_then(|leg| Some((leg, altitude_amsl_m(leg, vehicle)?)));
+    let goes_on = next.filter(|(_, leg_m)| (leg_m - to_m).abs() >= MUCH_M);
+    let goes_on = goes_on.map_or_else(String::new, |(leg, leg_m)| {
+        format!(": to {} on {}, and on behind it", unit.show(leg_m), vehicle.name_of(leg))
+    });
+    let told = || format!("First {does} {}, to {} AMSL{goes_on}", unit.show(by_m.abs()), unit.show(to_m));
     (by_m.abs() >= MUCH_M).then(told)
+}
+
+/// The altitude that a leg of the plan aboard asks for, metres AMSL; `None`: it changes with the ground or a variable.
+fn altitude_amsl_m(leg: &Id, vehicle: &Vehicle) -> Option<f64> {
+    let plan = &vehicle.aboard.as_ref()?.plan;
+    let context = plan.leg(leg)?;
+    let Altitude { metres: Value::Constant(metres), reference } = context.altitude()? else { return None };
+    match reference {
+        AltitudeReference::Amsl => Some(*metres),
+        AltitudeReference::Home => Some(metres + plan.home()?.elevation_amsl_m),
+        AltitudeReference::Agl => None,
+    }
 }
 
 /// A path that climbs or descends less is level, m/s.

@@ -288,8 +288,11 @@ fn pressed(ui: &mut Ui, scene: &Scene<'_>, id: &str, (button, tip): (Button<'_>,
 /// The same by a button that is held.
 fn held(ui: &mut Ui, scene: &Scene<'_>, id: &str, look: (&str, Color32, f32), queue: &mut Queue) {
     let Some(action) = written(scene, id) else { return };
-    hold_or_why(ui, look, action.command, queue);
+    hold_or_why(ui, look, action.command, queue, field::hold_button);
 }
+
+/// Draws a button that is held: its text, colour and least width. True: it was held long enough.
+type HoldButton = fn(&mut Ui, &str, Color32, f32) -> bool;
 
 /// Width of the start's button, at least, screen points: no other one moves with its words.
 const HELD: f32 = 180.0;
@@ -299,8 +302,9 @@ fn hold_or_why(
     (text, colour, width): (&str, Color32, f32),
     command: Result<Command, Cow<'static, str>>,
     queue: &mut Queue,
+    button: HoldButton,
 ) {
-    let shown = ui.add_enabled_ui(command.is_ok(), |ui| field::hold_button(ui, text, colour, width));
+    let shown = ui.add_enabled_ui(command.is_ok(), |ui| button(ui, text, colour, width));
     match command {
         Ok(command) if shown.inner => queue.push(command),
         Ok(_) => {}
@@ -420,7 +424,9 @@ fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         None => format!("Emergency: fly {name}"),
     };
     let command = actions::emergency(scene, chosen.clone()).map_err(Cow::Borrowed);
-    hold_or_why(ui, (&text, p.warning, EMERGENCY), command, queue);
+    // what is flown already asks for nothing; held, it is given again
+    let button: HoldButton = if flown.is_some() { field::held_already } else { field::hold_button };
+    hold_or_why(ui, (&text, p.warning, EMERGENCY), command, queue, button);
     if plans.len() > 1 {
         let combo = egui::ComboBox::from_id_salt("alternate").width(0.0).selected_text("");
         // which one is chosen stands in the button before it

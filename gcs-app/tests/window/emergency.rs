@@ -59,6 +59,10 @@ fn banner_says_which_plan_why_where_to_and_the_way_back() {
     }
     assert!(window.shows("Arrival ▸ r1"), "the stage has no name, but a kind");
     assert!(window.shows("Emergency: flying return (hold)") && !window.shows("Emergency: fly return"));
+    assert!(
+        window.paints("Emergency: flying return") && !window.paints("returnhold\u{a0}1"),
+        "it asks for nothing"
+    );
     window.answer(ticket, Ok(Reply::Foresight(Box::new(gliding()))));
     window.steps(20);
     assert!(window.shows("touches down in 5:00"));

@@ -242,7 +242,7 @@ fn what_is_kept_as_a_draft_is_not_called_proposed() {
     window.receive_status(flight_exec::Status { plan, proposed, ..status(Phase::Flying) });
     assert!(window.shows("◈ proposed"));
     window.click("Keep as draft");
-    assert!(!window.shows("◈ proposed") && window.shows("edited ≠ aboard"));
+    assert!(!window.shows("◈ proposed") && window.shows(", edited "));
 }
 
 /// The panel takes the map's right part, and with it half of what is to be decided about.
