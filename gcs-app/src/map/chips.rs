@@ -9,9 +9,9 @@ use crate::theme::{self, Palette};
 use egui::{Align2, Area, Id, Margin, Rect, RichText, Ui, vec2};
 use flight_plan::Problem;
 
-/// Widest chip, the room below for the sources of the map and the one beside for the arrow to the north, screen points.
+/// Widest chip, the room below for the sources of the map and the place of the pointer, and the one beside for the arrow to the north, screen points.
 const WIDTH: f32 = 330.0;
-const BELOW: f32 = 22.0;
+const BELOW: f32 = 36.0;
 const BESIDE: f32 = 44.0;
 
 /// Draws them, the most urgent one lowest.

@@ -237,7 +237,11 @@ fn draw_axes(painter: &Painter, axes: &Axes, scene: &Scene<'_>, p: &Palette) {
     for mark in 0..=(axes.duration_s / step) as usize {
         let time = mark as f64 * step;
         let at = pos2(axes.x(axes.from_s + time), axes.plot.bottom() + 3.0);
-        painter.text(at, Align2::CENTER_TOP, units::duration(time), font.clone(), p.weak);
+        let letters = painter.layout_no_wrap(units::duration(time), font.clone(), p.weak);
+        // the last one is whole, too
+        let most = painter.clip_rect().right() - letters.size().x;
+        let left = (at.x - letters.size().x / 2.0).min(most);
+        painter.galley(pos2(left, at.y), letters, p.weak);
     }
 }
 

@@ -202,17 +202,42 @@ fn aside(
     room: f32,
     p: &Palette,
 ) -> bool {
-    let mut job = LayoutJob::default();
     let format = TextFormat::simple(FontId::proportional(11.0), p.weak);
-    job.append(detail, 0.0, format.clone());
-    if let Some(text) = alternate {
-        let space = if detail.is_empty() { 0.0 } else { 8.0 };
-        job.append(&format!("⚑ {text}"), space, format);
-    }
-    let galley = ui.painter().layout_job(one_line(job, room));
-    let (at, is_cut) = (right - vec2(galley.size().x, galley.size().y / 2.0), galley.elided);
+    let laid_out = |alternate: Option<&str>| {
+        let mut job = LayoutJob::default();
+        job.append(detail, 0.0, format.clone());
+        if let Some(text) = alternate {
+            let space = if detail.is_empty() { 0.0 } else { 8.0 };
+            job.append(&format!("⚑ {text}"), space, format.clone());
+        }
+        ui.painter().layout_job(one_line(job, room))
+    };
+    let whole = laid_out(alternate.as_deref());
+    let is_cut = whole.elided;
+    // plans are often told apart by the end of their names
+    let shorter = alternate.filter(|_| is_cut).and_then(|alternate| {
+        let mut shorter = cut_in_the_middle(&alternate).map(|text| laid_out(Some(&text)));
+        shorter.find(|galley| !galley.elided)
+    });
+    let galley = shorter.unwrap_or(whole);
+    let at = right - vec2(galley.size().x, galley.size().y / 2.0);
     ui.painter().galley(at, galley, p.weak);
     is_cut
+}
+
+/// So many letters stay at the end of what is cut in its middle, and so many at least at its beginning.
+const END: usize = 5;
+const BEGINNING: usize = 6;
+
+/// The text with more and more left out of its middle.
+fn cut_in_the_middle(text: &str) -> impl Iterator<Item = String> {
+    let letters: Vec<char> = text.chars().collect();
+    let end: String = letters.iter().skip(letters.len().saturating_sub(END)).collect();
+    let most = letters.len().saturating_sub(END + 1);
+    (BEGINNING..=most).rev().map(move |kept| {
+        let beginning: String = letters.iter().take(kept).collect();
+        format!("{}…{end}", beginning.trim_end())
+    })
 }
 
 fn line(ui: &Ui, text: String, size: f32, colour: Color32, width: f32) -> Arc<Galley> {
