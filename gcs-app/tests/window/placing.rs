@@ -5,6 +5,7 @@ use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_plan::{Area, Id, LegKind, Place, Value, VariableValue, ZoneShape};
+use geometry::LatLon;
 
 fn window() -> Window {
     let mut window = Window::open(SQUARE);
@@ -29,6 +30,25 @@ fn type_place(window: &mut Window, text: &str) {
     window.harness.get_by_label("Place to draw").type_text(text);
     window.steps(2);
     window.press(Key::Enter);
+}
+
+/// Digits went nowhere, and the letters behind them were keys of the window.
+#[test]
+fn a_place_that_is_typed_after_the_key_of_a_tool_goes_into_its_field() {
+    let mut window = window();
+    window.press(Key::X);
+    for (keys, lat_deg) in [(["3", "6", ".322, -84.168"], 36.322), (["-", "3", "6.322, -84.168"], -36.322)] {
+        for text in keys {
+            window.harness.event(Event::Text(text.into()));
+            window.steps(3);
+        }
+        window.press(Key::Enter);
+        let made = window.plan().fix(&Id::new(&window.selected())).unwrap().position;
+        assert!(made.distance_m(LatLon::new(lat_deg, -84.168)) < 1.0, "{made:?}");
+        window.press(Key::Escape);
+        window.press(Key::Escape);
+        window.press(Key::X);
+    }
 }
 
 #[test]

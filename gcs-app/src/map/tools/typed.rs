@@ -2,9 +2,11 @@
 
 use super::pen::Mark;
 use crate::coordinates::{self, Known};
-use crate::panels::Scene;
+use crate::panels::{Scene, table};
 use crate::theme;
-use egui::{Key, RichText, Role, TextEdit, Ui, WidgetInfo};
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
+use egui::{Context, Event, Key, RichText, Role, TextEdit, Ui, WidgetInfo};
 use flight_plan::{Id, Place};
 use geometry::LatLon;
 
@@ -16,16 +18,24 @@ pub struct Typed {
     fault: Option<String>,
     /// Places that the tool has not seen yet.
     places: Vec<Mark>,
+    /// When a minus was typed that may be the sign of what follows, seconds.
+    minus_s: Option<f64>,
 }
 
 impl Typed {
     /// Draws the field. True: Enter was pressed with nothing in it, so what is drawn ends.
     pub fn show(&mut self, ui: &mut Ui, scene: &Scene<'_>, from: Option<LatLon>) -> bool {
         let hint = if from.is_some() { "045° 800 m" } else { "type a place" };
+        let begun = self.begun(ui);
+        self.text.push_str(&begun);
         let edit = TextEdit::singleline(&mut self.text).hint_text(hint).desired_width(120.0);
         let response = ui.add(edit).on_hover_text(
             "Coordinates, a name of the plan, or a bearing and a distance: 045° 800 m from A. Enter takes it.",
         );
+        if !begun.is_empty() {
+            response.request_focus();
+            self.go_on_at_the_end(ui.ctx(), response.id);
+        }
         let text = self.text.clone();
         response.widget_info(move || {
             let mut info = WidgetInfo::labeled(Role::TextInput, true, "Place to draw");
@@ -44,6 +54,31 @@ impl Typed {
             ui.label(RichText::new(fault).color(theme::of(ui).warning));
         }
         ends
+    }
+
+    /// The field may have been left with its cursor elsewhere.
+    fn go_on_at_the_end(&self, ctx: &Context, field: egui::Id) {
+        let mut state = TextEditState::load(ctx, field).unwrap_or_default();
+        let end = CCursor::new(self.text.chars().count());
+        state.cursor.set_char_range(Some(CCursorRange::one(end)));
+        state.store(ctx, field);
+    }
+
+    /// From the first digit on what is typed is a place: whoever chose the tool by its key goes on typing. A minus alone zooms, too.
+    fn begun(&mut self, ui: &Ui) -> String {
+        let strays = strays(ui);
+        let now_s = ui.input(|i| i.time);
+        let had_minus = self.minus_s.is_some_and(|typed_s| now_s - typed_s < SIGN_S);
+        let Some(first) = strays.find(|c: char| c.is_ascii_digit()) else {
+            if !strays.is_empty() {
+                self.minus_s = strays.ends_with('-').then_some(now_s);
+            }
+            return String::new();
+        };
+        let (before, digits) = strays.split_at(first);
+        let is_negative = before.ends_with('-') || (before.is_empty() && had_minus);
+        self.minus_s = None;
+        format!("{}{digits}", if is_negative { "-" } else { "" })
     }
 
     fn read(&mut self, scene: &Scene<'_>, from: Option<LatLon>) {
@@ -72,4 +107,19 @@ impl Typed {
     pub fn take(&mut self) -> Vec<Mark> {
         std::mem::take(&mut self.places)
     }
+}
+
+/// A minus so long before a digit is its sign, seconds.
+const SIGN_S: f64 = 2.0;
+
+/// Letters that are typed while nothing has the keyboard that takes them.
+fn strays(ui: &Ui) -> String {
+    if ui.ctx().text_edit_focused() || table::has_focus(ui.ctx()) {
+        return String::new();
+    }
+    let text = |event: &Event| match event {
+        Event::Text(text) => Some(text.clone()),
+        _ => None,
+    };
+    ui.input(|i| i.events.iter().filter_map(text).collect())
 }
