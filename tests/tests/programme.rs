@@ -81,6 +81,7 @@ programme! {
     fp_manager_frozen,
     fp_manager_gone_for_good,
     gateway_killed always,
+    both_killed,
     agent_restarted,
     ground_station_gone,
     link_cut_1_s,

@@ -3,6 +3,7 @@
 use super::{FLIGHT_S, Scenario, expect_whole_mission, in_state, land, of_field, on_leg};
 use crate::rig::{Rig, Seen};
 use anyhow::{Context, ensure};
+use std::time::Duration;
 use usal::contract::{GatewayState, PlanEvent};
 
 pub const SCENARIOS: &[Scenario] = &[
@@ -39,8 +40,16 @@ pub const SCENARIOS: &[Scenario] = &[
         fly: |rig| Box::pin(gateway_killed(rig)),
     },
     Scenario {
+        name: "both_killed",
+        happens: "gateway and FP Manager are killed, and come back at once",
+        expected: "both find their place again, and the mission goes on",
+        plan: of_field,
+        simulator: &[],
+        fly: |rig| Box::pin(both_killed(rig)),
+    },
+    Scenario {
         name: "agent_restarted",
-        happens: "gateway and FP Manager are killed, as by a restart of their machine",
+        happens: "gateway and FP Manager are killed, and come back when their machine has started anew",
         expected: "both find their place again, and the mission goes on",
         plan: of_field,
         simulator: &[],
@@ -62,6 +71,8 @@ const HELD_WITHIN_S: f64 = 2.2;
 const TOLD_WITHIN_S: f64 = 0.5;
 /// The FP Manager has the aircraft again so soon after it or the gateway came back, by the gateway's clock.
 const BACK_WITHIN_S: f64 = 2.0;
+/// A small computer has started anew after so long; by the machine's clock.
+const MACHINE_STARTS_IN: Duration = Duration::from_secs(8);
 /// What took its time is looked for this long.
 const SEEN_WITHIN_S: f64 = 60.0;
 
@@ -146,11 +157,23 @@ async fn gateway_killed(rig: &mut Rig) -> anyhow::Result<()> {
     Ok(())
 }
 
+async fn both_killed(rig: &mut Rig) -> anyhow::Result<()> {
+    are_gone_for(rig, Duration::ZERO).await
+}
+
 async fn agent_restarted(rig: &mut Rig) -> anyhow::Result<()> {
+    are_gone_for(rig, MACHINE_STARTS_IN).await
+}
+
+/// The aircraft flies on by the list aboard. In lockstep nobody lets its time go on meanwhile.
+async fn are_gone_for(rig: &mut Rig, time: Duration) -> anyhow::Result<()> {
     on_leg(rig, "sweep").await?;
     is_recorded(rig).await?;
     rig.gateway.kill()?;
     rig.fp_manager.kill()?;
+    if !rig.is_in_lockstep() {
+        tokio::time::sleep(time).await;
+    }
     rig.restart_gateway()?;
     rig.restart_fp_manager()?;
     goes_on(rig).await
