@@ -62,7 +62,7 @@ const LOW: f32 = 220.0;
 /// Of the coverage's progress, screen points.
 const BAR_HEIGHT: f32 = 6.0;
 /// Room for what there usually is to say of an alarm, so that what stands below stays under the pointer when one is raised.
-const OUTCOME_HEIGHT: f32 = 120.0;
+const OUTCOME_HEIGHT: f32 = 132.0;
 
 fn alarm(ui: &mut Ui, cause: Cause, scene: &Scene<'_>, queue: &mut Queue) {
     let (raised, name) = (scene.view.alarm == Some(cause), cause.name());
