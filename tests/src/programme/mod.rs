@@ -134,16 +134,21 @@ const FLOATS_M: f64 = 8.0;
 /// So slowly it sinks there at most, m/s.
 const FLOATS_MPS: f64 = 0.3;
 
-/// It lands by its plan, and the wind falls when it is down: the ground of some simulations holds nothing, and what has landed there is
-/// blown away.
-async fn land_into_calm(rig: &mut Rig) -> anyhow::Result<()> {
+/// It is down on its runway, or floats just over it.
+async fn touch_down(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "final").await?;
     let is_down = |rig: &Rig| {
         let Some(position) = rig.position() else { return false };
         position.altitude_amsl_m < rig.field.elevation_m + FLOATS_M
             && position.velocity_down_mps.abs() < FLOATS_MPS
     };
-    rig.until("down", FLIGHT_S, |rig, _| is_down(rig)).await?;
+    rig.until("down", FLIGHT_S, |rig, _| is_down(rig)).await
+}
+
+/// It lands by its plan, and the wind falls when it is down: the ground of some simulations holds nothing, and what has landed there is
+/// blown away.
+async fn land_into_calm(rig: &mut Rig) -> anyhow::Result<()> {
+    touch_down(rig).await?;
     rig.disturb("wind 270,0")?;
     land_by_plan(rig).await
 }

@@ -22,8 +22,8 @@ use track::Track;
 use usal::{
     CallError, Occurrence,
     contract::{
-        Attitude, Command, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus, Navigation, PlanStatus,
-        Position, ProposalReport, Propose, Recording, Stamped,
+        Attitude, Command, Foresee, Foresight, GatewayEvent, GatewayRequest, GatewayState, GatewayStatus,
+        Navigation, PlanStatus, Position, ProposalReport, Propose, Recording, Stamped,
     },
     topics::{self, fp_manager, gateway},
 };
@@ -138,6 +138,11 @@ impl Rig {
         Ok(())
     }
 
+    /// What the FP Manager foresees of the rest of the flight.
+    pub async fn foresee(&self) -> anyhow::Result<Foresight> {
+        Ok(self.ground()?.session.call(fp_manager::FORESEE, &Foresee { command: None }, CALL).await?)
+    }
+
     /// Has the flight ended by force.
     pub async fn terminate(&self) -> anyhow::Result<()> {
         let request = GatewayRequest::Terminate { confirm: processes::VEHICLE.into() };
@@ -223,7 +228,8 @@ impl Rig {
         }
         let to = ground.navigation.latest().and_then(|said| said.stamped.value.current);
         if let Some(position) = ground.position.latest() {
-            self.track.fly(to, position.stamped.value.position);
+            let position = position.stamped.value;
+            self.track.fly(to, position.position, position.ground_speed_mps);
         }
     }
 

@@ -6,6 +6,8 @@ use usal::contract::{Ahead, Token, Waypoint};
 
 /// So many waypoints may be left before the aircraft is abeam of them: around an arc ArduPlane leaves each 100 m early.
 const LEFT_EARLY: usize = 4;
+/// What is slower than this over the ground does not fly, m/s.
+const FLIES_MPS: f64 = 5.0;
 
 /// Positions, and the waypoints that they were flown along.
 #[derive(Default)]
@@ -14,6 +16,9 @@ pub struct Track {
     start: Option<LatLon>,
     waypoints: BTreeMap<Token, Waypoint>,
     flown: Vec<(Token, LatLon)>,
+    /// Where it was last, and how fast over the ground, m/s.
+    last: Option<(LatLon, f64)>,
+    flown_s: f64,
 }
 
 impl Track {
@@ -24,11 +29,26 @@ impl Track {
         self.waypoints.extend(ahead.waypoints.iter().map(|waypoint| (waypoint.token, waypoint.clone())));
     }
 
-    /// It is here, on its way to a waypoint.
-    pub fn fly(&mut self, to: Option<Token>, at: LatLon) {
+    /// It is here, on its way to a waypoint, so fast over the ground, m/s.
+    pub fn fly(&mut self, to: Option<Token>, at: LatLon, speed_mps: f64) {
         self.start.get_or_insert(at);
+        self.take_time(at, speed_mps);
         if let Some(to) = to.filter(|_| self.flown.last().is_none_or(|(_, last)| *last != at)) {
             self.flown.push((to, at));
+        }
+    }
+
+    /// How long it has flown, seconds of its own time: each stretch of the way by the speed there. The time of a simulation that is
+    /// not ours may be quicker than the machine's.
+    pub fn flown_s(&self) -> f64 {
+        self.flown_s
+    }
+
+    fn take_time(&mut self, at: LatLon, speed_mps: f64) {
+        let Some((before, before_mps)) = self.last.replace((at, speed_mps)) else { return };
+        let mean_mps = (before_mps + speed_mps) / 2.0;
+        if mean_mps > FLIES_MPS {
+            self.flown_s += before.distance_m(at) / mean_mps;
         }
     }
 
@@ -90,10 +110,10 @@ mod tests {
         let mut track = Track::default();
         let waypoints = vec![waypoint(1, 1000.0, "a"), waypoint(2, 2000.0, "b"), waypoint(3, 9000.0, "c")];
         track.plan(&Ahead { waypoints });
-        track.fly(None, START);
+        track.fly(None, START, 0.0);
         for step in 1..=200 {
             let at = START.destination(0.0, step as f64 * 10.0).destination(90.0, beside_m(step));
-            track.fly(Some(Token(1 + (step - 1) / 100)), at);
+            track.fly(Some(Token(1 + (step - 1) / 100)), at, 20.0);
         }
         track
     }
@@ -107,10 +127,20 @@ mod tests {
     }
 
     #[test]
+    fn the_time_of_a_way_is_that_of_its_speed() {
+        let mut track = flown(|_| 0.0);
+        // 2000 m at 20 m/s, the first ten of them from standing still
+        assert!((track.flown_s() - 100.5).abs() < 0.01, "{}", track.flown_s());
+        track.fly(None, START.destination(0.0, 2001.0), 0.0);
+        track.fly(None, START.destination(0.0, 2002.0), 0.5);
+        assert!((track.flown_s() - 100.6).abs() < 0.01, "on the ground: {}", track.flown_s());
+    }
+
+    #[test]
     fn what_is_to_be_flown_no_more_is_no_line() {
         let mut track = flown(|_| 0.0);
         track.plan(&Ahead { waypoints: vec![waypoint(3, 2500.0, "d")] });
-        track.fly(Some(Token(3)), START.destination(0.0, 2600.0));
+        track.fly(Some(Token(3)), START.destination(0.0, 2600.0), 20.0);
         assert_eq!(track.within_m("c"), None);
         assert!((track.within_m("d").unwrap() - 100.0).abs() < 0.5, "{:?}", track.within_m("d"));
     }
