@@ -5,6 +5,9 @@
 //! It is the judgement of a coverage ([`Rehearsal::worst`](crate::rehearse::Rehearsal::worst)): what is judged is no plan's way but what
 //! an aircraft does with it ([`Best`]), for without an engine whatever the height does not suffice for is left out. To name a plan for an
 //! engine failure makes nothing worse. What is flown near a runway ([`is_near_runway`]) is not counted.
+//!
+//! A coverage flies the glide besides, which for all points of a flight takes many times as long as its review: where the aircraft comes
+//! down beside the runway all the same, only a coverage shows it.
 
 use super::View;
 use super::alternates::Origin;
