@@ -6,6 +6,7 @@ use crate::command::Replacement;
 use crate::document::Document;
 use crate::export::Exported;
 use crate::files::{Choices, Content, Entry, FileEvent, Over, Purpose, Stamp, Writing};
+use crate::jobs::{Taken, Task};
 use crate::layers::{LayerCommand, Source};
 use crate::map::{clipboard, drawings};
 use crate::panels::browse::Browsing;
@@ -21,14 +22,29 @@ const MOST_NOTES: usize = 200;
 
 impl App {
     /// Keeps a copy of unsaved changes in this folder, and offers what a crashed window left there.
+    ///
+    /// The folder is looked into in the background: the disk that it is on may be slow.
     pub fn keep_copies(&mut self, folder: &Path) {
-        match Keeper::open(folder) {
-            Ok(keeper) => self.keeper = Some(keeper),
-            Err(error) => {
-                self.view.notice = Some(format!(
-                    "No copy of unsaved changes can be kept in {}: {error}. Save the plan often.",
-                    folder.display()
-                ));
+        let folder = folder.to_owned();
+        let open = move || {
+            Keeper::open(&folder).map_err(|error| {
+                let folder = folder.display();
+                format!("No copy of unsaved changes can be kept in {folder}: {error}. Save the plan often.")
+            })
+        };
+        self.opening_copies = Some(Task::begin(self.wake.clone(), open));
+    }
+
+    fn take_keeper(&mut self) {
+        let Some(opening) = self.opening_copies.take() else { return };
+        match opening.take() {
+            Taken::NotYet => self.opening_copies = Some(opening),
+            Taken::Done(Ok(keeper)) => self.keeper = Some(keeper),
+            Taken::Done(Err(why)) => self.view.notice = Some(why),
+            Taken::Failed => {
+                let why =
+                    "No copy of unsaved changes can be kept: the program failed at it. Save the plan often.";
+                self.view.notice = Some(why.into());
             }
         }
     }
@@ -45,6 +61,7 @@ impl App {
 
     pub(super) fn tend_copy(&mut self, ctx: &egui::Context) {
         let now = self.now(ctx);
+        self.take_keeper();
         let Some(keeper) = &mut self.keeper else { return };
         let unsaved = self.shelf.unsaved(&self.document);
         if let Some(wait) = keeper.tend(unsaved, now.window_s, now.utc) {
@@ -190,7 +207,7 @@ impl App {
     }
 
     pub(super) fn export(&mut self, format: Format) {
-        self.files.export(self.document.plan().clone(), format, self.layers.ground().clone());
+        self.files.export(self.document.plan().clone(), format, self.layers.elevations().clone());
     }
 
     pub(super) fn ask_export(&mut self) {

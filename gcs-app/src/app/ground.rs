@@ -8,7 +8,7 @@ use egui::Context;
 impl App {
     /// Shows the ground's relief on the map.
     pub fn shade_ground(&mut self, ctx: &Context) {
-        self.map.shade(Some(self.layers.ground()), ctx);
+        self.map.shade(Some(self.layers.elevations()), ctx);
     }
 
     pub(super) fn change_layers(&mut self, command: LayerCommand) {
@@ -49,7 +49,7 @@ impl App {
     }
 
     fn begin_anew(&mut self) -> std::io::Result<()> {
-        let ground = self.layers.ground();
+        let ground = self.layers.elevations();
         self.worker = Worker::spawn(ground.clone(), self.wake.clone())?;
         self.aboard = Aboard::spawn(ground.clone(), self.wake.clone())?;
         Ok(())

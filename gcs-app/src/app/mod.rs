@@ -34,6 +34,7 @@ use crate::dock::Dock;
 use crate::document::Document;
 use crate::files::Files;
 use crate::forecast::{Aboard, Analysis, Forecast, Worker};
+use crate::jobs::Task;
 use crate::layers::Layers;
 use crate::link::Links;
 use crate::map::MapState;
@@ -87,6 +88,8 @@ pub struct App {
     connections: Connections,
     /// `None`: no copy of unsaved changes is kept.
     keeper: Option<Keeper>,
+    /// The folder of such copies is being looked into; or why it can't be.
+    opening_copies: Option<Task<Result<Keeper, String>>>,
     /// The vehicle whose plan aboard the document is, and the document's version.
     mirrored: Option<(VehicleName, u64)>,
     time_of_day: TimeOfDay,
@@ -168,6 +171,7 @@ impl App {
             recent: remembered.recent,
             connections: remembered.connections,
             keeper: None,
+            opening_copies: None,
             mirrored: None,
             time_of_day: jiff::Timestamp::now,
             looked_s: f64::NEG_INFINITY,
@@ -230,7 +234,8 @@ impl App {
     /// nothing.
     pub fn is_busy(&self) -> bool {
         let drawn = || self.panels.iter().filter(|panel| self.dock.draws(panel.id()));
-        self.map.is_busy() || !self.pushes.is_empty() || drawn().any(|panel| panel.is_busy())
+        let is_begun = self.opening_copies.is_some() || !self.pushes.is_empty();
+        self.map.is_busy() || is_begun || drawn().any(|panel| panel.is_busy())
     }
 
     /// The path of the plan aboard the vehicle that is shown, if it was asked for and is known.

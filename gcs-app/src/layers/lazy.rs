@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock, PoisonError, RwLock};
+use std::task::Poll;
 use terrain::tiles::{Corner, corners_at, corners_in};
 use terrain::{Terrain, Tile};
 
@@ -66,12 +67,20 @@ impl LazyTiles {
         question(slot.tile.get_or_init(read).as_ref()?)
     }
 
-    fn slot(&self, corner: Corner) -> Option<Arc<Slot>> {
+    /// A tile that is in memory, or being read.
+    fn read(&self, corner: Corner) -> Option<Arc<Slot>> {
         let now = self.questions.fetch_add(1, Ordering::Relaxed);
-        if let Some(slot) = self.slots.read().unwrap_or_else(PoisonError::into_inner).get(&corner) {
-            slot.used.store(now, Ordering::Relaxed);
-            return Some(slot.clone());
+        let slots = self.slots.read().unwrap_or_else(PoisonError::into_inner);
+        let slot = slots.get(&corner)?;
+        slot.used.store(now, Ordering::Relaxed);
+        Some(slot.clone())
+    }
+
+    fn slot(&self, corner: Corner) -> Option<Arc<Slot>> {
+        if let Some(slot) = self.read(corner) {
+            return Some(slot);
         }
+        let now = self.questions.fetch_add(1, Ordering::Relaxed);
         let bytes = self.stored.get(&corner)?.bytes;
         let mut slots = self.slots.write().unwrap_or_else(PoisonError::into_inner);
         make_room(&mut slots, self.most_bytes.saturating_sub(bytes));
@@ -97,6 +106,19 @@ fn make_room(slots: &mut BTreeMap<Corner, Arc<Slot>>, most_bytes: u64) {
 impl Terrain for LazyTiles {
     fn elevation_m(&self, p: LatLon) -> Option<f64> {
         corners_at(p).find_map(|corner| self.ask(corner, |tile| tile.elevation_m(p)))
+    }
+
+    fn at_once_m(&self, p: LatLon) -> Poll<Option<f64>> {
+        for corner in corners_at(p).filter(|corner| self.stored.contains_key(corner)) {
+            match self.read(corner).as_ref().and_then(|slot| slot.tile.get()) {
+                None => return Poll::Pending,
+                Some(tile) => match tile.as_ref().and_then(|tile| tile.elevation_m(p)) {
+                    None => {}
+                    known => return Poll::Ready(known),
+                },
+            }
+        }
+        Poll::Ready(None)
     }
 
     fn spacing_m(&self, at: LatLon) -> Option<f64> {
@@ -139,9 +161,14 @@ mod tests {
         assert_eq!((tiles.len(), tiles.kept()), (4, vec![]));
         assert_eq!(tiles.bounds(), Some((LatLon::new(36.0, -85.0), LatLon::new(40.0, -84.0))));
         let at = |lat_deg: f64| tiles.elevation_m(LatLon::new(lat_deg, -84.5));
+        let at_once = |lat_deg: f64| tiles.at_once_m(LatLon::new(lat_deg, -84.5));
+        assert_eq!([at_once(36.5), at_once(40.5)], [Poll::Pending, Poll::Ready(None)]);
+        assert_eq!(tiles.kept(), vec![], "nothing is read for who can't wait");
         assert_eq!([at(36.5), at(37.5), at(36.6), at(38.5)], [100.0, 200.0, 100.0, 300.0].map(Some));
         assert_eq!(tiles.kept(), [(36, -85), (38, -85)]);
+        assert_eq!([at_once(36.5), at_once(37.5)], [Poll::Ready(Some(100.0)), Poll::Pending]);
         assert_eq!([at(37.5), at(39.5), at(40.5)], [Some(200.0), None, None]);
+        assert_eq!(at_once(39.5), Poll::Ready(None), "it was tried, and can't be read");
         let most_m = |north: f64| tiles.at_most_m(LatLon::new(36.2, -84.9), LatLon::new(north, -84.1));
         assert_eq!((most_m(36.4), most_m(38.4)), (Some(100.0), Some(300.0)));
         assert_eq!(tiles.at_most_m(LatLon::new(50.0, 3.0), LatLon::new(60.0, 5.0)), Some(f64::NEG_INFINITY));

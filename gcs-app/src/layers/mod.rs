@@ -1,6 +1,7 @@
 //! The maps and elevations that users bring, and the servers of map tiles that they name: which there are, in which order,
 //! and what became of each. They are opened on threads of their own.
 
+mod at_hand;
 mod lazy;
 mod open;
 
@@ -8,6 +9,7 @@ pub use open::tiles_in;
 
 use crate::jobs::Jobs;
 use crate::tiles::{About, Folder, Health, Reader, Template};
+use at_hand::AtHand;
 use geometry::LatLon;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -186,6 +188,7 @@ pub struct Layers {
     next: u64,
     /// Below all of them.
     shipped: Arc<dyn Terrain>,
+    elevations: Arc<dyn Terrain>,
     ground: Arc<dyn Terrain>,
     ground_changed: bool,
     jobs: Jobs,
@@ -205,11 +208,13 @@ impl Layers {
     /// The layers of an earlier window, over the shipped elevations; `wake` is called when something was opened.
     pub fn new(shipped: Arc<dyn Terrain>, kept: Vec<Kept>, wake: Arc<dyn Fn() + Send + Sync>) -> Self {
         let (outbox, inbox) = channel();
-        let ground = shipped.clone();
+        let elevations = shipped.clone();
+        let ground = Arc::new(AtHand::of(shipped.clone(), wake.clone()));
         let mut layers = Self {
             list: Vec::new(),
             next: 0,
             shipped,
+            elevations,
             ground,
             ground_changed: false,
             jobs: Jobs::default(),
@@ -245,9 +250,15 @@ impl Layers {
         self.list.iter().map(|layer| layer.kept.clone()).collect()
     }
 
-    /// The elevations in use: what users brought, the uppermost first, then what is shipped.
+    /// The elevations in use, what users brought, the uppermost first, then what is shipped: for the window's own thread, which can't
+    /// wait. What has to be read from a disk first is unknown until then, and the window is woken.
     pub fn ground(&self) -> &Arc<dyn Terrain> {
         &self.ground
+    }
+
+    /// The same for other threads: who asks may have to wait for a disk.
+    pub fn elevations(&self) -> &Arc<dyn Terrain> {
+        &self.elevations
     }
 
     /// True once after the elevations in use have changed.
@@ -377,11 +388,12 @@ impl Layers {
             })
             .collect();
         grounds.push(self.shipped.clone());
-        let ground: Arc<dyn Terrain> =
+        let elevations: Arc<dyn Terrain> =
             if grounds.len() == 1 { self.shipped.clone() } else { Arc::new(Stack(grounds)) };
         // without elevations of the user's the shipped ones stay what they are
-        if !Arc::ptr_eq(&ground, &self.ground) {
-            self.ground = ground;
+        if !Arc::ptr_eq(&elevations, &self.elevations) {
+            self.ground = Arc::new(AtHand::of(elevations.clone(), self.wake.clone()));
+            self.elevations = elevations;
             self.ground_changed = true;
         }
     }

@@ -372,11 +372,11 @@ fn quit_stops_where_a_document_cannot_be_saved() {
 fn every_document_survives_a_crash() {
     let (folder, copies) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let mut killed = two_unsaved(folder.path());
-    killed.harness.state_mut().keep_copies(copies.path());
+    killed.keep_copies(copies.path());
     killed.steps(3);
     drop(killed);
     let mut next = window("");
-    next.harness.state_mut().keep_copies(copies.path());
+    next.keep_copies(copies.path());
     next.steps(3);
     assert!(next.shows("second.xml") && next.shows("first.xml"));
     next.click("Recover all");

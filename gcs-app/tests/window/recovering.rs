@@ -10,9 +10,16 @@ use std::path::Path;
 
 pub fn window_in(folder: &Path, text: &str) -> Window {
     let mut window = Window::open(text);
-    window.harness.state_mut().keep_copies(folder);
-    window.steps(3);
+    window.keep_copies(folder);
     window
+}
+
+impl Window {
+    /// Keeps copies in this folder, and asks about what was left there.
+    pub fn keep_copies(&mut self, folder: &Path) {
+        self.harness.state_mut().keep_copies(folder);
+        self.until("what was left there", |app| !app.is_busy());
+    }
 }
 
 /// Deletes a leg; the window is gone without being closed.

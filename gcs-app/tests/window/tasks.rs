@@ -323,7 +323,7 @@ fn recovered_after_it_was_killed() {
     let folder = tempfile::tempdir().unwrap();
     let window_in = |text: &str| {
         let mut window = Window::open_with(text, SIZE, None);
-        window.harness.state_mut().keep_copies(folder.path());
+        window.keep_copies(folder.path());
         window.steps(3);
         window
     };

@@ -1,4 +1,4 @@
-//! The window never waits: whatever is slow (the ground, a server) is held fast here, and frames go on.
+//! The window never waits: whatever is slow (the ground, a disk, the home, a server) is held fast here, and frames go on.
 
 use super::filing::window_on;
 use super::interchange::drop_file;
@@ -14,11 +14,12 @@ use std::net::TcpListener;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
+use std::task::Poll;
 use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 use terrain::Terrain;
 
-/// Elevations that nobody but the window's own thread gets until the gate is opened.
+/// Elevations on a disk that gives none before the gate is opened. The window's own thread must not wait for them.
 struct Held {
     window: ThreadId,
     gate: Arc<(Mutex<bool>, Condvar)>,
@@ -27,12 +28,23 @@ struct Held {
 
 impl Terrain for Held {
     fn elevation_m(&self, at: LatLon) -> Option<f64> {
-        if std::thread::current().id() != self.window {
-            let (is_open, changed) = &*self.gate;
-            drop(changed.wait_while(is_open.lock().unwrap(), |is_open| !*is_open).unwrap());
+        let (is_open, changed) = &*self.gate;
+        let is_open = is_open.lock().unwrap();
+        if !*is_open {
+            assert_ne!(std::thread::current().id(), self.window, "the window's own thread reads elevations");
+            drop(changed.wait_while(is_open, |is_open| !*is_open).unwrap());
         }
         self.ground.elevation_m(at)
     }
+
+    fn at_once_m(&self, at: LatLon) -> Poll<Option<f64>> {
+        if *self.gate.0.lock().unwrap() { Poll::Ready(self.ground.elevation_m(at)) } else { Poll::Pending }
+    }
+}
+
+fn open(gate: &(Mutex<bool>, Condvar)) {
+    *gate.0.lock().unwrap() = true;
+    gate.1.notify_all();
 }
 
 /// The square over that ground, and its gate.
@@ -53,8 +65,7 @@ fn frames_and_edits_go_on_while_the_preview_waits_for_the_ground() {
     window.drag(from, vec2(30.0, 10.0));
     assert!(window.centre("Fix A").distance(from) > 20.0);
     assert!(!window.app().analysis().reviewed, "the ground is held fast");
-    *gate.0.lock().unwrap() = true;
-    gate.1.notify_all();
+    open(&gate);
     window.until_analysed();
 }
 
@@ -88,8 +99,7 @@ fn the_table_says_that_a_sound_plan_is_still_being_looked_at() {
     window.steps(3);
     assert!(window.shows("Not flown yet. The preview is being computed"));
     assert!(!window.shows("the plan has an error"));
-    *gate.0.lock().unwrap() = true;
-    gate.1.notify_all();
+    open(&gate);
     window.until_analysed();
     assert!(!window.shows("Not flown yet"));
 }
@@ -114,12 +124,53 @@ fn drawing_goes_on_while_the_trial_of_a_leg_waits_for_the_ground() {
     window.harness.drop_at(at + vec2(30.0, 40.0));
     window.harness.run_steps(3);
     assert_eq!(window.plan().all_legs().len(), legs + 1, "a click draws it all the same");
-    *gate.0.lock().unwrap() = true;
-    gate.1.notify_all();
+    open(&gate);
     window.harness.hover_at(at + vec2(60.0, 60.0));
     window.steps(3);
     assert!(!window.app().is_busy(), "it was tried out");
     assert!(window.shows("ext leg"), "what came of it is said");
+}
+
+/// What is asked of the ground in a frame: below the pointer, in a menu, for a runway that is drawn, and below an aircraft.
+#[test]
+fn frames_go_on_while_elevations_are_read() {
+    let (mut window, gate) = over_held_ground();
+    window.steps(10);
+    let at = window.centre("Map") + vec2(60.0, 120.0);
+    window.harness.hover_at(at);
+    window.steps(2);
+    assert!(window.paints("elevation unknown"), "below the pointer");
+    window.right_click_at(at);
+    assert!(window.shows("The ground is not known here"), "in the menu");
+    window.press(egui::Key::Escape);
+    window.receive_position(false);
+    window.steps(60);
+    let runways = window.plan().runways.len();
+    window.press(egui::Key::R);
+    window.click_at(at);
+    window.click_at(at + vec2(40.0, 0.0));
+    assert_eq!(window.plan().runways.len(), runways + 2, "with both directions");
+    window.press(egui::Key::Escape);
+    open(&gate);
+    window.harness.hover_at(at + vec2(0.0, 30.0));
+    window.steps(2);
+    assert!(window.paints(" · ground ") && !window.paints("elevation unknown"), "it was read");
+    window.until_analysed();
+}
+
+/// A new plan is made of what is known by then.
+#[test]
+fn a_plan_is_made_from_nothing_while_elevations_are_read() {
+    let gate = Arc::<(Mutex<bool>, Condvar)>::default();
+    let (thread, ground) = (std::thread::current().id(), gcs_app::assets::demo_terrain());
+    let held = Held { window: thread, gate: gate.clone(), ground };
+    let mut window = Window::open_over(super::creating::EMPTY, vec2(1280.0, 800.0), None, Arc::new(held));
+    window.steps(3);
+    window.click("Among the example's hills");
+    window.click("Create");
+    assert!(!window.plan().stages.is_empty());
+    open(&gate);
+    window.until_analysed();
 }
 
 /// The longest frame while something goes on, and how long all of them took.
@@ -275,6 +326,39 @@ fn frames_and_edits_go_on_while_a_plan_is_being_written() {
     let written = std::fs::read_to_string(&path).unwrap();
     assert!(written.contains("side2"), "as it was when it was saved");
     says(&mut window, "edits made meanwhile are not in it yet");
+}
+
+/// The copy that an earlier window left in the home is a pipe: who reads it waits for somebody who writes, and the other way round.
+#[cfg(unix)]
+#[test]
+fn frames_and_edits_go_on_while_the_home_is_slow() {
+    let home = tempfile::tempdir().unwrap();
+    let copy = home.path().join("0.json");
+    assert!(std::process::Command::new("mkfifo").arg(&copy).status().unwrap().success());
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    window.harness.state_mut().keep_copies(home.path());
+    // none of these frames can wait for the home: it gives nothing before they are over
+    delete(&mut window, "side2");
+    assert!(window.app().is_busy(), "the copy is being read");
+    std::fs::write(&copy, r#"{"documents": []}"#).unwrap();
+    window.steps(10);
+    // nor these: now it takes nothing
+    delete(&mut window, "side3");
+    window.steps(200);
+    let kept = std::fs::read_to_string(&copy).unwrap();
+    assert!(kept.contains("side1") && !kept.contains("side2"), "{kept}");
+    // what is kept from here on is kept in a file
+    std::fs::remove_file(&copy).unwrap();
+}
+
+/// Deletes a leg, whatever is being done in the background.
+fn delete(window: &mut Window, leg: &str) {
+    window.harness.get_by_label(&format!("TF {leg}")).click();
+    window.harness.run_steps(3);
+    window.harness.key_press(egui::Key::Delete);
+    window.harness.run_steps(60);
+    assert!(window.plan().leg(&leg.into()).is_none());
 }
 
 #[test]

@@ -21,11 +21,17 @@ pub use tile::{Tile, TileError};
 pub use tiles::Tiles;
 
 use geometry::LatLon;
+use std::task::Poll;
 
 /// Ground elevation from any source.
 pub trait Terrain: Send + Sync {
     /// Metres above mean sea level at `p`; `None` where the elevation is unknown.
     fn elevation_m(&self, p: LatLon) -> Option<f64>;
+
+    /// The same for who can't wait: pending where it would have to be read from a disk first, which [`Self::elevation_m`] does.
+    fn at_once_m(&self, p: LatLon) -> Poll<Option<f64>> {
+        Poll::Ready(self.elevation_m(p))
+    }
 
     /// An upper bound of the elevation within a box, metres; `None`: unknown. The box does not cross the antimeridian.
     fn at_most_m(&self, _south_west: LatLon, _north_east: LatLon) -> Option<f64> {

@@ -3,6 +3,7 @@
 use crate::Terrain;
 use geometry::LatLon;
 use std::sync::Arc;
+use std::task::Poll;
 
 /// Terrains over each other: the first that knows a place answers for it.
 #[derive(Clone, Default)]
@@ -11,6 +12,12 @@ pub struct Stack(pub Vec<Arc<dyn Terrain>>);
 impl Terrain for Stack {
     fn elevation_m(&self, p: LatLon) -> Option<f64> {
         self.0.iter().find_map(|terrain| terrain.elevation_m(p))
+    }
+
+    fn at_once_m(&self, p: LatLon) -> Poll<Option<f64>> {
+        // those below one that is not read yet may not answer for it
+        let mut answers = self.0.iter().map(|terrain| terrain.at_once_m(p));
+        answers.find(|answer| *answer != Poll::Ready(None)).unwrap_or(Poll::Ready(None))
     }
 
     fn spacing_m(&self, at: LatLon) -> Option<f64> {
@@ -58,5 +65,22 @@ mod tests {
         }
         let stack = Stack(vec![Arc::new(Flat(1.0)), Arc::new(Unbounded)]);
         assert_eq!(stack.at_most_m(LatLon::new(0.0, 0.0), LatLon::new(1.0, 1.0)), None);
+    }
+
+    #[test]
+    fn one_that_is_not_read_yet_is_waited_for_unless_one_above_it_knows() {
+        struct OnDisk;
+        impl Terrain for OnDisk {
+            fn elevation_m(&self, _: LatLon) -> Option<f64> {
+                panic!("it is read")
+            }
+            fn at_once_m(&self, _: LatLon) -> Poll<Option<f64>> {
+                Poll::Pending
+            }
+        }
+        let stack = Stack(vec![Arc::new(North(10.0, 300.0)), Arc::new(OnDisk), Arc::new(Flat(1.0))]);
+        assert_eq!(stack.at_once_m(LatLon::new(12.0, 0.0)), Poll::Ready(Some(300.0)));
+        assert_eq!(stack.at_once_m(LatLon::new(7.0, 0.0)), Poll::Pending);
+        assert_eq!(Stack::default().at_once_m(LatLon::new(7.0, 0.0)), Poll::Ready(None));
     }
 }

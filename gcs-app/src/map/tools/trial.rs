@@ -129,7 +129,7 @@ impl Trials {
         if self.tried.as_ref().is_some_and(|(tried, _)| *tried == wanted) {
             return;
         }
-        let (plan, ground) = (scene.document.plan().clone(), scene.layers.ground().clone());
+        let (plan, ground) = (scene.document.plan().clone(), scene.layers.elevations().clone());
         let (aim, asked) = (aim.clone(), wanted.clone());
         let task = Task::begin(scene.layers.wake(), move || fly(&asked, &aim, &plan, &ground));
         self.flying = Some((wanted, task));
