@@ -43,6 +43,11 @@ impl Ground {
         self.rasters.get(&layer).map_or(0, Raster::pictures)
     }
 
+    /// No tile of what was drawn last is on its way.
+    pub fn is_whole(&self) -> bool {
+        self.relief.iter().chain(self.rasters.values()).all(Raster::is_whole)
+    }
+
     /// Draws the world, the relief, then the maps from the lowest to the uppermost.
     pub fn draw(&mut self, sheet: &Sheet<'_>, dark: bool) {
         let Sheet { painter, view, scene, .. } = *sheet;

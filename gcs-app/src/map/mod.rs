@@ -193,6 +193,11 @@ impl MapState {
         self.ground.pictures_of(layer)
     }
 
+    /// No tile of what was drawn last is on its way.
+    pub fn has_all_tiles(&self) -> bool {
+        self.ground.is_whole()
+    }
+
     /// Draws the map and takes what the operator does on it.
     pub fn show(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         self.sketch(scene);

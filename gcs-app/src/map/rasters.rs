@@ -26,6 +26,8 @@ pub struct Raster {
     tiles: HashMap<Wanted, Kept>,
     bytes: usize,
     frame: u64,
+    /// All of the last view is here.
+    is_whole: bool,
 }
 
 struct Kept {
@@ -52,7 +54,13 @@ impl Raster {
     pub fn new(readers: Vec<Box<dyn Reader>>, about: About, health: &Arc<Health>, ctx: &Context) -> Self {
         let ctx = ctx.clone();
         let wake: Arc<dyn Fn() + Send + Sync> = Arc::new(move || ctx.request_repaint());
-        Self { desk: Desk::open(readers, health, &wake), about, tiles: HashMap::new(), bytes: 0, frame: 0 }
+        let desk = Desk::open(readers, health, &wake);
+        Self { desk, about, tiles: HashMap::new(), bytes: 0, frame: 0, is_whole: false }
+    }
+
+    /// Nothing more of what was drawn last is on its way.
+    pub fn is_whole(&self) -> bool {
+        self.is_whole
     }
 
     /// So many pictures are here.
@@ -77,6 +85,7 @@ impl Raster {
             }
             self.draw_tile(painter, view, wanted, tint);
         }
+        self.is_whole = missing.is_empty();
         self.desk.want(missing);
         self.forget();
     }

@@ -21,7 +21,7 @@ pub fn begun(size: egui::Vec2) -> Window {
 pub const SIZE: egui::Vec2 = vec2(1280.0, 800.0);
 
 /// Clicks these places of the map, from the middle of what the card leaves free.
-fn draw(window: &mut Window, offsets: &[egui::Vec2]) {
+pub fn draw(window: &mut Window, offsets: &[egui::Vec2]) {
     let middle = window.centre("Map") + vec2(140.0, 0.0);
     for offset in offsets {
         window.click_at(middle + *offset);

@@ -1,13 +1,14 @@
-//! What the window looks like, compared with pictures that are kept; those of the guide among them.
+//! What the window looks like, compared with pictures that are kept; those of the guide and the README's first among them.
 
 use super::considering::{considered, foresight};
-use super::creating::{EMPTY, drawn_survey};
+use super::creating::{EMPTY, SIZE, begun, draw, drawn_survey};
 use super::emergency::in_emergency;
 use super::flying::flying;
 use super::interchange::{drop_file, fixture};
 use super::vehicle::decision;
 use super::*;
 use egui::Key;
+use flight_plan::template::Template;
 use gcs_app::link::Reply;
 
 const SMALL: Vec2 = vec2(960.0, 600.0);
@@ -110,4 +111,29 @@ fn cards_in_flight() {
     window.receive_attitude();
     window.click("Put aside: uav1: is heard again");
     window.guide_picture("guide-emergency");
+}
+
+/// The first picture of the README: from an empty map to a plan without a warning, over its hills.
+#[test]
+fn fire_watch_drawn_from_nothing() {
+    let mut window = begun(SIZE);
+    let ctx = window.harness.ctx.clone();
+    window.harness.state_mut().shade_ground(&ctx);
+    window.click(Template::FireWatch.name());
+    window.click("✏ Draw the runway");
+    draw(&mut window, &[vec2(-15.0, 62.0), vec2(28.0, 42.0)]);
+    window.click("✏ Draw the circle");
+    draw(&mut window, &[vec2(-20.0, -5.0), vec2(-2.0, -5.0)]);
+    window.click("Create");
+    window.until_analysed();
+    window.click("Fix");
+    window.until_analysed();
+    assert!(window.shows("This plan can be flown") && !window.shows("warning"));
+    window.click("Put the legend away");
+    window.click("SCAN Scan the fire");
+    window.harness.event(egui::Event::PointerGone);
+    window.until("the hills", |app| app.map().has_all_tiles());
+    window.steps(60);
+    let picture = window.harness.render().unwrap();
+    check_picture(&picture, "../assets/screenshots/window.png");
 }
