@@ -2,6 +2,7 @@
 
 use super::App;
 use super::file_name::file_name;
+use super::settings::Settings;
 use crate::command::Replacement;
 use crate::document::Document;
 use crate::export::Exported;
@@ -57,6 +58,11 @@ impl App {
     /// Reads files that are opened from this disk instead of the machine's.
     pub fn read_from(&mut self, disk: std::sync::Arc<dyn crate::files::Disk>) {
         self.files.read_from(disk);
+    }
+
+    /// Waits like this for the disk to have taken the settings, on a thread.
+    pub fn sync_settings_by(&mut self, sync: Arc<dyn Fn() + Send + Sync>) {
+        self.settings = Settings::synced_by(sync);
     }
 
     pub(super) fn tend_copy(&mut self, ctx: &egui::Context) {

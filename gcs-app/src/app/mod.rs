@@ -19,6 +19,7 @@ mod preview;
 mod pushing;
 mod remembered;
 mod screenshot;
+mod settings;
 mod tips;
 mod window;
 
@@ -49,6 +50,7 @@ use crate::story::{Chapter, Story};
 use crate::theme;
 use clock::Now;
 use remembered::Remembered;
+use settings::Settings;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
@@ -104,6 +106,7 @@ pub struct App {
     screenshot: Option<Screenshot>,
     /// What the next run finds, if this one is ended by force.
     stored: Remembered,
+    settings: Settings,
     /// The theme of earlier runs, while one that this run was told to begin with takes its place.
     theme_of_old: Option<egui::ThemePreference>,
     /// The tour has been offered, in this window or an earlier one.
@@ -120,6 +123,8 @@ impl std::fmt::Debug for App {
     }
 }
 
+/// Settings are saved so often, whatever has changed.
+const SAVED_EVERY: Duration = Duration::from_secs(30);
 /// Ages on the screen are refreshed at least so often while a vehicle is connected.
 const REFRESH: Duration = Duration::from_millis(100);
 
@@ -180,6 +185,7 @@ impl App {
             after_saving: None,
             screenshot: None,
             stored,
+            settings: Settings::new(),
             theme_of_old: None,
             tour_seen: remembered.tour_seen,
             story: None,
@@ -380,8 +386,10 @@ impl eframe::App for App {
         // what is dragged still is not decided yet
         if let Some(storage) = frame.storage_mut()
             && !ctx.input(|i| i.pointer.any_down())
+            && self.settings.are_taken()
+            && Remembered::of(self).keep(&mut self.stored, storage)
         {
-            Remembered::of(self).keep(&mut self.stored, storage);
+            self.settings.write(&self.wake);
         }
         if let Some(screenshot) = &mut self.screenshot {
             screenshot.run(&ctx, now.window_s);
@@ -397,5 +405,10 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         Remembered::of(self).store(storage);
         self.dock.save(storage);
+        self.settings.write(&self.wake);
+    }
+
+    fn auto_save_interval(&self) -> Duration {
+        if self.settings.are_taken() { SAVED_EVERY } else { Duration::MAX }
     }
 }

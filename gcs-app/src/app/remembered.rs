@@ -57,13 +57,16 @@ impl Remembered {
         eframe::set_value(storage, STORAGE_KEY, self);
     }
 
-    /// For the next run at once, if it is not what is `stored` already: who is ended by force has no time for it later.
-    pub fn keep(self, stored: &mut Self, storage: &mut dyn eframe::Storage) {
-        if self != *stored {
+    /// For the next run at once, if it is not what is `stored` already: who is ended by force has no time for it later. True: it is
+    /// written.
+    pub fn keep(self, stored: &mut Self, storage: &mut dyn eframe::Storage) -> bool {
+        let is_new = self != *stored;
+        if is_new {
             self.store(storage);
             storage.flush();
             *stored = self;
         }
+        is_new
     }
 
     /// What the operator looks at when the window opens.

@@ -1,10 +1,13 @@
 //! The window never waits: whatever is slow (the ground, a disk, the home, a server) is held fast here, and frames go on.
 
+use super::dock::Memory;
 use super::filing::window_on;
 use super::interchange::drop_file;
 use super::{PATIENCE, SQUARE, Window};
+use eframe::App as _;
 use egui::vec2;
 use egui_kittest::kittest::Queryable;
+use gcs_app::app::App;
 use gcs_app::files::Disk;
 use gcs_app::layers::State;
 use gcs_app::link::{LinkEvent, LinkState};
@@ -350,6 +353,26 @@ fn frames_and_edits_go_on_while_the_home_is_slow() {
     assert!(kept.contains("side1") && !kept.contains("side2"), "{kept}");
     // what is kept from here on is kept in a file
     std::fs::remove_file(&copy).unwrap();
+}
+
+/// The window's library waits for its last write before the next one: there must be none before the disk has taken it.
+#[test]
+fn settings_are_not_written_again_before_the_home_has_taken_them() {
+    let gate = Arc::<(Mutex<bool>, Condvar)>::default();
+    let held = gate.clone();
+    let sync = move || {
+        let (is_open, changed) = &*held;
+        drop(changed.wait_while(is_open.lock().unwrap(), |is_open| !*is_open).unwrap());
+    };
+    let mut window = Window::open(SQUARE);
+    window.harness.state_mut().sync_settings_by(Arc::new(sync));
+    let is_saved_again = |app: &App| app.auto_save_interval() < Duration::MAX;
+    assert!(is_saved_again(window.app()));
+    Memory::of(&mut window);
+    window.steps(60);
+    assert!(!is_saved_again(window.app()));
+    open(&gate);
+    window.until("the disk has taken them", is_saved_again);
 }
 
 /// Deletes a leg, whatever is being done in the background.
