@@ -115,8 +115,8 @@ impl<I: 'static> Wiring<I> {
     pub fn appeared(&mut self, service: &'static str, input: impl Fn() -> I + Send + 'static) {
         self.sampled.push(Box::new(move |session, _| {
             let presence = session.presence()?;
-            let mut there = false;
-            Ok(Box::new(move || appeared(&presence, service, &mut there).then(&input)))
+            let mut came = 0;
+            Ok(Box::new(move || appeared(&presence, service, &mut came).then(&input)))
         }));
     }
 
@@ -151,9 +151,10 @@ impl<I: 'static> Wiring<I> {
     }
 }
 
-fn appeared(presence: &Presence, service: &str, there: &mut bool) -> bool {
-    let before = std::mem::replace(there, presence.is_alive(service));
-    *there && !before
+/// It may have gone and come back between two looks: while simulated time stands still, nobody looks.
+fn appeared(presence: &Presence, service: &str, came: &mut u64) -> bool {
+    let before = std::mem::replace(came, presence.appearances(service));
+    *came != before && presence.is_alive(service)
 }
 
 /// What a service follows of others.

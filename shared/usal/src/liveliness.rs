@@ -3,7 +3,7 @@
 use crate::contract::{Key, Kind, every_service};
 use crate::session::Session;
 use crate::{KeyError, SessionError};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::watch;
@@ -24,9 +24,31 @@ pub struct Announcement {
     _session: Session,
 }
 
+/// Who is there, and how often each has come.
+#[derive(Default)]
+struct Here {
+    services: Arc<BTreeSet<String>>,
+    came: BTreeMap<String, u64>,
+}
+
+impl Here {
+    fn comes(&mut self, service: String) {
+        let is_known = self.came.contains_key(&service);
+        if (is_known || self.came.len() < SERVICES_MAX)
+            && Arc::make_mut(&mut self.services).insert(service.clone())
+        {
+            *self.came.entry(service).or_default() += 1;
+        }
+    }
+
+    fn goes(&mut self, service: &str) {
+        Arc::make_mut(&mut self.services).remove(service);
+    }
+}
+
 /// Which services are there.
 pub struct Presence {
-    receiver: watch::Receiver<Arc<BTreeSet<String>>>,
+    receiver: watch::Receiver<Here>,
     _subscriber: Subscriber<()>,
     _session: Session,
 }
@@ -34,18 +56,24 @@ pub struct Presence {
 impl Presence {
     /// The services that are alive now. Does not block.
     pub fn services(&self) -> Arc<BTreeSet<String>> {
-        self.receiver.borrow().clone()
+        self.receiver.borrow().services.clone()
     }
 
     /// Whether this one is. Does not block.
     pub fn is_alive(&self, service: &str) -> bool {
-        self.receiver.borrow().contains(service)
+        self.receiver.borrow().services.contains(service)
+    }
+
+    /// How often this one has come: who looks only now and then sees by it that another one came for the one that was there. Does not
+    /// block.
+    pub fn appearances(&self, service: &str) -> u64 {
+        self.receiver.borrow().came.get(service).copied().unwrap_or_default()
     }
 
     /// Waits for somebody to come or go; `None` when the session is closed.
     pub async fn changed(&mut self) -> Option<Arc<BTreeSet<String>>> {
         self.receiver.changed().await.ok()?;
-        Some(self.receiver.borrow_and_update().clone())
+        Some(self.receiver.borrow_and_update().services.clone())
     }
 }
 
@@ -80,17 +108,10 @@ impl Session {
     /// # Errors
     /// [`SessionError::Network`] on a closed session.
     pub fn presence(&self) -> Result<Presence, SessionError> {
-        let (sender, receiver) = watch::channel(Arc::default());
+        let (sender, receiver) = watch::channel(Here::default());
         let inner = Arc::downgrade(&self.inner);
         let subscriber = self.watch_tokens(ALIVE, move |service, alive| {
-            sender.send_modify(|services: &mut Arc<BTreeSet<String>>| {
-                let services = Arc::make_mut(services);
-                if !alive {
-                    services.remove(&service);
-                } else if services.len() < SERVICES_MAX {
-                    services.insert(service);
-                }
-            });
+            sender.send_modify(|here| if alive { here.comes(service) } else { here.goes(&service) });
             if let Some(inner) = inner.upgrade() {
                 (inner.wake)();
             }

@@ -313,6 +313,8 @@ impl Rig {
         self.gateway.kill()?;
         let said_s = |rig: &Self| rig.gateway_said().map(|said| said.time_s);
         let last_s = said_s(self);
+        // nobody is seen by way of it any more
+        self.fp_manager_is_there(false).await?;
         self.restart_gateway()?;
         self.until("the gateway is there again", 60.0, |rig, _| said_s(rig) != last_s).await?;
         said_s(self).context("no status of the gateway")

@@ -50,6 +50,12 @@ impl Seen {
         self.gateway.iter().any(|e| matches!(e, GatewayEvent::StateChanged { to, .. } if *to == state))
     }
 
+    /// So often everything that the gateway had was flown.
+    pub fn flown_out(&self) -> usize {
+        let is_out = |event: &&GatewayEvent| matches!(event, GatewayEvent::Progress { current: None, .. });
+        self.gateway.iter().filter(is_out).count()
+    }
+
     /// It took off and stands again.
     pub fn landed(&self) -> bool {
         let flown = self.gateway.iter().skip_while(|e| {
