@@ -492,6 +492,10 @@ async fn service_that_dies_is_gone_from_the_presence() {
     until_alive(&mut presence, topics::FP_MANAGER, true).await;
     drop(alive);
     until_alive(&mut presence, topics::FP_MANAGER, false).await;
+    assert_eq!(presence.appearances(topics::FP_MANAGER), 1);
+    let _again = client.announce(topics::FP_MANAGER).unwrap();
+    until_alive(&mut presence, topics::FP_MANAGER, true).await;
+    assert_eq!(presence.appearances(topics::FP_MANAGER), 2, "another one came");
 }
 
 #[tokio::test(flavor = "multi_thread")]
