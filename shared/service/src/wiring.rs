@@ -115,7 +115,7 @@ impl<I: 'static> Wiring<I> {
     pub fn appeared(&mut self, service: &'static str, input: impl Fn() -> I + Send + 'static) {
         self.sampled.push(Box::new(move |session, _| {
             let presence = session.presence()?;
-            let mut came = 0;
+            let mut came = None;
             Ok(Box::new(move || appeared(&presence, service, &mut came).then(&input)))
         }));
     }
@@ -152,9 +152,9 @@ impl<I: 'static> Wiring<I> {
 }
 
 /// It may have gone and come back between two looks: while simulated time stands still, nobody looks.
-fn appeared(presence: &Presence, service: &str, came: &mut u64) -> bool {
-    let before = std::mem::replace(came, presence.appearances(service));
-    *came != before && presence.is_alive(service)
+fn appeared(presence: &Presence, service: &str, came: &mut Option<u64>) -> bool {
+    let before = std::mem::replace(came, presence.arrival(service));
+    came.is_some() && *came != before
 }
 
 /// What a service follows of others.

@@ -24,25 +24,26 @@ pub struct Announcement {
     _session: Session,
 }
 
-/// Who is there, and how often each has come.
+/// Who is there.
 #[derive(Default)]
 struct Here {
     services: Arc<BTreeSet<String>>,
-    came: BTreeMap<String, u64>,
+    /// The number of each one's coming, of all that came.
+    arrivals: BTreeMap<String, u64>,
+    came: u64,
 }
 
 impl Here {
     fn comes(&mut self, service: String) {
-        let is_known = self.came.contains_key(&service);
-        if (is_known || self.came.len() < SERVICES_MAX)
-            && Arc::make_mut(&mut self.services).insert(service.clone())
-        {
-            *self.came.entry(service).or_default() += 1;
+        if self.services.len() < SERVICES_MAX && Arc::make_mut(&mut self.services).insert(service.clone()) {
+            self.came += 1;
+            self.arrivals.insert(service, self.came);
         }
     }
 
     fn goes(&mut self, service: &str) {
         Arc::make_mut(&mut self.services).remove(service);
+        self.arrivals.remove(service);
     }
 }
 
@@ -64,10 +65,10 @@ impl Presence {
         self.receiver.borrow().services.contains(service)
     }
 
-    /// How often this one has come: who looks only now and then sees by it that another one came for the one that was there. Does not
-    /// block.
-    pub fn appearances(&self, service: &str) -> u64 {
-        self.receiver.borrow().came.get(service).copied().unwrap_or_default()
+    /// The number of this one's coming, while it is there: who looks only now and then sees by it that another one came for the one that
+    /// was there. Does not block.
+    pub fn arrival(&self, service: &str) -> Option<u64> {
+        self.receiver.borrow().arrivals.get(service).copied()
     }
 
     /// Waits for somebody to come or go; `None` when the session is closed.
