@@ -2,7 +2,7 @@
 
 use super::stops::Stop;
 use super::{GAP, MAP, TAB_BAR};
-use crate::command::Queue;
+use crate::command::{Queue, ViewCommand};
 use crate::map::MapState;
 use crate::panels::{Panel, PanelId, Place, Scene, tour, what_if};
 use crate::theme;
@@ -24,7 +24,6 @@ pub struct Content<'a> {
     tabbed: BTreeSet<u64>,
     /// Panels whose tab bar has no room for their headers.
     crowded: BTreeSet<PanelId>,
-    closed: Vec<PanelId>,
     map_rect: Option<Rect>,
     /// What the panels of the plan take.
     plan_rect: Option<Rect>,
@@ -47,7 +46,6 @@ impl<'a> Content<'a> {
             queue,
             tabbed: BTreeSet::new(),
             crowded: BTreeSet::new(),
-            closed: Vec::new(),
             map_rect: None,
             plan_rect: None,
             stops: Vec::new(),
@@ -61,10 +59,6 @@ impl<'a> Content<'a> {
             _ => None,
         });
         self.tabbed = tabs.flatten().collect();
-    }
-
-    pub(super) fn take_closed(&mut self) -> Vec<PanelId> {
-        std::mem::take(&mut self.closed)
     }
 
     pub(super) fn take_stops(&mut self) -> Vec<Stop> {
@@ -98,6 +92,11 @@ impl<'a> Content<'a> {
     pub(super) fn gives_way_to_flight(&self, id: PanelId) -> bool {
         let is_wanted = self.scene.view.wanted_panel == Some(id);
         id == what_if::ID && self.scene.vehicle.is_airborne() && !is_wanted
+    }
+
+    /// The vehicle that is shown is in the air.
+    pub(super) fn is_in_flight(&self) -> bool {
+        self.scene.vehicle.is_airborne()
     }
 
     /// The least heights of the panels, with their titles and what is around them, screen points.
@@ -137,7 +136,7 @@ impl<'a> Content<'a> {
         let response = ui.add(button).on_hover_text("Hide it; the menu shows it again");
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
         if response.clicked() {
-            self.closed.push(id);
+            self.queue.view(ViewCommand::ShowPanel(id, false));
         }
     }
 
@@ -240,7 +239,7 @@ impl Behavior<PanelId> for Content<'_> {
         response.context_menu(|ui| hides |= ui.button("Hide").clicked());
         if hides {
             // it keeps its place
-            self.closed.push(panel);
+            self.queue.view(ViewCommand::ShowPanel(panel, false));
         }
         response.on_hover_text("A middle click hides it; the menu shows it again")
     }

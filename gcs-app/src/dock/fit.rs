@@ -10,6 +10,17 @@ use std::collections::HashMap;
 
 /// The least the map gets before its neighbours shrink, screen points.
 pub const LEAST: Vec2 = vec2(240.0, 200.0);
+/// In flight the map of a low dock gets so much of that before its neighbours shrink: one looks there first.
+const IN_FLIGHT: Vec2 = vec2(0.45, 0.6);
+/// The neighbours are at least so wide then, both together: the values of the flight are not cut. Screen points.
+const BESIDE: f32 = 530.0;
+
+/// The least that the map gets in flight in a low dock of this size.
+pub fn least_in_flight(dock: Vec2) -> Vec2 {
+    let most = vec2((dock.x - BESIDE).max(0.0), dock.y);
+    LEAST.max((dock * IN_FLIGHT).min(most))
+}
+
 /// A share that is no length: that of a tile that was just dropped here.
 const FRESH: f32 = 1.0;
 
@@ -284,6 +295,26 @@ mod tests {
         assert!((narrow[1] - LEAST.x).abs() < 0.5 && narrow[0] < nominal[0] && narrow[2] < nominal[2]);
         assert_eq!(columns(&mut tree, NOMINAL.x), nominal, "they grow again with the window");
         assert!(columns(&mut tree, 1.0).iter().all(|w| w.is_finite() && *w >= 0.0));
+    }
+
+    #[test]
+    fn in_flight_the_map_of_a_low_window_is_larger() {
+        let size = vec2(960.0, 477.0);
+        let of_map = |map: Vec2| {
+            let mut tree = default_tree();
+            let root = tree.root().expect("not empty");
+            fit(&mut tree.tiles, root, size, &Least { map, ..least() }, &mut Wanted::default());
+            let Some(Tile::Container(Container::Linear(row))) = tree.tiles.get(root) else {
+                panic!("no row")
+            };
+            let widths = row.shares.split(&row.children, room(size.x, 3));
+            let Some(Tile::Container(Container::Linear(column))) = tree.tiles.get(row.children[1]) else {
+                panic!("no column")
+            };
+            vec2(widths[1], column.shares.split(&column.children, room(size.y, 2))[0])
+        };
+        let (before, in_flight) = (of_map(LEAST), of_map(least_in_flight(size)));
+        assert!(in_flight.x > before.x + 80.0 && in_flight.y > before.y + 30.0, "{before} {in_flight}");
     }
 
     #[test]

@@ -130,14 +130,16 @@ impl Dock {
             self.tree.set_visible(tile, is_shown);
         }
         if let Some(root) = self.tree.root() {
-            let least = fit::Least { map: fit::LEAST, panels: content.least_heights() };
+            // what is read stands in the place of panels: the map keeps its size
+            let aside = self.beside_map.filter(|_| gives_place).unwrap_or_default();
+            let whole = ui.available_size() + egui::vec2(aside, 0.0);
+            let is_wide = is_low && content.is_in_flight();
+            let map = if is_wide { fit::least_in_flight(whole) } else { fit::LEAST };
+            let least = fit::Least { map, panels: content.least_heights() };
             fit::fit(&mut self.tree.tiles, root, ui.available_size(), &least, &mut self.wanted);
         }
         content.begin(&self.tree.tiles);
         self.tree.ui(content, ui);
-        for panel in content.take_closed() {
-            self.show_panel(panel, false);
-        }
         self.stops = content.take_stops();
         self.drawn = content.take_drawn();
         if !is_read {

@@ -248,13 +248,8 @@ pub fn small_button_response(ui: &mut Ui, symbol: &str, name: &str) -> Response 
 
 /// A text, taken when the field is left or Enter is pressed.
 pub fn text(ui: &mut Ui, name: &str, current: &str) -> Option<String> {
-    text_or_hint(ui, name, current, "")
-}
-
-/// The same; the hint stands there as long as nothing else does.
-pub fn text_or_hint(ui: &mut Ui, name: &str, current: &str, hint: &str) -> Option<String> {
     let width = ui.available_width() - 30.0;
-    text_of_width(ui, name, current, hint, width)
+    text_of_width(ui, name, current, "", width)
 }
 
 /// A text that may be refused: what was typed then stays, in red, with the reason below it.

@@ -45,14 +45,21 @@ const AROUND: f32 = 90.0;
 /// Draws the card, in so much height.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, height: f32, queue: &mut Queue) {
     let mut guide = scene.view.guide.clone();
-    if ui.available_width() < WIDTH {
+    let is_narrow = ui.available_width() < WIDTH;
+    if is_narrow {
         // a small window: all questions are in sight
         ui.spacing_mut().item_spacing.y = 2.0;
     }
     let closed = title(ui);
     let most = (height - AROUND).max(60.0);
     let questions = ScrollArea::vertical().id_salt("questions").max_height(most).min_scrolled_height(most);
+    // the bar lies at the edge of the card
+    let questions = questions.auto_shrink([false, true]);
     questions.show(ui, |ui| {
+        if is_narrow {
+            // and over what reaches so far
+            ui.set_max_width(ui.available_width() - ui.spacing().scroll.bar_width);
+        }
         ask(ui, scene, &mut guide, queue);
         if guide.threshold.is_some() {
             // the buttons below keep their place when fields come and go

@@ -27,8 +27,9 @@ pub fn ask(
     let place = at.map(units::position).unwrap_or_default();
     let shown = search.map_or(place.as_str(), |search| search.typed.as_str());
     let mut found = None;
-    let (draft, typed) =
-        field::row(ui, name, |ui| (field::draft(ui, name), field::text_or_hint(ui, name, shown, HINT)));
+    let (draft, typed) = field::row(ui, name, |ui| {
+        (field::draft(ui, name), field::text_of_width(ui, name, shown, HINT, width(ui)))
+    });
     let suggested = draft.as_deref().map_or_else(Vec::new, |draft| suggested(ui, draft, u));
     let is_typing = draft.is_some() && typed.is_none();
     if let Some(typed) = typed {
@@ -65,6 +66,11 @@ pub fn ask(
         guide.search = None;
     }
     found
+}
+
+/// Of the field: a position is seen whole in the narrowest card, too.
+fn width(ui: &Ui) -> f32 {
+    ui.available_width() - 20.0
 }
 
 /// What was typed is the name of several places.
