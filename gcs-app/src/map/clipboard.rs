@@ -44,7 +44,11 @@ impl Pastes {
     fn begin(&mut self, format: Format, text: String, canvas: &Canvas<'_>) {
         let read = move || drawings::read(format, &text);
         let read = Task::begin(canvas.scene.layers.wake(), read);
-        self.0.push_back(Paste { read, aim: aim(canvas), into: canvas.scene.document.id() });
+        self.0.push_back(Paste {
+            read,
+            aim: aim(canvas, new_leg::mission_aim),
+            into: canvas.scene.document.id(),
+        });
     }
 
     /// Puts what was read into the plan.
@@ -162,12 +166,15 @@ fn paste_drawing(drawing: Read, aim: Result<Aim, String>, canvas: &Canvas<'_>, q
     }
 }
 
+/// Where legs go on a side of what is selected.
+type Aims = fn(&FlightPlan, Option<&Selection>, &Side) -> Option<Aim>;
+
 /// Where legs are pasted: of several that are selected, behind the last.
-fn aim(canvas: &Canvas<'_>) -> Result<Aim, String> {
+fn aim(canvas: &Canvas<'_>, aims: Aims) -> Result<Aim, String> {
     let scene = canvas.scene;
     let last = scene.selected_legs().pop().map(Selection::Leg);
     let selected = last.as_ref().or(scene.view.selection.as_ref());
-    let aim = new_leg::aim(scene.document.plan(), selected, &Side::Behind);
+    let aim = aims(scene.document.plan(), selected, &Side::Behind);
     aim.ok_or_else(|| format!("To paste legs, {}", new_leg::NO_STAGE))
 }
 
@@ -181,7 +188,9 @@ fn paste(text: &str, under: Option<LatLon>, canvas: &Canvas<'_>, queue: &mut Que
     if let (Ok(at), true) = (&place, start::is_wanted(scene)) {
         return queue.view(ViewCommand::Guide(Answer::Place(*at)));
     }
-    let aim = match aim(canvas) {
+    // legs of a plan may be of any stage
+    let aims = if place.is_ok() { new_leg::mission_aim } else { new_leg::aim };
+    let aim = match aim(canvas, aims) {
         Ok(aim) => aim,
         Err(why) => return queue.view(ViewCommand::Notice(why)),
     };

@@ -71,7 +71,7 @@ pub fn add(
     if flown.is_empty() {
         return Ok(Pasted { legs: Vec::new(), things, edit: Edit::All(edits) });
     }
-    let Some(Aim::Spot(at)) = new_leg::aim(&with, selected, &Side::Behind) else {
+    let Some(Aim::Spot(at)) = new_leg::mission_aim(&with, selected, &Side::Behind) else {
         return Err("This plan has no stage to add legs to: add one in the plan's list (＋).".into());
     };
     let Pasted { legs, edit, .. } = legs(&flown, at, None, &with)?;
@@ -127,7 +127,7 @@ pub fn counts(features: &[Feature], choices: &Choices) -> [(usize, &'static str)
 
 /// Where the legs of a drawing go, for people.
 pub fn whereto(plan: &FlightPlan, selected: Option<&Selection>) -> Option<String> {
-    new_leg::aim(plan, selected, &Side::Behind).map(|aim| new_leg::words(&aim, plan))
+    new_leg::mission_aim(plan, selected, &Side::Behind).map(|aim| new_leg::words(&aim, plan))
 }
 
 /// The figures that are flown: a line as it is, or its points one by one.

@@ -214,6 +214,27 @@ fn a_drawing_of_another_program_becomes_legs() {
     assert_eq!(legs(&window).len(), 4, "one step");
 }
 
+/// It went in between the hold and the final.
+#[test]
+fn a_mission_goes_before_the_arrival_whatever_of_that_is_selected() {
+    let home = r#"<stage id="home" type="arrival"><TF id="hold" fix="D"/><TF id="final" fix="A"/></stage><stage id="land" "#;
+    let plan = SQUARE.replacen(r#"<stage id="land" "#, home, 1);
+    let mut window = Window::open(&plan);
+    window.until_analysed();
+    window.click("TF hold");
+    window.press(egui::Key::L);
+    assert!(window.shows("at the end of circuit") && !window.shows("behind hold"));
+    window.press(egui::Key::T);
+    assert!(window.shows("Draw legs behind hold"), "a leg of the arrival is drawn there");
+    window.press(egui::Key::Escape);
+    window.paste(include_str!("../../../shared/interchange/tests/fixtures/places.kml"));
+    assert_eq!(legs(&window).len(), 7);
+    assert_eq!(window.plan().stage(&"home".into()).unwrap().legs.len(), 2);
+    window.click("TF hold");
+    window.paste("36°19'N 84°10'W");
+    assert_eq!(legs(&window).len(), 8);
+}
+
 /// Who clicked a problem of the emergency plan has it selected, and may mean the main plan.
 #[test]
 fn what_is_pasted_into_an_emergency_plan_is_told() {

@@ -75,7 +75,7 @@ impl DrawLeg {
 
     /// Where the leg goes.
     fn aim(&self, scene: &Scene<'_>) -> Option<Aim> {
-        new_leg::aim_of(scene, &self.side)
+        new_leg::mission_aim_of(scene, &self.side)
     }
 
     fn complete(&mut self, marks: Vec<Mark>, canvas: &Canvas<'_>, queue: &mut Queue) {
@@ -135,7 +135,7 @@ impl Tool for DrawLeg {
                 }
             }
         }
-        choose_side(ui, scene, &mut self.side);
+        choose_side(ui, scene, &mut self.side, new_leg::mission_aim_of);
     }
 
     fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {

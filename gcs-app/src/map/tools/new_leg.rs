@@ -83,6 +83,30 @@ pub fn aim(plan: &FlightPlan, selected: Option<&Selection>, side: &Side) -> Opti
     stage.map(|stage| Aim::Spot(Spot::EndOf(stage.id.clone())))
 }
 
+/// Where a new leg goes that is what the flight is for, as a pattern or a drawing: none goes between the hold and the final by itself,
+/// only beside what is selected in a stage of such legs.
+pub fn mission_aim(plan: &FlightPlan, selected: Option<&Selection>, side: &Side) -> Option<Aim> {
+    let aim = aim(plan, selected, side)?;
+    let end = if *side == Side::Behind { end_of_mission(plan, &aim) } else { None };
+    Some(end.unwrap_or(aim))
+}
+
+/// The end of the mission, if this place is in another stage of the main plan that such a leg does not belong to.
+fn end_of_mission(plan: &FlightPlan, aim: &Aim) -> Option<Aim> {
+    let id = place_in(aim);
+    let of_leg = plan.leg(id).filter(|context| matches!(context.section, Section::Main));
+    let stage = match of_leg {
+        Some(context) => context.stage,
+        None => plan.stages.iter().find(|stage| stage.id == *id)?,
+    };
+    if !matches!(stage.kind, StageKind::Departure | StageKind::Arrival | StageKind::Approach) {
+        return None;
+    }
+    let last = |kind| plan.stages.iter().rfind(|stage| stage.kind == kind);
+    let stage = last(StageKind::Mission).or_else(|| last(StageKind::EnRoute))?;
+    Some(Aim::Spot(Spot::EndOf(stage.id.clone())))
+}
+
 /// What to do where a leg can't be put anywhere.
 pub const NO_STAGE: &str =
     "add a stage first, with the + of Main plan in the tree, or make a new mission (Ctrl+N).";
@@ -90,6 +114,11 @@ pub const NO_STAGE: &str =
 /// Where a new leg goes that is drawn on this side of what is selected.
 pub fn aim_of(scene: &Scene<'_>, side: &Side) -> Option<Aim> {
     aim(scene.document.plan(), scene.view.selection.as_ref(), &meant(scene, side))
+}
+
+/// The same of a pattern.
+pub fn mission_aim_of(scene: &Scene<'_>, side: &Side) -> Option<Aim> {
+    mission_aim(scene.document.plan(), scene.view.selection.as_ref(), &meant(scene, side))
 }
 
 /// Of a branch that is selected its beginning, unless another side is chosen.
@@ -160,15 +189,19 @@ fn place_in(aim: &Aim) -> &Id {
     id
 }
 
+/// Where a tool puts a leg on this side of what is selected.
+pub type AimOf = fn(&Scene<'_>, &Side) -> Option<Aim>;
+
 /// Lets the side be chosen, where there is a choice.
-pub fn choose_side(ui: &mut Ui, scene: &Scene<'_>, side: &mut Side) {
+pub fn choose_side(ui: &mut Ui, scene: &Scene<'_>, side: &mut Side, aim: AimOf) {
     let (plan, selected) = (scene.document.plan(), scene.view.selection.as_ref());
     let Some(Selection::Leg(id)) = selected else { return };
     let Some(leg) = plan.any_leg(id) else { return };
-    let shown = words(&beside(leg, &meant(scene, side)), plan);
+    let named_by = |side: &Side| aim(scene, side).map_or_else(String::new, |aim| words(&aim, plan));
+    let shown = named_by(side);
     let choice = ComboBox::from_id_salt("side").selected_text(&shown).show_ui(ui, |ui| {
         for other in Side::of(leg) {
-            let name = words(&beside(leg, &other), plan);
+            let name = named_by(&other);
             ui.selectable_value(side, other, name);
         }
     });

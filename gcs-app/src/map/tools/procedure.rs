@@ -132,7 +132,7 @@ impl Tool for PlaceProcedure {
         {
             self.chosen = procedures.get(chosen).map(|procedure| procedure.id.clone());
         }
-        choose_side(ui, scene, &mut self.side);
+        choose_side(ui, scene, &mut self.side, new_leg::aim_of);
     }
 
     fn hover(&mut self, at: Option<Pos2>, canvas: &Canvas<'_>) {

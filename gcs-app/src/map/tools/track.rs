@@ -96,7 +96,7 @@ impl Tool for Track {
     fn options(&mut self, ui: &mut Ui, scene: &Scene<'_>, _queue: &mut Queue) {
         choose_kind(ui, LegChoice::drawn_as(Shape::Place), &mut self.choice);
         if self.drawn.is_empty() {
-            choose_side(ui, scene, &mut self.side);
+            choose_side(ui, scene, &mut self.side, new_leg::aim_of);
         }
     }
 
