@@ -8,7 +8,7 @@ use crate::command::{
 use crate::document::Document;
 use crate::guide::Answer;
 use crate::link::Call;
-use crate::panels::counted;
+use crate::panels::{counted, what_if};
 use crate::state::{LOOK_AHEAD, Level, Proposal, START, Vehicle, VehicleName};
 use flight_exec::Command as PlanCommand;
 use flight_plan::{FlightPlan, Id};
@@ -108,6 +108,9 @@ impl App {
                 if self.shelf.undo(&mut self.document) {
                     self.show_another();
                     self.tell_of_turn(&left, ("Undone", "Redo (Ctrl+Y)"), now_s);
+                } else if !left.stages.is_empty() && self.document.plan().stages.is_empty() {
+                    let text = format!("Undone: “{}” was made. Redo (Ctrl+Y) brings it back", left.name);
+                    self.toasts.add(now_s, Level::Info, text);
                 }
             }
             DocumentCommand::Redo => {
@@ -238,6 +241,9 @@ impl App {
             ViewCommand::ShowPanel(panel, shown) => {
                 self.view.wanted_panel = Some(panel).filter(|_| shown && self.vehicles.shown().is_airborne());
                 self.dock.show_panel(panel, shown);
+                if panel == what_if::ID && !shown {
+                    self.end_what_happens();
+                }
             }
             ViewCommand::Maps(open) => self.view.maps = open,
             ViewCommand::Edge(edge) => self.view.edge = edge,

@@ -42,6 +42,12 @@ impl App {
         }
     }
 
+    /// What the panel What if has put on the map goes with it. Its world stays: that is told beside the problems.
+    pub(super) fn end_what_happens(&mut self) {
+        self.view.alarm = None;
+        self.view.coverage = false;
+    }
+
     /// From where it is, or from the start where it stands at the end.
     fn run_cursor(&mut self, playing: bool) {
         self.view.playing = playing;

@@ -73,13 +73,13 @@ fn in_a_small_window_what_comes_of_an_alarm_is_in_sight() {
     window.until_analysed();
     window.harness.get_all_by_label("What if").next().unwrap().click();
     window.steps(3);
+    let coverage = |window: &Window| window.harness.get_by_label("Coverage of the whole path").rect();
+    let before = coverage(&window);
     window.click("Engine failure");
     window.until("the way out", |app| app.analysis().diversion().is_some());
+    assert_eq!(coverage(&window), before, "it is asked for next, where it was");
     let answer = "Engine failure: R05 is";
     let lies = window.harness.query_all_by_label_contains(answer).next().unwrap().rect();
-    let panel =
-        window.harness.query_all_by_label_contains("Coverage of the whole path").next().unwrap().rect();
-    assert!(lies.bottom() < panel.top(), "before what is asked next: {lies} {panel}");
     let shapes = window.harness.output().shapes.iter();
     let painted =
         shapes.filter(|clipped| texts(&clipped.shape).iter().any(|text| text.galley.text().contains(answer)));
@@ -318,6 +318,17 @@ fn messages_stand_above_the_legend_of_the_coverage() {
     let message = window.harness.get_by_label_contains(message).rect();
     let legend = window.harness.get_by_label(legend).rect();
     assert!(message.bottom() < legend.top(), "{message} {legend}");
+}
+
+/// What they had put on the map stayed there, and nothing was left to put it away with.
+#[test]
+fn closing_the_panel_ends_its_alarm_and_its_coverage() {
+    let mut window = opened(SQUARE);
+    choose(&mut window, "Engine failure");
+    choose(&mut window, "Coverage of the whole path");
+    assert!(window.app().view().alarm.is_some() && window.app().view().coverage);
+    window.click("Hide What if");
+    assert!(window.app().view().alarm.is_none() && !window.app().view().coverage);
 }
 
 #[test]

@@ -31,11 +31,7 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         ui.spacing_mut().item_spacing.x = 2.0;
         CAUSES.into_iter().for_each(|cause| alarm(ui, cause, scene, queue));
     });
-    if ui.clip_rect().height() < LOW {
-        // what was asked for comes before what may be asked, too: that would be below the fold
-        outcome(ui, scene);
-        return coverage(ui, scene, queue);
-    }
+    // before what comes of an alarm, which takes more or less room: it stays where it is
     coverage(ui, scene, queue);
     ui.scope(|ui| {
         ui.set_min_height(OUTCOME_HEIGHT);
@@ -57,12 +53,10 @@ fn coverage(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     }
 }
 
-/// In a panel that is lower there is no room for both, screen points.
-const LOW: f32 = 220.0;
 /// Of the coverage's progress, screen points.
 const BAR_HEIGHT: f32 = 6.0;
 /// Room for what there usually is to say of an alarm, so that what stands below stays under the pointer when one is raised.
-const OUTCOME_HEIGHT: f32 = 132.0;
+const OUTCOME_HEIGHT: f32 = 134.0;
 
 fn alarm(ui: &mut Ui, cause: Cause, scene: &Scene<'_>, queue: &mut Queue) {
     let (raised, name) = (scene.view.alarm == Some(cause), cause.name());
