@@ -12,7 +12,7 @@ use crate::map::coverage;
 use crate::panels::{Scene, decision};
 use crate::theme::Palette;
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Vec2, vec2};
-use flight_plan::Id;
+use flight_plan::{Id, Problem};
 use std::collections::{BTreeSet, HashSet};
 
 /// The layer; keeps what it drew of the path until scale or forecast change.
@@ -64,15 +64,35 @@ impl Layer {
         }
         let covered = scene.analysis.coverage();
         let covered = covered.filter(|_| scene.view.coverage && scene.out_of_date().is_none());
-        let is_covered = covered.is_some();
+        // what is selected lies below what may be red: who selects a leg there asks why it is
+        let is_below = covered.is_some() || scene.problems().any(Problem::is_error);
+        if is_below {
+            self.draw_looked_at(sheet, BELOW);
+        }
         match covered {
-            Some(known) => {
-                // what is selected lies below: who selects a leg there asks why it is red
-                self.draw_looked_at(sheet, BELOW);
-                self.draw_covered(sheet, known);
-            }
+            Some(known) => self.draw_covered(sheet, known),
             None => self.draw_path(sheet),
         }
+        if !is_below {
+            self.draw_looked_at(sheet, ABOVE);
+        }
+        let analysis = scene.analysis;
+        if view.points_per_metre() > WAYPOINTS_FROM {
+            let of = (analysis.forecast_version, p.accent);
+            self.waypoints.draw(
+                sheet.painter,
+                view,
+                |made| *made == of,
+                |wide| (of, waypoints(wide, scene, p)),
+            );
+        }
+        // over the waypoints: those of an orbit lie close together
+        self.draw_faulty(sheet);
+    }
+
+    /// A stronger line along what is wrong, or is being checked and may be.
+    fn draw_faulty(&mut self, sheet: &Sheet<'_>) {
+        let Sheet { scene, p, .. } = *sheet;
         let analysis = scene.analysis;
         let of = (analysis.forecast_version, scene.document.version(), analysis.found, p.warning);
         self.faulty.draw(
@@ -89,18 +109,6 @@ impl Layer {
                 (of, shapes)
             },
         );
-        if !is_covered {
-            self.draw_looked_at(sheet, ABOVE);
-        }
-        if view.points_per_metre() > WAYPOINTS_FROM {
-            let of = (analysis.forecast_version, p.accent);
-            self.waypoints.draw(
-                sheet.painter,
-                view,
-                |made| *made == of,
-                |wide| (of, waypoints(wide, scene, p)),
-            );
-        }
     }
 
     /// The plan's places are others than before.

@@ -91,29 +91,40 @@ pub fn place_of(selection: &Selection, plan: &FlightPlan, sketch: &Sketch) -> Op
     }
 }
 
-/// The same; what names a place or a runway that is not there begins where the leg before it ends.
+/// The same; what names a place or a runway that is not there begins where the leg before it ends, and without one before it is near
+/// the leg behind it, or the runway that it leads to.
 pub fn place_or_begin(selection: &Selection, plan: &FlightPlan, sketch: &Sketch) -> Option<LatLon> {
     place_of(selection, plan, sketch).or_else(|| {
-        before(selection, plan)?.find_map(|leg| place_of(&Selection::Leg(leg.id.clone()), plan, sketch))
+        let (legs, runway) = around(selection, plan)?;
+        let mut places =
+            legs.into_iter().filter_map(|leg| place_of(&Selection::Leg(leg.id.clone()), plan, sketch));
+        places.next().or(runway)
     })
 }
 
-/// The legs before a leg or a stage, the nearest first: of its list, then of the stages before.
-fn before<'p>(selection: &Selection, plan: &'p FlightPlan) -> Option<impl Iterator<Item = &'p Arc<Leg>>> {
+/// The legs around a leg or a stage: before it, the nearest first, of its list, then of the stages before; and then those behind it. And
+/// the runway that all of them lead to.
+fn around<'p>(selection: &Selection, plan: &'p FlightPlan) -> Option<(Vec<&'p Arc<Leg>>, Option<LatLon>)> {
     let context = match selection {
         Selection::Leg(id) => Some(plan.leg(id)?),
         _ => None,
     };
     let stage = context.as_ref().map_or(selection.id(), |context| &context.stage.id);
     let (section, _) = plan.all_stages().find(|(_, other)| other.id == *stage)?;
-    let stages = match section {
-        Section::Main => &plan.stages,
-        Section::Emergency(emergency) => &emergency.stages,
+    let (stages, runway) = match section {
+        Section::Main => (&plan.stages, plan.home()),
+        Section::Emergency(emergency) => (&emergency.stages, plan.runway(&emergency.runway)),
     };
-    let own = context.as_ref().and_then(|context| context.siblings.get(..context.index)).unwrap_or_default();
-    let others = stages.iter().take_while(move |other| other.id != *stage);
-    let others: Vec<&Arc<Leg>> = others.flat_map(|other| &other.legs).collect();
-    Some(own.iter().rev().chain(others.into_iter().rev()))
+    let at = stages.iter().position(|other| other.id == *stage)?;
+    let (own, behind) = match &context {
+        Some(context) => context.siblings.split_at_checked(context.index)?,
+        None => Default::default(),
+    };
+    let earlier = stages.get(..at).unwrap_or_default().iter().flat_map(|other| &other.legs);
+    let earlier: Vec<&Arc<Leg>> = earlier.chain(own).collect();
+    let later = stages.get(at + 1..).unwrap_or_default().iter().flat_map(|other| &other.legs);
+    let legs = earlier.into_iter().rev().chain(behind).chain(later).collect();
+    Some((legs, runway.map(|runway| runway.threshold)))
 }
 
 fn place_of_leg(plan: &FlightPlan, leg: &Leg) -> Option<LatLon> {

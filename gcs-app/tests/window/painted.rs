@@ -191,6 +191,14 @@ impl Window {
         inside.map(|clipped| corners(&clipped.shape, colour)).sum()
     }
 
+    /// Which of all shapes within what is called so is the last with triangles of this colour.
+    pub fn last_triangles_within(&self, name: &str, colour: Color32) -> Option<usize> {
+        let rect = self.harness.query_all_by_label_contains(name).next().unwrap().rect();
+        let shapes = self.harness.output().shapes.iter();
+        let inside = shapes.filter(|clipped| rect.expand(1.0).contains_rect(clipped.clip_rect));
+        inside.enumerate().filter(|(_, clipped)| corners(&clipped.shape, colour) > 0).last().map(|(at, _)| at)
+    }
+
     /// Lines of this colour begin, bend or end within a few points of a place of the screen so often.
     pub fn line_ends_near(&self, at: Pos2, colour: Color32) -> usize {
         let shapes = self.harness.output().shapes.iter();

@@ -310,6 +310,27 @@ fn a_leg_and_a_zone_in_error_are_red_on_map_and_profile() {
     assert_eq!(aside.colour_within("Map", "quarry"), Some(gcs_app::theme::palette(true).text));
 }
 
+/// Those of an orbit lie so close together that nothing was seen of the red.
+#[test]
+fn what_is_red_lies_over_the_waypoints_of_the_path() {
+    let p = gcs_app::theme::palette(true);
+    let zone = ZONE.replace("radius=\"60\"", "radius=\"150\"");
+    let orbit = r#"<orbit id="round" radius="200" turns="1" turn="left"><centre lat="36.3241" lon="-84.1566"/></orbit><TF id="side2""#;
+    let bad = opened(&SQUARE.replacen("<mainPlan", &zone, 1).replacen(r#"<TF id="side2""#, orbit, 1));
+    assert!(bad.errors().iter().any(|error| error.contains("round")), "{:?}", bad.errors());
+    let last = |colour| bad.last_triangles_within("Map", colour);
+    assert!(last(p.accent).is_some() && last(p.warning) > last(p.accent));
+}
+
+#[test]
+fn a_fix_that_is_not_there_is_made_by_its_remedy() {
+    let mut window = opened(&SQUARE.replace(r#"<TF id="side2" fix="B""#, r#"<TF id="side2" fix="LAKE""#));
+    window.click("Fix");
+    window.until_analysed();
+    assert!(window.plan().fix(&"LAKE".into()).is_some());
+    assert!(!window.errors().iter().any(|error| error.contains("LAKE")), "{:?}", window.errors());
+}
+
 /// A leg that the path does not come to is marked with a cross.
 #[test]
 fn a_leg_in_error_that_is_not_flown_has_a_red_cross_at_its_place() {
@@ -402,7 +423,6 @@ fn the_mark_of_a_missing_fix_or_runway_is_where_what_names_it_begins() {
         "there is no runway",
     );
     assert!(near(mark, d), "{mark:?} {d}");
-    let (mark, [.., _]) =
-        mark_of(r#"<DF id="r1" fix="D""#, r#"<DF id="r1" fix="NOWHERE""#, "there is no fix");
-    assert_eq!(mark, None, "nobody knows where an emergency plan begins");
+    let (mark, _) = mark_of(r#"<DF id="r1" fix="D""#, r#"<DF id="r1" fix="NOWHERE""#, "there is no fix");
+    assert!(mark.is_some(), "nobody knows where an emergency plan begins: at the runway that it leads to");
 }

@@ -4,7 +4,7 @@
 use super::Inspection;
 use crate::suggest::{meant, question};
 use crate::uses::Part;
-use crate::{Act, Edit, EmergencyChoice, Id, Leg, LegAction, LegKind, Place, Problem};
+use crate::{Act, Edit, EmergencyChoice, Fix, Id, Leg, LegAction, LegKind, Place, Problem, Thing, Value};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -35,6 +35,8 @@ pub(super) fn has_strangers(view: &Inspection, leg: &Leg) -> bool {
     strange || leg.actions.iter().any(set)
 }
 
+/// A fix that is made is so far from the only place around it, metres.
+const BESIDE_M: f64 = 500.0;
 /// Most misspelt names for which another one is looked for.
 const MAX_SUGGESTIONS: usize = 64;
 
@@ -80,7 +82,40 @@ impl<'a> Found<'a, '_> {
     fn fix(&mut self, id: &Id, of: &Id) {
         if !self.view.fixes.contains_key(id) {
             self.report("unknown-fix", "fix", id, Some(of), self.view.plan.fixes.iter().map(|f| &f.id));
+            let is_unmended = self.problems.last().is_some_and(|problem| problem.fix.is_none());
+            let made = self.made(id, of).filter(|_| is_unmended).map(Box::new);
+            self.problems
+                .last_mut()
+                .into_iter()
+                .for_each(|problem| problem.fix = problem.fix.take().or(made.clone()));
         }
+    }
+
+    /// The edit that adds a fix nobody meant another one by: between the places around the leg, or beside the only one that is known,
+    /// from where it is moved.
+    fn made(&self, id: &Id, of: &Id) -> Option<Edit> {
+        let plan = self.view.plan;
+        let context = plan.leg(of)?;
+        let place = |leg: &Arc<Leg>| match leg.place()? {
+            Place::Fix(id) => self.view.fixes.get(id).copied(),
+            Place::Position(Value::Constant(at)) => Some(*at),
+            Place::Position(_) => None,
+        };
+        let (before, behind) = context.siblings.split_at_checked(context.index)?;
+        let before = before.iter().rev().find_map(place);
+        let behind = behind.iter().find_map(place);
+        let position = match (before, behind) {
+            (Some(from), Some(to)) if from.distance_m(to) > BESIDE_M => {
+                from.destination(from.bearing_deg(to), from.distance_m(to) / 2.0)
+            }
+            (at, other) => at.or(other).or_else(|| Some(plan.home()?.threshold))?.destination(0.0, BESIDE_M),
+        };
+        Some(Edit::Add(Box::new(Thing::Fix(Fix {
+            id: id.clone(),
+            position,
+            name: String::new(),
+            description: String::new(),
+        }))))
     }
 
     /// What follows what in a list.
@@ -183,6 +218,15 @@ mod tests {
                 r#"<IF id="a" fix="A"/><TF id="b" fix="B"><action on="end"><set variable="z" to="= 1.0"/></action></TF>"#,
                 &["unknown-variable"],
             ),
+        ]);
+    }
+
+    /// Where no name is near: the plan could be mended by typing only.
+    #[test]
+    fn a_fix_that_nothing_is_named_like_is_made_beside_the_legs_around() {
+        fixed_legs(&[
+            (r#"<IF id="a" fix="A"/><TF id="b" fix="LAKE"/><TF id="c" fix="C"/>"#, "unknown-fix"),
+            (r#"<IF id="a" fix="LAKE"/>"#, "unknown-fix"),
         ]);
     }
 
