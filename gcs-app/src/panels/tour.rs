@@ -5,8 +5,8 @@ use crate::command::{Queue, ViewCommand};
 use crate::theme::{self, Palette};
 use egui::emath::Rot2;
 use egui::{
-    Align, Align2, Area, Context, Id, LayerId, Layout, Order, Painter, Pos2, Rect, RichText, Sense, Stroke,
-    Ui, pos2, vec2,
+    Align, Align2, Area, Context, Id, Key, LayerId, Layout, Modifiers, Order, Painter, Pos2, Rect, RichText,
+    Sense, Stroke, Ui, pos2, vec2,
 };
 
 /// What a card says, and about which part of the window.
@@ -117,7 +117,7 @@ fn content(ui: &mut Ui, card: &Card, step: usize, queue: &mut Queue) {
     ui.horizontal(|ui| {
         let is_last = step + 1 == CARDS.len();
         let next = ui.add(primary_button(if is_last { "Done" } else { "Next" }, p));
-        if next.clicked() {
+        if next.clicked() || is_entered(ui) {
             queue.view(ViewCommand::Tour((!is_last).then_some(step + 1)));
         }
         if step > 0 && ui.button("Back").clicked() {
@@ -128,6 +128,12 @@ fn content(ui: &mut Ui, card: &Card, step: usize, queue: &mut Queue) {
         }
         ui.label(RichText::new(format!("{} of {}", step + 1, CARDS.len())).color(p.weak));
     });
+}
+
+/// Enter goes on, unless something else has the keyboard.
+fn is_entered(ui: &Ui) -> bool {
+    let is_free = ui.memory(|memory| memory.focused().is_none());
+    is_free && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Enter))
 }
 
 /// The upper left corner of every card: the pointer stays over its buttons, and what they are about lies around it.

@@ -137,6 +137,20 @@ fn the_report_of_a_demo_is_made_in_sight_and_can_be_cancelled() {
 }
 
 #[test]
+fn enter_goes_on_in_the_tour() {
+    let mut window = Window::open(SQUARE);
+    window.harness.state_mut().offer_tour();
+    window.steps(3);
+    let first = window.app().view().tour;
+    assert!(first.is_some());
+    window.press(egui::Key::Enter);
+    assert_eq!(window.app().view().tour, first.map(|step| step + 1));
+    while window.app().view().tour.is_some() {
+        window.press(egui::Key::Enter);
+    }
+}
+
+#[test]
 fn the_tour_covers_nothing_of_the_card_for_a_new_mission() {
     for size in [egui::vec2(960.0, 600.0), egui::vec2(1280.0, 800.0), egui::vec2(1920.0, 1080.0)] {
         let mut window = Window::open_with(super::creating::EMPTY, size, None);
