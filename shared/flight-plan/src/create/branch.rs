@@ -118,7 +118,7 @@ fn turn_to(
     if let Way::Branch(id) = way {
         let branch = branches.iter_mut().find(|branch| branch.id == *id)?;
         if is_unnamed(branch) && is_empty(branch) {
-            branch.label = if leg.name.is_empty() { leg.id.to_string() } else { leg.name.clone() };
+            branch.label = called_after(leg);
         }
         return branch.next.replace(leg.id.clone());
     }
@@ -126,6 +126,11 @@ fn turn_to(
     let target = on.next.clone();
     branches.push(other_way(branches, leg.id.clone()));
     target
+}
+
+/// The leg's name, or else what it is: its identifier stands beside the branch, which leads there.
+fn called_after(leg: &Leg) -> String {
+    if leg.name.is_empty() { LegChoice::of(&leg.kind).label().into() } else { leg.name.clone() }
 }
 
 /// One more way on from a fork, to there.
@@ -276,7 +281,7 @@ mod tests {
             let drawn = begin_way(&made, &fork, &way, drawn("n1")).unwrap().apply(&made).unwrap();
             assert_eq!(ways(&drawn).join(" "), drawn_into);
             assert_eq!(errors(&drawn), Vec::<String>::new());
-            assert_eq!(label(&drawn, "fork1", "way2"), "n1");
+            assert_eq!(label(&drawn, "fork1", "way2"), "Track to a fix");
             assert!(super::super::fork_behind(&made, &fork).is_none(), "it is a fork itself");
         }
     }
