@@ -120,7 +120,7 @@ fn pointer_at(map: Rect, buttons: Rect) -> Rect {
 pub fn pointer(ui: &mut Ui, view: &View, at: Option<Pos2>, scene: &Scene<'_>) {
     let Some(at) = at.map(|at| view.geo(at)).filter(|at| at.is_valid()) else { return };
     let ground = scene.layers.ground().elevation_m(at).map(|m| scene.units().altitude().show(m));
-    let ground = ground.map_or_else(|| "elevation unknown".into(), |m| format!("ground {m}"));
+    let ground = ground.map_or_else(|| "elevation unknown".into(), |m| format!("ground {m} AMSL"));
     let text = format!("{} · {ground}", units::position(at));
     let rect = pointer_at(view.rect, buttons_at(view.rect, scene));
     let mut line = ui.new_child(

@@ -113,7 +113,7 @@ fn a_geotiff_that_is_dropped_is_the_ground_that_the_plan_is_looked_at_over() {
     window.until("the new ground", |app| app.analysis().problems.iter().any(|p| p.is_error()));
     window.harness.hover_at(window.centre("Fix A"));
     window.steps(2);
-    assert!(window.shows("ground 4000 m"));
+    assert!(window.shows("ground 4000 m AMSL"));
 }
 
 #[test]

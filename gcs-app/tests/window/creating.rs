@@ -60,6 +60,16 @@ fn each_template_gives_a_plan_that_can_be_flown_and_undone() {
 }
 
 /// Nothing that is drawn begins by itself.
+/// The plan was empty again, and nothing said why.
+#[test]
+fn undoing_a_new_mission_is_told() {
+    let mut window = begun(vec2(1280.0, 800.0));
+    window.click("Create");
+    assert!(stages(&window) > 0);
+    window.click("Undo");
+    assert!(stages(&window) == 0 && window.shows("Redo (Ctrl+Y) brings it back"));
+}
+
 #[test]
 fn no_tool_is_armed_by_itself() {
     for key in [Key::A, Key::R, Key::E] {
@@ -367,6 +377,17 @@ fn card_fits_the_smallest_window() {
         let rect = window.harness.get_all_by_label(label).next().unwrap().rect();
         assert!(rect.min.y > 42.0 && rect.max.y < 600.0 && rect.max.x < 960.0, "{label}: {rect:?}");
     }
+    // nothing that is written lies under the bar by which the questions are scrolled
+    let all = super::states::widgets(&window);
+    let is_bar = |w: &&super::states::Widget| w.role == Role::ScrollBar && w.rect.left() < 270.0;
+    let bar = all.iter().find(is_bar).expect("they do not fit").rect;
+    let questions = bar.with_min_x(20.0);
+    let written = window
+        .places_of(|text| text.chars().count() > 1)
+        .into_iter()
+        .filter(|at| questions.contains(at.left_top()));
+    let under: Vec<_> = written.filter(|at| at.right() > bar.left() + 0.5).collect();
+    assert!(under.is_empty(), "{under:?} {bar}");
     // the map, its tools and the tabs below it stay free
     let map = window.harness.get_by_label("Map").rect();
     for label in ["Create", "Open a plan…", "Survey", "Height", "New mission"] {

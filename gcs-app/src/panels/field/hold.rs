@@ -28,7 +28,7 @@ fn hold(ui: &mut Ui, (text, asks): (&str, bool), colour: Color32, width: f32) ->
     let galley = ui.painter().layout_job(to_hold((text, asks), colour, room));
     let size = vec2((galley.size().x + 24.0).max(width), (galley.size().y + 12.0).max(HOLD_HEIGHT));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-    let name = format!("{text} (hold)");
+    let name = if asks { format!("{text} (hold)") } else { text.to_owned() };
     let enabled = response.enabled();
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, &name));
     let is_by_key = response.has_focus() && ui.input(|i| i.key_down(Key::Space));
