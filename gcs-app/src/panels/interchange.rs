@@ -12,7 +12,7 @@ use crate::map::drawings;
 use crate::{formats, theme};
 use egui::style::ScrollStyle;
 use egui::{Key, Label, Rect, RichText, ScrollArea, Ui};
-use flight_plan::FlightPlan;
+use flight_plan::{FlightPlan, Id};
 use interchange::{Areas, Note};
 
 const WIDTH: f32 = 560.0;
@@ -209,7 +209,17 @@ fn text(note: &Note, plan: &FlightPlan) -> String {
     } else {
         ""
     };
-    format!("{}: {}{remedy}", note.place, plan.in_names(&note.message))
+    format!("{}: {}{remedy}", place(note, plan), plan.in_names(&note.message))
+}
+
+/// By its name, and of which procedure it is: that stands elsewhere in the tree.
+fn place(note: &Note, plan: &FlightPlan) -> String {
+    let id = Id::new(&note.place);
+    let name = plan.label(&id);
+    match plan.procedure_leg(&id) {
+        Some((procedure, _)) => format!("{name} (in procedure {})", plan.label(&procedure.id)),
+        None => name.to_owned(),
+    }
 }
 
 #[cfg(test)]
@@ -221,6 +231,17 @@ mod tests {
         assert_eq!(coming(&[(0, "fix"), (1, "corridor")]), "comes 1 corridor");
         assert_eq!(coming(&[(1, "fix"), (1, "zone")]), "come 1 fix and 1 zone");
         assert_eq!(coming(&[(0, "fix")]), "comes nothing that can be flown");
+    }
+
+    #[test]
+    fn a_note_on_a_leg_of_a_procedure_says_so() {
+        let text = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><procedures>
+            <procedure id="look" name="Look around" reference="46 9"><TF id="up" name="Up" lat="46" lon="9"/></procedure>
+            </procedures></flightPlan>"#;
+        let plan = flight_plan::read(text).plan;
+        let of = |place: &str| Note { code: "flattened", place: place.into(), message: "lost".into() };
+        assert_eq!(super::text(&of("up"), &plan), "Up (in procedure Look around): lost");
+        assert_eq!(super::text(&of("line 7"), &plan), "line 7: lost");
     }
 
     #[test]
