@@ -80,7 +80,7 @@ impl Manager {
     pub fn gateway_status(&mut self, now: Time, status: &GatewayStatus, out: &mut Vec<Effect>) {
         let controlled = self.gateway_session.is_controlled();
         if let Some(autopilot) = &status.autopilot {
-            self.landing_deg = autopilot.landing_deg.filter(|degrees| degrees.is_finite());
+            self.autopilot = Some(autopilot.clone());
         }
         self.gateway_session.armed(status.armed);
         self.gateway_session.state(now, status.state);

@@ -19,7 +19,7 @@ use service::Time;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use usal::Instance;
-use usal::contract::{Feed, FeedAnswer, GatewayRequest, Join};
+use usal::contract::{AutopilotKind, Feed, FeedAnswer, GatewayRequest, Join};
 use wire::Convert;
 
 /// What has to be done outside.
@@ -71,8 +71,8 @@ pub struct Manager {
     pub(super) turns: u64,
     /// The time of day when it was received last, seconds since 1970.
     day: Option<(Time, i64)>,
-    /// The steepest landing that the autopilot takes, degrees, as the gateway said last.
-    pub(super) landing_deg: Option<f64>,
+    /// The autopilot, as the gateway said last.
+    pub(super) autopilot: Option<AutopilotKind>,
     /// As recorded last.
     pub(super) noted: ManagerState,
     pub(super) replies: VecDeque<Reply>,
@@ -98,7 +98,7 @@ impl Manager {
             last_request: 0,
             turns: 0,
             day: None,
-            landing_deg: None,
+            autopilot: None,
             noted: ManagerState::default(),
             replies: VecDeque::new(),
             returning: false,
@@ -134,8 +134,10 @@ impl Manager {
         let since_s = |then| now.saturating_sub(then).as_secs();
         let start_unix_s = self.day.map(|(then, unix_s)| unix_s.saturating_add_unsigned(since_s(then)));
         let isa_deviation_c = self.aircraft.isa_deviation_c();
-        let landing_deg = self.landing_deg;
-        Conditions { wind, start_unix_s, isa_deviation_c, landing_deg, ..Conditions::default() }
+        let kind = self.autopilot.as_ref();
+        let landing_deg = kind.and_then(|kind| kind.landing_deg).filter(|degrees| degrees.is_finite());
+        let autopilot = kind.and_then(|kind| kind.habits.as_ref()?.parse().ok());
+        Conditions { wind, start_unix_s, autopilot, isa_deviation_c, landing_deg, ..Conditions::default() }
     }
 
     /// The time of day, seconds since 1970-01-01T00:00:00Z, as the satellites give it.

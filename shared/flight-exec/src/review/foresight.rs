@@ -50,6 +50,7 @@ fn not_flying() -> Refusal {
 /// The flight to its end, and why that is too early, if it is.
 fn ahead(flight: &Executor, conditions: Conditions) -> Option<(Preview, Option<String>)> {
     let options = Options {
+        autopilot: conditions.autopilot,
         is_indicated: conditions.isa_deviation_c.is_some(),
         isa_deviation_c: conditions.isa_deviation_c.unwrap_or(0.0),
         ..Options::default()

@@ -58,7 +58,7 @@ mod zones;
 
 use crate::rehearse::Start;
 pub use ahead::{compile_and_review_ahead, review_ahead, review_command, review_turn};
-use aircraft::{Profile, Wind};
+use aircraft::{Autopilot, Profile, Wind};
 use alternates::Origin;
 use emergency_coverage::EmergencyCoverage;
 pub use extremes::{MAX_TRIALS, review_extremes};
@@ -89,6 +89,8 @@ pub struct Conditions {
     pub begin: Option<Start>,
     /// What is kept in reserve.
     pub margins: Margins,
+    /// The autopilot by whose habits a flight that is foreseen is flown; `None`: close to the lines, as in reviews.
+    pub autopilot: Option<Autopilot>,
     /// The autopilot of a flight that is foreseen holds indicated airspeeds, in air that is so much warmer than the standard's, °C;
     /// `None`: true ones, as in reviews.
     pub isa_deviation_c: Option<f64>,
