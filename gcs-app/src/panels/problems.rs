@@ -1,5 +1,6 @@
 //! What is wrong with the plan, with a jump to its place and, often, a remedy.
 
+mod folds;
 mod gathered;
 mod remedies;
 
@@ -10,6 +11,7 @@ use crate::theme;
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{FontId, Rect, Response, RichText, ScrollArea, Sense, Shape, TextFormat, Ui, UiBuilder, vec2};
 use flight_plan::{Id, Problem, Verdict};
+use folds::{Alike, Unfolded};
 use gathered::Gathered;
 use remedies::Remedies;
 
@@ -21,6 +23,7 @@ pub struct Problems {
     /// What was selected when it was last drawn.
     selected: Option<Selection>,
     listed: Listed,
+    unfolded: Unfolded,
     remedies: Remedies,
 }
 
@@ -28,9 +31,11 @@ pub struct Problems {
 #[derive(Debug, Default)]
 struct Listed {
     /// The document's version, and what was found out of it.
-    of: (u64, u64),
+    of: Option<(u64, u64)>,
     /// The gravest first.
     order: Vec<Gathered>,
+    /// With those that are not listed.
+    count: usize,
     verdict: Verdict,
     /// Of the rows as they were last drawn, screen points.
     heights: Vec<f32>,
@@ -38,18 +43,19 @@ struct Listed {
 
 impl Listed {
     fn is_of(&self, scene: &Scene<'_>) -> bool {
-        self.of == (scene.document.version(), scene.analysis.found)
+        self.of == Some((scene.document.version(), scene.analysis.found))
     }
 
-    fn refresh(&mut self, scene: &Scene<'_>, problems: &[&Problem]) {
+    fn refresh(&mut self, scene: &Scene<'_>, problems: &[&Problem], unfolded: &Unfolded) {
         if self.is_of(scene) {
             return;
         }
         let mut order = gathered::gather(scene.document, problems);
         order.sort_by_key(|one| problems.get(one.number).map(|problem| problem.rank()));
-        self.of = (scene.document.version(), scene.analysis.found);
+        self.of = Some((scene.document.version(), scene.analysis.found));
         self.verdict = gathered::verdict(&order, problems);
-        self.order = order;
+        self.count = order.len();
+        self.order = unfolded.listed(scene.document, order, problems);
         self.heights.resize(self.order.len().min(MOST), USUAL);
     }
 }
@@ -70,7 +76,7 @@ impl Panel for Problems {
     }
     fn title(&self, scene: &Scene<'_>) -> String {
         let problems: Vec<&Problem> = scene.problems().collect();
-        let known = self.listed.is_of(scene).then_some(self.listed.order.len());
+        let known = self.listed.is_of(scene).then_some(self.listed.count);
         let known = known.unwrap_or_else(|| gathered::gather(scene.document, &problems).len());
         format!("Problems ({})", known + scene.unsettled().count())
     }
@@ -83,7 +89,11 @@ impl Panel for Problems {
         let is_news = self.selected != scene.view.selection;
         self.selected.clone_from(&scene.view.selection);
         let problems: Vec<&Problem> = scene.problems().collect();
-        self.listed.refresh(scene, &problems);
+        self.listed.refresh(scene, &problems, &self.unfolded);
+        if is_news && self.unfolded.reveal(&self.listed.order, &problems, |one| is_selected(scene, one)) {
+            self.listed.of = None;
+            self.listed.refresh(scene, &problems, &self.unfolded);
+        }
         verdict(ui, scene, self.listed.verdict);
         self.remedies.follow(ui);
         let pointed = ScrollArea::vertical().id_salt("problems").auto_shrink(false);
@@ -111,29 +121,37 @@ impl Problems {
             ui.spacing_mut().item_spacing.y = BETWEEN;
         }
         let near = ui.clip_rect().expand(BEYOND);
-        let listed = self
-            .listed
-            .order
-            .iter()
-            .filter_map(|one| Some((*problems.get(one.number)?, one.calls.as_slice())));
-        for ((number, (problem, calls)), height) in listed.enumerate().zip(&mut self.listed.heights) {
+        let listed = self.listed.order.iter().filter_map(|one| Some((*problems.get(one.number)?, one)));
+        let mut turned = None;
+        for ((number, (problem, one)), height) in listed.enumerate().zip(&mut self.listed.heights) {
             let rect = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), *height));
             let rect = if near.intersects(rect) {
-                let how = (&mut self.open, &mut self.remedies, at_once);
-                let response = row(ui, scene, (number, problem, calls), how, queue);
-                if response.hovered() {
-                    pointed.clone_from(&problem.subject);
-                }
-                response.rect
+                let shown = ui.scope(|ui| {
+                    let how = (&mut self.open, &mut self.remedies, at_once);
+                    let response = row(ui, scene, (number, problem, &one.calls), how, queue);
+                    if response.hovered() {
+                        pointed.clone_from(&problem.subject);
+                    }
+                    if let Some(alike) = &one.alike {
+                        let is_open = self.unfolded.has(problem);
+                        if others(ui, scene, (problem, alike, is_open), &mut self.remedies, queue) {
+                            turned = Some(problem);
+                        }
+                    }
+                });
+                shown.response.rect
             } else {
                 ui.allocate_space(rect.size()).1
             };
             *height = rect.height();
-            let is_selected = || subject(scene, problem).is_some_and(|of| scene.is_selected(&of));
-            if is_news && is_selected() {
+            if is_news && is_selected(scene, problem) {
                 ui.scroll_to_rect(rect, None);
                 is_news = false;
             }
+        }
+        if let Some(problem) = turned {
+            self.unfolded.turn(problem);
+            self.listed.of = None;
         }
         for problem in scene.unsettled() {
             if unsettled(ui, scene, problem).clicked() {
@@ -176,6 +194,10 @@ pub fn first_in_error(scene: &Scene<'_>) -> Option<Selection> {
 /// What a problem is with.
 fn subject(scene: &Scene<'_>, problem: &Problem) -> Option<Selection> {
     find(scene.document, problem.subject.as_ref()?)
+}
+
+fn is_selected(scene: &Scene<'_>, problem: &Problem) -> bool {
+    subject(scene, problem).is_some_and(|of| scene.is_selected(&of))
 }
 
 /// Whether the plan can be flown, once all of it was checked: green only if nothing at all is to be considered first. An error is one
@@ -256,6 +278,28 @@ fn row(
         }
     }
     response
+}
+
+/// How many more of a problem's sort there are, and the remedy for all of them. True: they are to be listed, or no more.
+fn others(
+    ui: &mut Ui,
+    scene: &Scene<'_>,
+    (problem, alike, is_open): (&Problem, &Alike, bool),
+    remedies: &mut Remedies,
+    queue: &mut Queue,
+) -> bool {
+    ui.horizontal(|ui| {
+        ui.add_space(20.0);
+        let symbol = if is_open { "⏶" } else { "⏷" };
+        let text = format!("{} more like it {symbol}", alike.numbers.len());
+        let turned = ui.small_button(text).on_hover_text("Lists them, or no more").clicked();
+        if let Some(remedy) = &alike.remedy {
+            let all = (problem.code, alike.numbers.len() + 1);
+            remedies.of_all(ui, scene, all, remedy, queue);
+        }
+        turned
+    })
+    .inner
 }
 
 /// What was found of an earlier version, and may be so no more: grey, and without a remedy.

@@ -277,14 +277,23 @@ fn the_first_error_of_a_plan_that_is_opened_is_selected_and_problems_follow_the_
     let mut window = window_on(&folder.path().join("bad.xml"), &bad);
     window.until_analysed();
     assert_eq!(window.selected(), "bad0");
-    let bottom = |window: &Window| {
-        window.harness.query_all_by_label_contains("Problem: bad9").next().unwrap().rect().bottom()
+    let rect_of = |window: &Window, of: &str| {
+        window.harness.query_all_by_label_contains(&format!("Problem: {of}:")).next().map(|row| row.rect())
     };
-    assert!(bottom(&window) > 800.0, "it is out of view: {}", bottom(&window));
-    window.click("TF bad9");
+    assert!(rect_of(&window, "bad0").is_some() && rect_of(&window, "bad9").is_none(), "it is folded");
     // it scrolls there step by step
-    window.steps(30);
-    assert!(bottom(&window) < 800.0, "{}", bottom(&window));
+    let choose = |window: &mut Window, leg: &str| {
+        window.click(&format!("TF {leg}"));
+        window.steps(30);
+        rect_of(window, leg).unwrap()
+    };
+    let shown = choose(&mut window, "bad9");
+    assert!(shown.bottom() < 800.0, "{shown}");
+    let top = window.harness.get_by_label("Hide Problems").rect().bottom();
+    let above = rect_of(&window, "bad0").unwrap();
+    assert!(above.bottom() < top, "it is out of view: {above}");
+    let shown = choose(&mut window, "bad0");
+    assert!(shown.top() > top, "{shown}");
     window.press(egui::Key::Escape);
     assert_eq!(window.selected(), "", "it is selected once");
 }
@@ -320,6 +329,29 @@ fn what_is_red_lies_over_the_waypoints_of_the_path() {
     assert!(bad.errors().iter().any(|error| error.contains("round")), "{:?}", bad.errors());
     let last = |colour| bad.last_triangles_within("Map", colour);
     assert!(last(p.accent).is_some() && last(p.warning) > last(p.accent));
+}
+
+/// A dozen entries with the same remedy took a press each.
+#[test]
+fn many_problems_of_one_sort_are_one_entry_with_one_remedy() {
+    let leg = |n| {
+        format!(
+            r#"<TF id="wrong{n}" fix="LAKE{n}{n}{n}"/><TF id="good{n}" fix="C"/><TF id="back{n}" fix="A"/>"#
+        )
+    };
+    let legs: String = (0..6).map(leg).collect();
+    let mut window = opened(&SQUARE.replacen(r#"<TF id="side2""#, &format!(r#"{legs}<TF id="side2""#), 1));
+    let listed = |window: &Window| window.harness.query_all_by_label_contains("Problem: wrong").count();
+    assert_eq!(listed(&window), 1);
+    window.click("5 more like it ⏷");
+    assert_eq!(listed(&window), 6);
+    window.click("5 more like it ⏶");
+    assert_eq!(listed(&window), 1);
+    window.click("Fix all 6");
+    window.until_analysed();
+    assert!(window.errors().iter().all(|error| !error.contains("LAKE")), "{:?}", window.errors());
+    window.click("Undo");
+    assert!(window.plan().fix(&"LAKE000".into()).is_none(), "one step");
 }
 
 #[test]

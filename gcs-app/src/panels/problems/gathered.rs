@@ -1,6 +1,7 @@
 //! Problems inside of procedures: each call has them anew, and each is listed once, with the calls that have it. What is said of one
 //! call in other words or figures is a problem of its own.
 
+use super::folds::Alike;
 use crate::document::Document;
 use flight_plan::{Id, Problem, Severity, Verdict};
 use std::collections::HashMap;
@@ -9,12 +10,14 @@ use std::collections::HashMap;
 const MOST: usize = 3;
 
 /// A problem that is listed.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Gathered {
     /// Its number among all problems; of several that are one, the first.
     pub number: usize,
     /// The calls that have it; none, where it is of no procedure.
     pub calls: Vec<Id>,
+    /// The others of its sort, where it is the entry of many.
+    pub alike: Option<Alike>,
 }
 
 /// What is said of a leg: what is wrong, how badly, and in which words; its call is not named in them.
@@ -31,7 +34,7 @@ pub fn gather(document: &Document, problems: &[&Problem]) -> Vec<Gathered> {
     for (number, problem) in problems.iter().enumerate() {
         let made = problem.subject.as_ref().and_then(|flown| Some((flown, document.call_of(flown)?)));
         let Some((flown, call)) = made else {
-            gathered.push(Gathered { number, calls: Vec::new() });
+            gathered.push(Gathered { number, calls: Vec::new(), alike: None });
             continue;
         };
         let said = (problem.code, problem.severity, problem.message.replace(&format!("{call}."), ""));
@@ -42,7 +45,7 @@ pub fn gather(document: &Document, problems: &[&Problem]) -> Vec<Gathered> {
         match gathered.get_mut(index) {
             Some(one) if !one.calls.contains(&call) => one.calls.push(call),
             Some(_) => {}
-            None => gathered.push(Gathered { number, calls: vec![call] }),
+            None => gathered.push(Gathered { number, calls: vec![call], alike: None }),
         }
     }
     gathered

@@ -55,6 +55,19 @@ impl Remedies {
         }
     }
 
+    /// Draws the remedy of so many problems with this code at once.
+    pub fn of_all(
+        &mut self,
+        ui: &mut Ui,
+        scene: &Scene<'_>,
+        (code, count): (&str, usize),
+        remedy: &Edit,
+        queue: &mut Queue,
+    ) {
+        let text = format!("Fix all {count}");
+        self.button(ui, scene, (&text, "As one step."), (code, 0), remedy, queue);
+    }
+
     /// It has one remedy.
     pub fn is_one(problem: &Problem) -> bool {
         problem.fix.is_some() && problem.at_source.is_none()
