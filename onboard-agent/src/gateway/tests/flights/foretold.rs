@@ -173,7 +173,8 @@ fn in_warm_air_what_is_foreseen_aboard_takes_as_long_as_it_is_flown() {
         let standard_s = foreseen_s(Conditions { isa_deviation_c: Some(0.0), ..conditions });
         whole.run_until(700.0, "down", |w| aircraft_of(w).on_ground);
         let flown_s = (whole.flight.now - now).as_secs_f64();
-        assert!((told_s / flown_s - 1.0).abs() < 0.015, "{personality}: {told_s:.1} s, flown {flown_s:.1} s");
+        assert!((told_s / flown_s - 1.0).abs() < 0.02, "{personality}: {told_s:.1} s, flown {flown_s:.1} s");
+        assert!(standard_s / told_s > 1.03, "{personality}: {standard_s:.1} s in the standard's, {told_s:.1} s");
         assert!(standard_s / flown_s > 1.02, "{personality}: {standard_s:.1} s, flown {flown_s:.1} s");
     }
 }
