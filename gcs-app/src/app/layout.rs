@@ -88,7 +88,7 @@ impl App {
             whole
         });
         dialogs(ui, room.inner, &scene, queue);
-        help.show(ui, &scene, queue);
+        help.show(ui, room.inner, &scene, queue);
         palette.show(ui, &scene, &fittings, queue);
         dropped_files(ui, queue);
     }
@@ -106,7 +106,7 @@ fn strips(ui: &mut Ui, scene: &Scene<'_>, width: Option<f32>, queue: &mut Queue)
 
 /// What lies over map and panels until something is decided, and the tour.
 fn dialogs(ui: &mut Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
-    maps::show(ui, scene, queue);
+    maps::show(ui, room, scene, queue);
     unsaved::show(ui, room, scene, queue);
     changed::show(ui, room, scene, queue);
     browse::show(ui, room, scene, queue);

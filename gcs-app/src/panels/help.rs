@@ -4,8 +4,11 @@ use super::Scene;
 use crate::command::{Queue, ViewCommand};
 use crate::help::{PICTURES, Topic, search, topics};
 use crate::theme;
-use egui::{RichText, ScrollArea, Ui, vec2};
+use egui::{Rect, RichText, ScrollArea, Ui, Vec2, vec2};
 use egui_commonmark::{CommonMarkCache, CommonMarkViewer};
+
+/// Of the room, what is left around it with its title, screen points on each side.
+const AROUND: Vec2 = vec2(16.0, 32.0);
 
 /// The window with the documents.
 #[derive(Default)]
@@ -19,19 +22,20 @@ pub struct Help {
 }
 
 impl Help {
-    /// Draws it, while a topic is wanted.
-    pub fn show(&mut self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) {
+    /// Draws it within this room, while a topic is wanted.
+    pub fn show(&mut self, ui: &Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
         let Some(key) = &scene.view.help else { return };
         if self.topics.is_empty() {
             self.open(ui);
         }
         let mut open = true;
-        let room = ui.ctx().content_rect().shrink(24.0);
+        let most = room.shrink2(AROUND).size();
         egui::Window::new("Help")
             .open(&mut open)
-            .default_size(vec2(760.0, 560.0).min(room.size()))
-            .max_size(room.size())
-            .min_size(vec2(420.0, 240.0).min(room.size()))
+            .constrain_to(room)
+            .default_size(vec2(760.0, 560.0).min(most))
+            .max_size(most)
+            .min_size(vec2(420.0, 240.0).min(most))
             .show(ui.ctx(), |ui| {
                 egui::Panel::left("help topics").exact_size(220.0).show(ui, |ui| self.list(ui, key, queue));
                 egui::CentralPanel::default().show(ui, |ui| self.text(ui, key, queue));

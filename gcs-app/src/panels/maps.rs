@@ -5,11 +5,16 @@ use crate::command::{Queue, ViewCommand};
 use crate::layers::{Layer, LayerCommand, Server, Source, State};
 use crate::theme;
 use crate::tiles::Template;
-use egui::{Align2, Id, Key, RichText, ScrollArea, TextEdit, Ui, vec2};
+use egui::{Align2, Id, Key, Rect, RichText, ScrollArea, TextEdit, Ui, Vec2, vec2};
 use std::path::PathBuf;
 
-/// Draws it, while it is open.
-pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+/// Its upper right corner from that of the room: beside the map's buttons, screen points.
+const AT: Vec2 = vec2(-70.0, 16.0);
+/// What is above and below its content: its title and frame, screen points.
+const AROUND: f32 = 80.0;
+
+/// Draws it within this room, while it is open.
+pub fn show(ui: &mut Ui, room: Rect, scene: &Scene<'_>, queue: &mut Queue) {
     if !scene.view.maps {
         return;
     }
@@ -19,7 +24,10 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         .open(&mut open)
         .collapsible(false)
         .default_width(380.0)
-        .anchor(Align2::RIGHT_TOP, vec2(-70.0, 110.0))
+        .constrain_to(room)
+        .anchor(Align2::RIGHT_TOP, AT)
+        .vscroll(true)
+        .max_height(room.height() - AROUND)
         .show(ui.ctx(), |ui| {
             add(ui, queue);
             online(ui, queue);

@@ -44,8 +44,11 @@ fn of_many_waypoints_some_are_named_and_whichever_the_pointer_is_at_is_dragged()
 
 #[test]
 fn of_many_problems_those_near_the_view_are_drawn() {
-    let window = with_legs(|i| format!(r#"<TF id="bad{i}" fix="NOWHERE{i}"/>"#));
+    let mut window = with_legs(|i| format!(r#"<TF id="bad{i}" fix="NOWHERE{i}"/>"#));
     assert!(window.errors().len() >= LEGS, "{}", window.errors().len());
+    assert!(named(&window, "Problem: ") < 10, "they are one entry");
+    window.click(&format!("{} more like it ⏷", LEGS - 1));
+    window.steps(3);
     let rows = named(&window, "Problem: ");
     assert!((10..60).contains(&rows), "{rows}");
 }

@@ -90,6 +90,27 @@ fn commands_in_flight_are_in_reach_whatever_is_open() {
     }
 }
 
+#[test]
+fn commands_in_flight_are_in_reach_while_something_is_read_or_looked_up() {
+    let labels = ["⏸ Hold", "Skip leg", "Emergency: fly"];
+    for size in SIZES {
+        let (mut window, _) = flying();
+        window.harness.set_size(size);
+        window.press(Key::F1);
+        window.steps(5);
+        assert!(window.shows("Search the help"));
+        assert_in_reach(&window, size, &labels, "the help is open");
+        window.press(Key::Escape);
+        ["Legwork", "Maps", "Maps and elevations…"].iter().for_each(|name| window.click(name));
+        window.steps(5);
+        assert!(window.shows("Range rings"));
+        assert_in_reach(&window, size, &labels, "the maps are listed");
+        window.press_ctrl(Key::K);
+        window.steps(5);
+        assert_in_reach(&window, size, &labels, "the palette is open");
+    }
+}
+
 /// Another program may write the plan's file in flight: nobody answers that before he may hold the aircraft.
 #[test]
 fn commands_in_flight_are_in_reach_while_a_question_of_a_file_waits() {

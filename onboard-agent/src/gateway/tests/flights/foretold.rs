@@ -174,7 +174,10 @@ fn in_warm_air_what_is_foreseen_aboard_takes_as_long_as_it_is_flown() {
         whole.run_until(700.0, "down", |w| aircraft_of(w).on_ground);
         let flown_s = (whole.flight.now - now).as_secs_f64();
         assert!((told_s / flown_s - 1.0).abs() < 0.02, "{personality}: {told_s:.1} s, flown {flown_s:.1} s");
-        assert!(standard_s / told_s > 1.03, "{personality}: {standard_s:.1} s in the standard's, {told_s:.1} s");
+        assert!(
+            standard_s / told_s > 1.03,
+            "{personality}: {standard_s:.1} s in the standard's, {told_s:.1} s"
+        );
         assert!(standard_s / flown_s > 1.02, "{personality}: {standard_s:.1} s, flown {flown_s:.1} s");
     }
 }
