@@ -7,6 +7,7 @@ use crate::gateway::order::{Fix, Report, Time};
 use geometry::LatLon;
 use geometry::geodesy::normalise_360;
 use mavlink::dialects::ardupilotmega::*;
+use std::f32::consts::TAU;
 use std::ops::RangeInclusive;
 use usal::contract::{Air, Attitude, Engine, Gps, Power};
 
@@ -16,6 +17,9 @@ const FASTEST_MPS: f64 = 300.0;
 const JUMP_M: f64 = 500.0;
 /// After so many jumps in a row to about the same place, it is believed.
 const BELIEVED_AFTER: u32 = 10;
+/// Angles come within one turn of zero, radians; and what turns faster than this is no aircraft, rad/s.
+const ANGLES_RAD: RangeInclusive<f32> = -TAU..=TAU;
+const TURNS_RADPS: RangeInclusive<f32> = -50.0..=50.0;
 /// What an aircraft and the air around it may be; what lies outside is no measurement.
 const ALTITUDES_M: RangeInclusive<f64> = -500.0..=20_000.0;
 const SPEEDS_MPS: RangeInclusive<f64> = -FASTEST_MPS..=FASTEST_MPS;
@@ -32,6 +36,15 @@ const NO_HDOP: f64 = 99.99;
 /// A time of day before this (2020-01-01, in microseconds since 1970) is none: the autopilot has not received it from a satellite.
 const NO_TIME_BEFORE_US: u64 = 1_577_836_800_000_000;
 
+/// A place to which it seems to have jumped.
+#[derive(Debug, Clone, Copy)]
+struct Jump {
+    /// Where it was said to be last, and when.
+    said: (Time, LatLon),
+    /// So often in a row it was said to be about there.
+    times: u32,
+}
+
 /// What is put together from several messages.
 #[derive(Debug, Clone, Default)]
 pub struct Readings {
@@ -43,7 +56,7 @@ pub struct Readings {
     engine_temperature_c: f64,
     fuel: Option<f64>,
     last_fix: Option<(Time, LatLon)>,
-    jumps: u32,
+    jump: Option<Jump>,
     /// When a position of the usual message came.
     finer_at: Option<Time>,
     /// The take-off place's altitude AMSL, as its two heights say it.
@@ -133,12 +146,16 @@ impl Readings {
     }
 
     fn is_plausible(&mut self, now: Time, position: LatLon) -> bool {
-        let Some((then, last)) = self.last_fix else { return true };
-        let reach_m = JUMP_M + FASTEST_MPS * now.saturating_sub(then).as_secs_f64();
-        let flat_m = geometry::LocalFrame::new(last).to_local(position).length();
-        let jumped = flat_m > reach_m;
-        self.jumps = if jumped { self.jumps + 1 } else { 0 };
-        !jumped || self.jumps > BELIEVED_AFTER
+        let Some(last) = self.last_fix else { return true };
+        if is_in_reach(last, now, position) {
+            self.jump = None;
+            return true;
+        }
+        // another place each time is noise, however long it lasts
+        let before = self.jump.filter(|jump| is_in_reach(jump.said, now, position));
+        let times = before.map_or(0, |jump| jump.times) + 1;
+        self.jump = Some(Jump { said: (now, position), times });
+        times > BELIEVED_AFTER
     }
 
     fn unix_s(&self, now: Time) -> Option<i64> {
@@ -221,6 +238,12 @@ impl Readings {
     }
 }
 
+/// It can have flown there from where it was then.
+fn is_in_reach((then, last): (Time, LatLon), now: Time, position: LatLon) -> bool {
+    let reach_m = JUMP_M + FASTEST_MPS * now.saturating_sub(then).as_secs_f64();
+    geometry::LocalFrame::new(last).to_local(position).length() <= reach_m
+}
+
 /// A valid position that is known.
 fn place(lat: i32, lon: i32) -> Option<LatLon> {
     let position = LatLon::new(f64::from(lat) / 1e7, f64::from(lon) / 1e7);
@@ -234,8 +257,11 @@ fn is_nowhere(lat: i32, lon: i32) -> bool {
 
 fn attitude(m: &ATTITUDE_DATA) -> Option<Attitude> {
     let deg = |rad: f32| f64::from(rad).to_degrees();
-    let all = [m.roll, m.pitch, m.yaw, m.rollspeed, m.pitchspeed, m.yawspeed];
-    all.iter().all(|v| v.is_finite()).then(|| Attitude {
+    let angles = [m.roll, m.pitch, m.yaw];
+    let turns = [m.rollspeed, m.pitchspeed, m.yawspeed];
+    let in_range =
+        angles.iter().all(|v| ANGLES_RAD.contains(v)) && turns.iter().all(|v| TURNS_RADPS.contains(v));
+    in_range.then(|| Attitude {
         roll_deg: deg(m.roll),
         pitch_deg: deg(m.pitch),
         heading_deg: normalise_360(deg(m.yaw)),
@@ -314,6 +340,8 @@ mod tests {
             air(-5.0, 1500),
             air(f32::INFINITY, 1500),
             air(960.0, i16::MAX),
+            MavMessage::ATTITUDE(ATTITUDE_DATA { roll: 1e30, ..ATTITUDE_DATA::DEFAULT }),
+            MavMessage::ATTITUDE(ATTITUDE_DATA { yawspeed: 1e3, ..ATTITUDE_DATA::DEFAULT }),
             MavMessage::RPM(RPM_DATA { rpm1: 1e9, rpm2: 0.0 }),
             MavMessage::EFI_STATUS(EFI_STATUS_DATA {
                 cylinder_head_temperature: 1e9,
@@ -344,6 +372,35 @@ mod tests {
         readings.take(Time::ZERO, &MavMessage::GLOBAL_POSITION_INT(fix()), &mut out, &mut ignored);
         readings.take(Time::ZERO, &nowhere, &mut out, &mut ignored);
         assert_eq!((out.len(), ignored), (1, 1));
+    }
+
+    /// Whether each of these positions is believed, degrees of latitude ten times a second behind a first one at 36.3°.
+    fn believed(lats_deg: &[f64]) -> Vec<bool> {
+        let at = |lat_deg: f64| {
+            let lat = (lat_deg * 1e7) as i32;
+            MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA { lat, ..fix() })
+        };
+        let mut readings = Readings::default();
+        let mut is_taken = |(number, lat_deg): (u32, f64)| {
+            let (mut out, mut ignored) = (vec![], 0);
+            readings.take(Time::from_millis(100) * number, &at(lat_deg), &mut out, &mut ignored);
+            assert_eq!(out.len() as u64 + ignored, 1);
+            !out.is_empty()
+        };
+        assert!(is_taken((0, 36.3)));
+        (1..).zip(lats_deg.iter().copied()).map(is_taken).collect()
+    }
+
+    #[test]
+    fn a_jump_is_believed_once_it_lasts_and_scattered_places_never() {
+        let steady = believed(&[37.3; 12]);
+        assert_eq!(steady, [[false; 10].as_slice(), &[true; 2]].concat(), "it was carried there");
+        let scattered: Vec<f64> = (0..50).map(|number| 40.0 + f64::from(number % 7)).collect();
+        assert_eq!(believed(&scattered), [false; 50]);
+        // it is where it was in between
+        let between: Vec<f64> = (0..50).map(|number| if number % 5 == 4 { 36.3 } else { 37.3 }).collect();
+        let expected: Vec<bool> = between.iter().map(|lat_deg| *lat_deg < 37.0).collect();
+        assert_eq!(believed(&between), expected);
     }
 
     #[test]
