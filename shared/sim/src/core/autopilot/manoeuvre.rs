@@ -27,6 +27,13 @@ impl Autopilot {
         self.has_arrived = false;
     }
 
+    /// It is on the circle that it was sent to, or within it.
+    pub fn circles(&self) -> bool {
+        let Some(target) = self.guidance.target() else { return false };
+        let Action::Loiter { radius_m } = target.action else { return false };
+        target.position.distance_m(self.aircraft.state().position) <= radius_m.abs() + ARRIVED_M
+    }
+
     /// Round the place it was sent to. That it has arrived it says once, as of item 0, which is home's.
     pub(super) fn fly_guided(&mut self) -> Demand {
         let guided = self.follow(None);

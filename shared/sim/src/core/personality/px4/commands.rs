@@ -161,8 +161,8 @@ impl Px4 {
     /// Holds at a place; what of it is not a number is as it is.
     fn circle(&mut self, a: &mut Autopilot, c: &Command, radius_m: f64, now_ns: u64) -> MavResult {
         let is_anywhere = !c.position.is_valid() && !c.z.is_finite();
-        if is_anywhere && a.mode() == Mode::Loiter {
-            // it holds already
+        if is_anywhere && a.mode() == Mode::Loiter && a.circles() {
+            // it holds already (`Navigator::is_established_on_loiter`); on its way to a place it circles where it is
             return ACCEPTED;
         }
         let result = self.enter(a, Some(Mode::Loiter), now_ns);
