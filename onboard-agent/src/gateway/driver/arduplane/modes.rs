@@ -54,8 +54,8 @@ pub fn steer(mode: Option<u32>, aim: &Aim) -> Vec<Command> {
         Aim::Hold => vec![enter(LOITER)],
         Aim::Return => vec![enter(RTL)],
         Aim::Direct { position, altitude_amsl_m } => {
-            let go = Command::GoTo { place: Some((position, altitude_amsl_m)), shows: None };
-            if mode == Some(GUIDED) { vec![go] } else { vec![enter(GUIDED), go] }
+            // with its place at once: whatever enters that mode first begins to circle where it is
+            vec![Command::GoTo { place: Some((position, altitude_amsl_m)), shows: Some(GUIDED) }]
         }
     }
 }
@@ -77,10 +77,13 @@ mod tests {
     fn what_is_ordered_is_what_is_reported_when_it_is_done() {
         let direct = Aim::Direct { position: LatLon::new(36.0, -84.0), altitude_amsl_m: 500.0 };
         for aim in [Aim::Waypoints, Aim::Hold, direct, Aim::Return] {
-            let Command::Mode(mode) = steer(None, &aim)[0] else { panic!("{aim:?}") };
-            assert_eq!(meaning(mode.shown), aim.mode());
+            let shown = match steer(None, &aim).as_slice() {
+                [Command::Mode(mode)] => mode.shown,
+                [Command::GoTo { shows: Some(shown), .. }] => *shown,
+                other => panic!("{aim:?}: {other:?}"),
+            };
+            assert_eq!(meaning(shown), aim.mode());
         }
-        assert_eq!(steer(Some(GUIDED), &direct).len(), 1);
         let names = [AUTO, 5, 99].map(name);
         assert_eq!(names, ["AUTO", "FBWA", "mode 99"]);
     }
