@@ -69,6 +69,7 @@ programme! {
     hold_and_resume,
     hold_in_climb,
     emergency_in_climb,
+    hold_in_landing,
     emergency_at_leg_level,
     emergency_at_stage_level,
     emergency_at_plan_level always,

@@ -1,7 +1,7 @@
-//! What is asked for right after lift-off: it waits until the aircraft is clear of the ground.
+//! What is asked for right after lift-off, or shortly before the touch-down: it waits until the aircraft is clear of the ground.
 
-use super::{Scenario, expect_whole_mission, in_state, land_by_plan, of_field};
-use crate::rig::{Rig, Seen};
+use super::{FLIGHT_S, Scenario, expect_whole_mission, in_state, land_by_plan, of_field, on_leg};
+use crate::rig::{Rig, Seen, id};
 use anyhow::ensure;
 use std::cell::Cell;
 use usal::contract::{Cause, Command, GatewayState};
@@ -23,10 +23,20 @@ pub const SCENARIOS: &[Scenario] = &[
         simulator: &[],
         fly: |rig| Box::pin(emergency_in_climb(rig)),
     },
+    Scenario {
+        name: "hold_in_landing",
+        happens: "the operator holds 25 m above the runway, and goes to the final half a minute later",
+        expected: "it climbs straight ahead until 40 m, circles, and lands from the final",
+        plan: of_field,
+        simulator: &[],
+        fly: |rig| Box::pin(hold_in_landing(rig)),
+    },
 ];
 
 /// Lower nothing but the climb straight ahead is flown, metres; less what two altimeters may differ.
 const CLEAR_M: f64 = 35.0;
+/// Lower than this it is held in its landing, metres.
+const LOW_M: f64 = 25.0;
 /// Nobody doubts any more that it has taken off, metres.
 const UP_M: f64 = 8.0;
 /// A climb straight ahead, in gusts: bank and course, degrees.
@@ -38,15 +48,36 @@ async fn hold_in_climb(rig: &mut Rig) -> anyhow::Result<()> {
         rig.gateway_status().is_some_and(|s| s.state == GatewayState::Hold)
     })
     .await?;
+    circles(rig).await?;
+    rig.command(Command::Resume).await?;
+    in_state(rig, GatewayState::Nav, 60.0).await?;
+    land_by_plan(rig).await?;
+    expect_whole_mission(rig)
+}
+
+async fn hold_in_landing(rig: &mut Rig) -> anyhow::Result<()> {
+    on_leg(rig, "final").await?;
+    rig.until("low over the runway", FLIGHT_S, |rig, _| height_m(rig).is_some_and(|m| m < LOW_M)).await?;
+    rig.command(Command::Hold).await?;
+    climbs_straight_until(rig, "Hold", |rig, _| {
+        rig.gateway_status().is_some_and(|s| s.state == GatewayState::Hold)
+    })
+    .await?;
+    circles(rig).await?;
+    rig.command(Command::GoTo { leg: id("final") }).await?;
+    rig.command(Command::Resume).await?;
+    in_state(rig, GatewayState::Approach, 240.0).await?;
+    land_by_plan(rig).await
+}
+
+/// For half a minute.
+async fn circles(rig: &mut Rig) -> anyhow::Result<()> {
     let held_at = rig.position().map(|p| p.position);
     let from_s = rig.seen.time_s;
     rig.until("half a minute", 60.0, |_, seen| seen.time_s > from_s + 30.0).await?;
     let away_m = rig.position().zip(held_at).map(|(now, then)| now.position.distance_m(then));
     ensure!(away_m.is_some_and(|m| m < 600.0), "it did not hold: {away_m:?} m away");
-    rig.command(Command::Resume).await?;
-    in_state(rig, GatewayState::Nav, 60.0).await?;
-    land_by_plan(rig).await?;
-    expect_whole_mission(rig)
+    Ok(())
 }
 
 async fn emergency_in_climb(rig: &mut Rig) -> anyhow::Result<()> {

@@ -102,7 +102,7 @@ impl Control {
         self.confirmed = false;
         self.confirmed_at = None;
         self.launch.put_off_since = None;
-        self.climb_out.asked = None;
+        self.climb_out.ends();
         self.retry_at = None;
     }
 

@@ -130,7 +130,10 @@ impl Gateway {
                 self.take_up(known, out);
             }
             self.control.set_intent(wanted, self.telemetry.mode);
-            if let Some(known) = known.filter(|_| wanted == Intent::Fly) {
+            let waits = |known: &Snapshot| {
+                wanted == Intent::Fly || (wanted == Intent::Direct && known.climb_out.is_of_landing())
+            };
+            if let Some(known) = known.filter(waits) {
                 self.go_on_waiting(&known.climb_out);
             }
             self.is_met(wanted, out);

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::gateway::order::{Aim, Serial};
-use crate::gateway::tests::flights::{take_off, zigzag};
+use crate::gateway::tests::flights::{take_off, waypoint, zigzag};
+use usal::contract::Action;
 
 /// In the air at a height above the take-off place, metres.
 fn up(mode: Mode, altitude_home_m: f64, down_mps: f64) -> [Report; 3] {
@@ -235,4 +236,73 @@ fn who_gives_it_back_low_climbs_first() {
     assert!(core.gateway.state() == GatewayState::TakeOff && !is_left(&core));
     core.run(1, &up(Mode::Waypoints, 41.0, -3.0));
     assert!(is_left(&core));
+}
+
+/// On its way down to the runway.
+fn landing_at(height_m: f64) -> Core {
+    let touch_down = waypoint(LatLon::new(36.32, -84.17), 350.0, Action::Land { heading_deg: 52.0 });
+    let mut core = Core::in_stop_with(vec![take_off(), touch_down]);
+    let [.., low] = at(Mode::Hold, true, 0.0, 0.0);
+    core.step(Input::Report(low));
+    core.step(Input::Request(3, GatewayRequest::Launch));
+    core.step(Input::Report(Report::Course(course(true))));
+    core.run(1, &at(Mode::Waypoints, true, 0.0, 0.0));
+    core.run(2, &up(Mode::Waypoints, 60.0, -3.0));
+    core.step(Input::Report(Report::Course(Course { target: Target::Waypoint(Serial(2)), ..course(true) })));
+    core.run(2, &up(Mode::Waypoints, height_m, 1.5));
+    core.done();
+    assert_eq!(core.gateway.state(), GatewayState::Land);
+    core
+}
+
+#[test]
+fn what_is_held_low_in_its_landing_climbs_straight_ahead_first() {
+    let mut core = landing_at(20.0);
+    ask(&mut core, GatewayRequest::Hold);
+    core.run(2, &up(Mode::Waypoints, 17.0, 1.5));
+    core.done();
+    let Some((ahead, altitude_m)) = core.gateway.control.direct else { panic!("{}", core.gateway.cause) };
+    let here = LatLon::new(36.32, -84.17);
+    assert!((here.bearing_deg(ahead) - 52.0).abs() < 0.5 && altitude_m == 410.0, "{ahead:?}, {altitude_m}");
+    assert!(waits(&core) == Some(40.0) && !is_held(&core), "{}", core.gateway.cause);
+    core.run(6, &up(Mode::Direct, 30.0, -3.0));
+    assert!(!is_held(&core) && waits(&core) == Some(40.0), "{}", core.gateway.cause);
+    core.run(2, &up(Mode::Direct, 41.0, -3.0));
+    assert!(is_held(&core) && waits(&core).is_none());
+}
+
+#[test]
+fn what_is_held_in_its_landing_circles_at_once_where_it_is_high_or_can_not_climb() {
+    for (height_m, fails) in [(60.0, false), (20.0, true)] {
+        let mut core = landing_at(height_m);
+        if fails {
+            core.gateway.alarms.take_up("engine-out", &mut vec![]);
+        }
+        ask(&mut core, GatewayRequest::Hold);
+        core.run(1, &up(Mode::Waypoints, height_m, 1.5));
+        assert!(is_held(&core), "{height_m} m, fails: {fails}");
+    }
+}
+
+/// It sinks on: its engine may not have been seen to fail yet.
+#[test]
+fn a_landing_that_is_broken_off_and_does_not_climb_ends_in_the_hold() {
+    let mut core = landing_at(30.0);
+    ask(&mut core, GatewayRequest::Hold);
+    core.run(5, &up(Mode::Direct, 25.0, 1.5));
+    core.done();
+    assert!(!is_held(&core));
+    core.run(5, &up(Mode::Direct, 20.0, 1.5));
+    assert!(is_held(&core));
+}
+
+#[test]
+fn who_resumes_while_a_landing_is_broken_off_lands() {
+    let mut core = landing_at(20.0);
+    ask(&mut core, GatewayRequest::Hold);
+    core.run(2, &up(Mode::Direct, 25.0, -3.0));
+    ask(&mut core, GatewayRequest::Resume);
+    core.run(2, &up(Mode::Waypoints, 41.0, -3.0));
+    core.run(2, &up(Mode::Waypoints, 45.0, 1.0));
+    assert!(!is_held(&core) && core.gateway.control.intent == Intent::Fly);
 }
