@@ -82,12 +82,10 @@ impl<'a> Found<'a, '_> {
     fn fix(&mut self, id: &Id, of: &Id) {
         if !self.view.fixes.contains_key(id) {
             self.report("unknown-fix", "fix", id, Some(of), self.view.plan.fixes.iter().map(|f| &f.id));
-            let is_unmended = self.problems.last().is_some_and(|problem| problem.fix.is_none());
-            let made = self.made(id, of).filter(|_| is_unmended).map(Box::new);
-            self.problems
-                .last_mut()
-                .into_iter()
-                .for_each(|problem| problem.fix = problem.fix.take().or(made.clone()));
+            let made = self.made(id, of).map(Box::new);
+            if let Some(problem) = self.problems.last_mut() {
+                problem.fix = problem.fix.take().or(made);
+            }
         }
     }
 

@@ -103,9 +103,7 @@ impl Step {
 
 impl Around {
     fn altitude_of<'a>(&'a self, leg: &'a Leg) -> Option<&'a Altitude> {
-        let loops = self.loops.iter().rev().map(|l| &l.altitude);
-        let stage = self.stage.altitude.as_ref().filter(|_| self.stage.kind != StageKind::TakeOff);
-        std::iter::once(&leg.altitude).chain(loops).find_map(Option::as_ref).or(stage)
+        leg.altitude.as_ref().or_else(|| self.says_altitude().map(|(_, altitude)| altitude))
     }
 
     /// The loop or stage that says the altitude of a leg without one of its own, and which that is.
