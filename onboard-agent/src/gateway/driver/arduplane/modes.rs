@@ -46,8 +46,8 @@ pub fn meaning(number: u32) -> Mode {
     }
 }
 
-/// The commands that make it do something: it is sent to a place when it is in the mode for that.
-pub fn steer(mode: Option<u32>, aim: &Aim) -> Vec<Command> {
+/// The commands that make it do something.
+pub fn steer(aim: &Aim) -> Vec<Command> {
     let enter = |number: u32| Command::Mode(ModeNumber { shown: number, main: number as u8, sub: 0 });
     match *aim {
         Aim::Waypoints => vec![enter(AUTO)],
@@ -77,7 +77,7 @@ mod tests {
     fn what_is_ordered_is_what_is_reported_when_it_is_done() {
         let direct = Aim::Direct { position: LatLon::new(36.0, -84.0), altitude_amsl_m: 500.0 };
         for aim in [Aim::Waypoints, Aim::Hold, direct, Aim::Return] {
-            let shown = match steer(None, &aim).as_slice() {
+            let shown = match steer(&aim).as_slice() {
                 [Command::Mode(mode)] => mode.shown,
                 [Command::GoTo { shows: Some(shown), .. }] => *shown,
                 other => panic!("{aim:?}: {other:?}"),

@@ -32,8 +32,8 @@ pub struct Dialect {
     pub meaning: fn(number: u32, sent: bool) -> Mode,
     /// What it calls a mode.
     pub mode_name: fn(u32) -> Cow<'static, str>,
-    /// The commands that make it do something, one after the other; it is in this mode.
-    pub steer: fn(mode: Option<u32>, &Aim) -> Vec<Command>,
+    /// The commands that make it do something, one after the other.
+    pub steer: fn(&Aim) -> Vec<Command>,
     /// The command that makes it steer to an entry of its list.
     pub select: fn(u16) -> Command,
     /// The commands that arm it.

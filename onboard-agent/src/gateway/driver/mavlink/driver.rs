@@ -116,7 +116,7 @@ impl MavlinkDriver {
             Aim::Hold if mode.is_some_and(|mode| (dialect.meaning)(mode, true) == Mode::Direct) => {}
             _ => self.sent = false,
         }
-        self.give(now, id, (dialect.steer)(mode, &aim), events);
+        self.give(now, id, (dialect.steer)(&aim), events);
     }
 
     /// Gives commands one after the other; the order is done with the last.

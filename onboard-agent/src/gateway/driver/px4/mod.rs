@@ -31,7 +31,7 @@ pub const FIXED_WING: Dialect = Dialect {
     decode: item::decode,
     meaning: modes::meaning,
     mode_name: modes::name,
-    steer: |_, aim| modes::steer(aim),
+    steer: modes::steer,
     // 1.18 does not know MAV_CMD_DO_SET_MISSION_CURRENT
     select: Command::Select,
     arm: &modes::ARM,
