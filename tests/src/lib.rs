@@ -1,6 +1,7 @@
 //! System tests over the real binaries: what the tests in `tests/` share.
 
 pub mod binaries;
+pub mod foreseen;
 pub mod laid;
 pub mod logs;
 pub mod plans;

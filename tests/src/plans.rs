@@ -1,6 +1,9 @@
 //! A small mission around any runway, so that the same flight can be flown wherever an autopilot is.
 
-use geometry::LatLon;
+use geometry::{LatLon, LocalFrame, Vec2};
+
+/// How long each runway is, metres.
+pub const RUNWAY_M: f64 = 600.0;
 
 /// A runway with free sky around it.
 #[derive(Debug, Clone, Copy)]
@@ -17,6 +20,13 @@ impl Field {
     /// Position `ahead_m` metres along the runway's direction from the threshold and `right_m` to its right.
     pub fn at(&self, ahead_m: f64, right_m: f64) -> LatLon {
         self.threshold.destination(self.heading_deg, ahead_m).destination(self.heading_deg + 90.0, right_m)
+    }
+
+    /// How far a position is along the runway from its threshold, and how far beside its centre line, metres.
+    pub fn along_and_beside_m(&self, position: LatLon) -> (f64, f64) {
+        let from_threshold = LocalFrame::new(self.threshold).to_local(position);
+        let ahead = Vec2::from_bearing_rad(self.heading_deg.to_radians());
+        (from_threshold.dot(ahead), from_threshold.cross(ahead).abs())
     }
 
     /// `lat="…" lon="…"` of such a position.
@@ -37,7 +47,7 @@ impl Field {
             r#"<?xml version="1.0" encoding="UTF-8"?>
 <flightPlan xmlns="urn:legwork:flight-plan:1" name="System test" aircraft="trainer">
   <runways>
-    <runway id="R" {threshold} elevation="{elevation}" heading="{heading}" length="600" priority="1"/>
+    <runway id="R" {threshold} elevation="{elevation}" heading="{heading}" length="{RUNWAY_M}" priority="1"/>
   </runways>
   <variables>
     <variable name="spot" type="position" initial="{spot_lat:.7} {spot_lon:.7}"/>
@@ -111,7 +121,7 @@ impl Field {
             r#"<?xml version="1.0" encoding="UTF-8"?>
 <flightPlan xmlns="urn:legwork:flight-plan:1" name="Accuracy" aircraft="trainer">
   <runways>
-    <runway id="R" {threshold} elevation="{elevation}" heading="{heading}" length="600" priority="1"/>
+    <runway id="R" {threshold} elevation="{elevation}" heading="{heading}" length="{RUNWAY_M}" priority="1"/>
   </runways>
   <variables>
     <variable name="enough" type="bool" initial="false"/>
@@ -156,7 +166,7 @@ impl Field {
             let (elevation, heading) = (field.elevation_m, field.heading_deg);
             let place = field.place(0.0, 0.0);
             format!(
-                r#"<runway id="{id}" {place} elevation="{elevation}" heading="{heading}" length="600" priority="1"/>"#
+                r#"<runway id="{id}" {place} elevation="{elevation}" heading="{heading}" length="{RUNWAY_M}" priority="1"/>"#
             )
         };
         format!(

@@ -114,6 +114,6 @@ async fn hold_and_resume(rig: &mut Rig) -> anyhow::Result<()> {
 }
 
 async fn flies_at(rig: &mut Rig, mps: f64) -> anyhow::Result<()> {
-    let is_so = |rig: &Rig| rig.airspeed_mps().is_some_and(|now| (now - mps).abs() < SAME_SPEED * mps);
+    let is_so = |rig: &Rig| rig.air().is_some_and(|air| (air.airspeed_mps - mps).abs() < SAME_SPEED * mps);
     rig.until(&format!("at {mps} m/s"), 60.0, |rig, _| is_so(rig)).await
 }

@@ -8,10 +8,14 @@ use usal::contract::{GatewayEvent, GatewayState, Token};
 const ENDS_WITHIN_S: f64 = 180.0;
 
 /// Its story is one, it never went back to what was flown, and in the end it stands, its engine is off, and nobody claims to steer.
+/// Nothing was told of it that the autopilot itself says otherwise.
 pub async fn judge(rig: &mut Rig) -> anyhow::Result<()> {
     rig.until("it stands, and nobody claims to fly it", ENDS_WITHIN_S, |rig, _| is_over(rig)).await?;
     is_one_story(&rig.seen)?;
-    goes_forward(&rig.seen)
+    goes_forward(&rig.seen)?;
+    let untrue = rig.doubts.found();
+    ensure!(untrue.is_empty(), "it was told otherwise than it was: {untrue:#?}");
+    Ok(())
 }
 
 fn is_over(rig: &Rig) -> bool {

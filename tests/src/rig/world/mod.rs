@@ -3,12 +3,14 @@
 mod radio;
 mod told;
 mod voice;
+mod witness;
 
 use crate::binaries::Program;
 use anyhow::{Context, bail, ensure};
 use autopilot_link::Address;
 use radio::Radio;
 use sim::Control;
+pub use witness::{Flies, Heard};
 
 /// What can be disturbed.
 pub enum World {
@@ -40,6 +42,14 @@ impl World {
         match self {
             World::Ours(simulator) => simulator.send_line(line),
             World::Theirs(radio) => radio.tell(line.parse().map_err(anyhow::Error::msg)?),
+        }
+    }
+
+    /// What somebody else's autopilot says of itself; `None`: nothing yet, or it is our simulator.
+    pub fn heard(&self) -> Option<Heard> {
+        match self {
+            World::Ours(_) => None,
+            World::Theirs(radio) => radio.heard(),
         }
     }
 

@@ -3,6 +3,7 @@
 
 use super::told::Wish;
 use super::voice::Voice;
+use super::witness::{Heard, Witness};
 use anyhow::{Context, ensure};
 use autopilot_link::frame::{Beginning, Decoder, Frame, begins};
 use autopilot_link::{Address, Event, Link, Peer};
@@ -27,6 +28,7 @@ const FULL_PERCENT: f32 = 100.0;
 struct State {
     is_as_asked: bool,
     trouble: Option<String>,
+    heard: Option<Heard>,
 }
 
 /// A thread that carries frames; it ends when this is dropped.
@@ -66,6 +68,11 @@ impl Radio {
     pub fn tell(&self, control: Control) -> anyhow::Result<()> {
         let controls = self.controls.as_ref().context("the radio is off")?;
         controls.try_send(control).context("the radio's thread")
+    }
+
+    /// What the autopilot says of itself.
+    pub fn heard(&self) -> Option<Heard> {
+        self.state.borrow().heard
     }
 
     /// All was told, and the autopilot has confirmed it.
@@ -159,6 +166,7 @@ struct Relay {
     /// What is wrong as far as the autopilot was told.
     told: Effects,
     voice: Voice,
+    witness: Witness,
     began: Instant,
     controls: mpsc::Receiver<Control>,
     state: watch::Sender<State>,
@@ -179,6 +187,7 @@ impl Relay {
             dice: Dice::new(seed),
             told: Effects::default(),
             voice: Voice::default(),
+            witness: Witness::default(),
             began: Instant::now(),
             controls,
             state,
@@ -228,10 +237,11 @@ impl Relay {
     fn on_autopilot(&mut self, event: Event, bytes: &[u8]) {
         let (now_ns, effects) = self.effects();
         self.autopilot.take(event, bytes);
-        let voice = &mut self.voice;
+        let (voice, witness) = (&mut self.voice, &mut self.witness);
         carry(&mut self.autopilot, &mut self.agent, (now_ns, &effects), &mut self.dice, |frame| {
             if let Some(message) = frame.message() {
                 voice.hear(frame.sender, &message);
+                witness.hear_autopilot(&message);
             }
         });
     }
@@ -239,7 +249,12 @@ impl Relay {
     fn on_agent(&mut self, event: Event, bytes: &[u8]) {
         let (now_ns, effects) = self.effects();
         self.agent.take(event, bytes);
-        carry(&mut self.agent, &mut self.autopilot, (now_ns, &effects), &mut self.dice, |_| ());
+        let witness = &mut self.witness;
+        carry(&mut self.agent, &mut self.autopilot, (now_ns, &effects), &mut self.dice, |frame| {
+            if let Some(message) = frame.message() {
+                witness.hear_agent(&message);
+            }
+        });
     }
 
     fn on_control(&mut self, control: Control) {
@@ -302,8 +317,11 @@ impl Relay {
         if let Some(trouble) = self.voice.trouble() {
             self.complain(trouble.to_owned());
         }
-        let is_as_asked = self.voice.is_done();
-        self.state.send_modify(|state| state.is_as_asked = is_as_asked);
+        let (is_as_asked, heard) = (self.voice.is_done(), self.witness.heard());
+        self.state.send_modify(|state| {
+            state.is_as_asked = is_as_asked;
+            state.heard = heard;
+        });
     }
 }
 
