@@ -12,6 +12,7 @@ use MavMissionResult::MAV_MISSION_ERROR as ERROR;
 use MavResult::{
     MAV_RESULT_ACCEPTED as ACCEPTED, MAV_RESULT_FAILED as FAILED, MAV_RESULT_TEMPORARILY_REJECTED as REJECTED,
 };
+use anyhow::ensure;
 use geometry::LatLon;
 use mavlink::dialects::ardupilotmega::*;
 
@@ -194,6 +195,28 @@ pub(super) const QUIRKS: &[Quirk] = &[
         flies: true,
     },
     Quirk {
+        name: "place_ahead_is_climbed_to_at_once",
+        of: ARDUPLANE,
+        does: "`DO_REPOSITION` 3 km ahead and 60 m up: it is there after a third of the way",
+        check: |s| {
+            let share = climbed_in_a_third_of_the_way(s)?;
+            ensure!(share > 0.8, "it climbed {share:.2} of that");
+            Ok(())
+        },
+        flies: true,
+    },
+    Quirk {
+        name: "place_ahead_is_climbed_to_all_the_way",
+        of: PX4,
+        does: "`DO_REPOSITION` 3 km ahead and 60 m up: after a third of the way it has climbed a third",
+        check: |s| {
+            let share = climbed_in_a_third_of_the_way(s)?;
+            ensure!((0.2..0.5).contains(&share), "it climbed {share:.2} of that");
+            Ok(())
+        },
+        flies: true,
+    },
+    Quirk {
         name: "return_flies_the_landing_of_the_list",
         of: ARDUPLANE,
         does: "RTL with RTL_AUTOLAND 2 and `DO_LAND_START` in the list: AUTO, behind that item",
@@ -316,6 +339,40 @@ fn reached(s: &mut Station, seq: u16) -> anyhow::Result<usize> {
         reached.filter(|reached| *reached == seq + 1)
     })?;
     Ok(told)
+}
+
+/// Sent to a place straight ahead and above, the share of the height that it has after a third of the way.
+fn climbed_in_a_third_of_the_way(s: &mut Station) -> anyhow::Result<f64> {
+    const WAY_M: f64 = 3000.0;
+    const UP_M: f64 = 60.0;
+    airborne(s, 5)?;
+    let (from, from_m) = here(s)?;
+    let (behind, _) = here(s)?;
+    let course_deg = if behind == from { 0.0 } else { from.bearing_deg(behind) };
+    let place = from.destination(course_deg, WAY_M);
+    let e7 = |degrees: f64| (degrees * 1e7).round() as i32;
+    let to = COMMAND_INT_DATA {
+        param2: 1.,
+        x: e7(place.lat_deg),
+        y: e7(place.lon_deg),
+        z: (from_m + UP_M) as f32,
+        ..ahead(s)?
+    };
+    same("the answer", s.command_int(to)?, ACCEPTED)?;
+    let height_m = s.hear_within(FLIGHT, "a third of the way", |message| match message {
+        MavMessage::GLOBAL_POSITION_INT(p) => {
+            let now = LatLon::new(f64::from(p.lat) * 1e-7, f64::from(p.lon) * 1e-7);
+            (from.distance_m(now) > WAY_M / 3.0).then(|| f64::from(p.relative_alt) / 1000.0)
+        }
+        _ => None,
+    })?;
+    Ok((height_m - from_m) / UP_M)
+}
+
+/// Where it is, and its height above home, metres.
+fn here(s: &mut Station) -> anyhow::Result<(LatLon, f64)> {
+    let (lat, lon, height_m) = s.place()?;
+    Ok((LatLon::new(f64::from(lat) * 1e-7, f64::from(lon) * 1e-7), height_m))
 }
 
 /// To a place a little ahead, as high as it is.

@@ -2,10 +2,10 @@
 
 use super::Gateway;
 use super::climb_out::ClimbOut;
+use super::direct::Direct;
 use super::io::{Intent, Output};
 use super::launch::Launch;
 use crate::gateway::order::{Aim, Fed, Kind, Mode, Order, OrderId, Time};
-use geometry::LatLon;
 use std::time::Duration;
 use usal::contract::{Action, GatewayState};
 
@@ -45,8 +45,8 @@ pub struct Control {
     pub looked_for: Option<(Time, bool)>,
     /// What the driver said of this autopilot.
     pub capability: Option<Result<Kind, String>>,
-    /// Place and height of a direct command.
-    pub direct: Option<(LatLon, f64)>,
+    /// Where a direct command leads.
+    pub direct: Option<Direct>,
     /// It has not been carried out yet.
     pub direct_due: bool,
     /// The altitude at which it was first seen to hold as asked, metres AMSL; `None`: it does not.
@@ -208,6 +208,7 @@ impl Gateway {
         if self.control.intent == Intent::Nothing || !self.control.may_retry(now) {
             return;
         }
+        self.send_on();
         self.steer_mode(now, out);
         self.steer_speed(out);
         self.leave_loiter(out);
@@ -271,9 +272,9 @@ impl Gateway {
             Mode::Hold => Aim::Hold,
             Mode::Direct => {
                 // one that was given to an earlier gateway is not known: stay here
-                let here = self.telemetry.fix.map(|(_, f)| (f.position, f.altitude_amsl_m));
-                let (position, altitude_amsl_m) = self.control.direct.or(here)?;
-                Aim::Direct { position, altitude_amsl_m }
+                let here = || self.telemetry.fix.map(|(_, f)| Direct::here((f.position, f.altitude_amsl_m)));
+                let direct = self.control.direct.or_else(here)?;
+                Aim::Direct { position: direct.place(), altitude_amsl_m: direct.altitude_amsl_m }
             }
             // a pilot's mode is never wanted
             Mode::Return | Mode::Other(_) => Aim::Return,

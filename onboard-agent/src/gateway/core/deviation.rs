@@ -141,7 +141,7 @@ impl Gateway {
     fn commanded_m(&self) -> Option<f64> {
         let flies = |w: &&Waypoint| matches!(w.action, Action::Fly | Action::TakeOff { .. });
         match self.control.intent {
-            Intent::Direct => self.control.direct.map(|(_, altitude_amsl_m)| altitude_amsl_m),
+            Intent::Direct => self.control.direct.map(|direct| direct.altitude_amsl_m),
             Intent::Fly => self.buffer.current().filter(flies).map(|w| w.altitude_amsl_m),
             Intent::Hold => self.control.held_at_m,
             Intent::Nothing | Intent::Return => None,
@@ -151,7 +151,7 @@ impl Gateway {
     /// How long it still flies to what it steers to, seconds.
     fn seconds_to_target(&self) -> Option<f64> {
         let to = match self.control.intent {
-            Intent::Direct => self.control.direct?.0,
+            Intent::Direct => self.control.direct?.place(),
             Intent::Hold => return None,
             _ => self.buffer.current()?.position,
         };

@@ -11,6 +11,7 @@ mod buffer;
 mod climb_out;
 mod control;
 mod deviation;
+mod direct;
 mod feeding;
 mod forced_end;
 mod io;

@@ -1,15 +1,13 @@
 //! What people and services may ask of the gateway.
 
 use super::Gateway;
+use super::direct::Direct;
 use super::io::{Intent, Output};
 use super::safe::{choose, is_usable};
 use super::states::is_flying;
 use crate::gateway::order::Time;
-use geometry::LatLon;
 use usal::contract::{GatewayRequest, GatewayState, SafeParameters, SafeRunway};
 
-/// A direct command goes to a place so far ahead, metres.
-const DIRECT_M: f64 = 20_000.0;
 /// Most runways that are stored.
 const MAX_RUNWAYS: usize = 32;
 /// Why nothing can be gone on with.
@@ -133,13 +131,13 @@ impl Gateway {
         Ok(())
     }
 
-    /// Where a direct command leads from here: a place far ahead, and its altitude.
+    /// Where a direct command leads from here.
     pub(super) fn direct_to(
         &self,
         heading_deg: f64,
         altitude_amsl_m: f64,
         airspeed_mps: f64,
-    ) -> Result<(LatLon, f64), String> {
+    ) -> Result<Direct, String> {
         let place = self.place_now().ok_or("The position is not known: try again when it is.")?;
         let profile = &self.settings.profile;
         let speeds = profile.min_airspeed_mps..=profile.max_airspeed_mps;
@@ -154,7 +152,8 @@ impl Gateway {
                 profile.ceiling_amsl_m
             ));
         }
-        Ok((place.destination(heading_deg, DIRECT_M), altitude_amsl_m))
+        let now_amsl_m = self.telemetry.fix.map_or(altitude_amsl_m, |(_, fix)| fix.altitude_amsl_m);
+        Ok(Direct::new((place, now_amsl_m), heading_deg, altitude_amsl_m, airspeed_mps, profile))
     }
 
     fn safe_by_command(&mut self, now: Time, out: &mut Vec<Output>) -> Result<(), String> {

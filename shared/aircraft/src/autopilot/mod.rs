@@ -130,6 +130,13 @@ impl Guidance {
         self.habits.isa_deviation_c = isa_deviation_c;
     }
 
+    /// Another altitude of the current target, metres AMSL.
+    pub fn set_altitude(&mut self, altitude_amsl_m: f64) {
+        if let Some(leg) = &mut self.leg {
+            leg.target.altitude_amsl_m = altitude_amsl_m;
+        }
+    }
+
     /// Another airspeed towards the current target, m/s.
     pub fn set_airspeed(&mut self, airspeed_mps: f64) {
         if let Some(leg) = &mut self.leg {

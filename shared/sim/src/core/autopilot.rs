@@ -14,6 +14,7 @@ use aircraft::power::{demanded_power_w, glide_sink_mps};
 use aircraft::{Aircraft, Demand, Guidance, Guided, Profile, Target, Wind};
 pub use fence::Fence;
 use geometry::LatLon;
+use manoeuvre::Ramp;
 
 /// Home: where it was switched on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,6 +92,8 @@ pub struct Autopilot {
     reached: Vec<u16>,
     /// In GUIDED it said that it circles where it was sent.
     has_arrived: bool,
+    /// How its altitude changes on the way to where it was sent, if that is evenly.
+    ramp: Option<Ramp>,
 }
 
 impl Autopilot {
@@ -111,6 +114,7 @@ impl Autopilot {
             jammed: false,
             is_booting: false,
             has_arrived: false,
+            ramp: None,
             is_down: false,
             fence: Fence::default(),
             rules,
@@ -254,6 +258,7 @@ impl Autopilot {
         self.mode = mode;
         self.take_off_done = false;
         self.has_arrived = false;
+        self.ramp = None;
         match mode {
             Mode::Auto => self.start_mission(),
             Mode::ReturnToLaunch => self.start_return(),
@@ -363,7 +368,8 @@ impl Autopilot {
             Mode::Circle => Demand { bank_rad: 0.35, ..cruise },
             Mode::Manual | Mode::FlyByWireA => cruise,
             Mode::Guided => self.fly_guided(),
-            Mode::ReturnToLaunch | Mode::Loiter => self.follow(None).demand,
+            Mode::Loiter => self.fly_circle(),
+            Mode::ReturnToLaunch => self.follow(None).demand,
         }
     }
 

@@ -11,6 +11,27 @@ const ARRIVED_M: f64 = 20.0;
 /// `RTL_AUTOLAND`: at once to the landing of the list.
 const LANDS_AT_ONCE: f64 = 2.0;
 
+/// An altitude that changes evenly all the way to a circle (PX4: `FirstOrderHoldAltitude`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ramp {
+    from: LatLon,
+    from_amsl_m: f64,
+    to_amsl_m: f64,
+}
+
+impl Ramp {
+    fn altitude_amsl_m(&self, here: LatLon, circle: &Target) -> f64 {
+        let radius_m = match circle.action {
+            Action::Loiter { radius_m } => radius_m.abs(),
+            _ => 0.0,
+        };
+        let to_circle = |place: LatLon| (place.distance_m(circle.position) - radius_m).max(0.0);
+        let (whole_m, left_m) = (to_circle(self.from), to_circle(here));
+        let share = if whole_m > 0.0 { (1.0 - left_m / whole_m).clamp(0.0, 1.0) } else { 1.0 };
+        self.from_amsl_m + share * (self.to_amsl_m - self.from_amsl_m)
+    }
+}
+
 impl Autopilot {
     /// Circles a point in a mode, at an altitude AMSL; radius negative: counter-clockwise, 0: the usual one.
     pub fn circle(&mut self, mode: Mode, position: LatLon, altitude_amsl_m: f64, radius_m: f64) {
@@ -23,8 +44,23 @@ impl Autopilot {
             fly_over: false,
             acceptance_m: None,
         };
-        self.guidance.direct(self.aircraft.state(), target);
+        let state = self.aircraft.state();
+        self.ramp = self.rules.climbs_evenly.then_some(Ramp {
+            from: state.position,
+            from_amsl_m: state.altitude_amsl_m,
+            to_amsl_m: altitude_amsl_m,
+        });
+        self.guidance.direct(state, target);
         self.has_arrived = false;
+    }
+
+    /// On its way to the circle, or on it.
+    pub(super) fn fly_circle(&mut self) -> Demand {
+        if let (Some(ramp), Some(target)) = (&self.ramp, self.guidance.target()) {
+            let altitude_amsl_m = ramp.altitude_amsl_m(self.aircraft.state().position, target);
+            self.guidance.set_altitude(altitude_amsl_m);
+        }
+        self.follow(None).demand
     }
 
     /// It is on the circle that it was sent to, or within it.

@@ -94,6 +94,8 @@ pub struct Rules {
     pub skips_take_off_in_air: bool,
     /// After the take-off mode it holds in the mode that is for it.
     pub holds_after_take_off: bool,
+    /// On the way to a place it changes its altitude evenly; else at once.
+    pub climbs_evenly: bool,
     /// It never returns lower than it is, and if the mission has a landing, it flies that.
     pub returns_to_land: bool,
     /// A speed out of range is refused; else it is limited.

@@ -27,6 +27,7 @@ pub(super) static RULES: Rules = Rules {
     flies_on_after_landing: false,
     skips_take_off_in_air: false,
     holds_after_take_off: false,
+    climbs_evenly: false,
     returns_to_land: false,
     refuses_speeds: true,
     tells_items: true,

@@ -44,6 +44,7 @@ const FIXED_WING: Rules = Rules {
     flies_on_after_landing: true,
     skips_take_off_in_air: true,
     holds_after_take_off: true,
+    climbs_evenly: true,
     returns_to_land: true,
     refuses_speeds: false,
     tells_items: false,

@@ -48,6 +48,19 @@ fn reposition_as_int_and_as_long_circles_as_usual_whatever_radius_is_asked_for()
 }
 
 #[test]
+fn on_the_way_to_a_place_the_altitude_changes_evenly() {
+    let home = Config::default().home.position;
+    let mut ground = Ground::px4_airborne(&circuit(home));
+    let from = *ground.sim.autopilot.aircraft.state();
+    let point = from.position.destination(from.heading_deg(), 6000.0);
+    let up = from.altitude_amsl_m as f32 + 100.0;
+    go(&mut ground, MavCmd::MAV_CMD_DO_REPOSITION, [-1., 1., 0., 0.], point, up, false);
+    ground.fly_until(200.0, |s| s.autopilot.aircraft.state().position.distance_m(from.position) > 3000.0);
+    let gained_m = ground.sim.autopilot.aircraft.state().altitude_amsl_m - from.altitude_amsl_m;
+    assert!((45.0..55.0).contains(&gained_m), "{gained_m}");
+}
+
+#[test]
 fn orbit_has_a_radius_and_a_direction() {
     let home = Config::default().home.position;
     let point = home.destination(90.0, 1500.0);
