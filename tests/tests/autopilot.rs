@@ -39,7 +39,9 @@ async fn flown(scenario: &Scenario, autopilot: &str) -> anyhow::Result<f64> {
 async fn fly(autopilot: &str) -> Outcomes {
     let mut outcomes = Outcomes::new();
     for scenario in scenarios().filter(|s| is_wanted(s.name, "LEGWORK_SCENARIOS", "LEGWORK_QUIRKS")) {
-        let outcome = flown(scenario, autopilot).await.map(|took_s| format!("passed, {took_s:.0} s"));
+        let today = jiff::Timestamp::now().strftime("%Y-%m-%d");
+        let outcome =
+            flown(scenario, autopilot).await.map(|took_s| format!("passed, {took_s:.0} s, {today}"));
         outcomes.insert(scenario.name.to_owned(), told(scenario.name, outcome));
     }
     outcomes

@@ -122,8 +122,12 @@ impl Window {
 
     /// A gateway that says which autopilot it has.
     pub fn receive_autopilot(&mut self, name: &str, habits: &str) {
-        let autopilot =
-            Some(AutopilotKind { name: name.into(), habits: Some(habits.into()), landing_deg: None });
+        let autopilot = Some(AutopilotKind {
+            name: name.into(),
+            habits: Some(habits.into()),
+            landing_deg: None,
+            version: None,
+        });
         let value = GatewayStatus { autopilot, ..gateway_status(GatewayState::Stop) };
         self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }.into()));
     }

@@ -5,6 +5,7 @@
 
 use geometry::LatLon;
 use std::borrow::Cow;
+use std::fmt;
 use usal::contract::{Air, Attitude, AutopilotLinks, Engine, Gps, Power, Waypoint};
 
 /// Monotonic time since an arbitrary start; in simulation, simulated time.
@@ -187,6 +188,8 @@ pub enum Report {
     HoldsByItself,
     /// What kind of autopilot it is, and why it can't be flown if it can't.
     Capability(Result<Kind, String>),
+    /// How it is set up otherwise than a flight needs, each with what to do.
+    SetUp(Vec<String>),
 }
 
 /// A kind of autopilot that can be flown.
@@ -198,6 +201,26 @@ pub struct Kind {
     pub habits: Option<&'static str>,
     /// The steepest landing that it takes in its list, degrees; `None`: it has no such limit, or does not tell it.
     pub landing_deg: Option<f64>,
+    /// That of its firmware; `None`: it has not said it.
+    pub version: Option<Version>,
+}
+
+/// A version of firmware.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Version {
+    /// The first two numbers; its habits change with them.
+    pub series: [u8; 2],
+    /// The third number.
+    pub patch: u8,
+    /// Which kind of release, `-beta` for instance; none: it is an official one.
+    pub release: &'static str,
+}
+
+impl fmt::Display for Version {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [major, minor] = self.series;
+        write!(f, "{major}.{minor}.{}{}", self.patch, self.release)
+    }
 }
 
 /// How far the autopilot is with the waypoints that were fed.

@@ -97,6 +97,9 @@ pub struct AutopilotKind {
     /// The steepest landing that it takes in its list, degrees; `None`: it has no such limit, or has not told it.
     #[serde(default)]
     pub landing_deg: Option<f64>,
+    /// The version of its firmware, `4.7.0-dev` for instance; `None`: it has not said it.
+    #[serde(default)]
+    pub version: Option<String>,
 }
 
 /// Gateway variable `navigation`.

@@ -93,6 +93,8 @@ pub struct Alarms {
     ignored: u64,
     /// What the autopilot no longer says.
     stopped: Vec<&'static str>,
+    /// How it is set up otherwise than a flight needs.
+    set_up: Vec<String>,
     /// It is known to be on the ground.
     stands: bool,
 }
@@ -146,6 +148,9 @@ impl Alarms {
         if watch == Watch::StreamStopped {
             alarm.advice += &format!(" Missing: {}.", self.stopped.join(", "));
         }
+        if watch == Watch::SetUp {
+            alarm.advice += &self.set_up.iter().map(|what| format!(" {what}.")).collect::<String>();
+        }
         if watch == Watch::OtherFpManager {
             alarm.advice += &format!(" Ignored since the join: {}.", self.ignored);
         }
@@ -167,6 +172,7 @@ impl Alarms {
         self.ignored = inputs.other_fp_manager;
         self.stands = t.stands(now);
         self.stopped.clone_from(&t.stopped);
+        self.set_up.clone_from(&t.set_up);
         self.climb.take(now, t);
         let is_up = t.is_up(now);
         for watch in WATCHES {
@@ -202,6 +208,7 @@ impl Alarms {
                 let flies = t.armed || t.is_up(now);
                 flies && !t.stopped.is_empty() && age(t.last_received).is_some_and(|a| a < SILENT)
             }
+            Watch::SetUp => !t.set_up.is_empty(),
             Watch::Sinks => inputs.sinks.unwrap_or(raised),
             Watch::Slow => inputs.slow,
             Watch::Fast => inputs.fast,

@@ -80,6 +80,8 @@ pub struct Telemetry {
     pub engine_fails: Option<Time>,
     /// What it no longer says.
     pub stopped: Vec<&'static str>,
+    /// How the autopilot is set up otherwise than a flight needs.
+    pub set_up: Vec<String>,
     /// How the links to it do.
     pub links: Timed<AutopilotLinks>,
 }
@@ -131,6 +133,7 @@ impl Default for Telemetry {
             said: None,
             engine_fails: None,
             stopped: vec![],
+            set_up: vec![],
             links: None,
         }
     }
@@ -181,6 +184,7 @@ impl Telemetry {
             Report::Says(words) => self.said = Some((now, words.clone())),
             Report::EngineFails => self.engine_fails = self.is_up(now).then_some(now),
             Report::Stopped(what) => self.stopped.clone_from(what),
+            Report::SetUp(wrong) => self.set_up.clone_from(wrong),
             Report::Links(v) => self.links = Some((now, v.clone())),
             _ => {}
         }

@@ -22,7 +22,7 @@ use crate::gateway::tests::fp_manager;
 use usal::contract::{Air, Feed, FeedAnswer, GatewayRequest, Gps, Join, JoinAnswer};
 
 /// What is flown here.
-const PLANE: Kind = Kind { name: "a plane", habits: None, landing_deg: None };
+const PLANE: Kind = Kind { name: "a plane", habits: None, landing_deg: None, version: None };
 
 /// A core, and what came out of it.
 struct Core {

@@ -85,8 +85,9 @@ impl Gateway {
 
     fn kind(&self) -> Option<AutopilotKind> {
         let kind = self.control.capability.as_ref()?.as_ref().ok()?;
-        let Kind { name, habits, landing_deg } = *kind;
-        Some(AutopilotKind { name: name.to_owned(), habits: habits.map(str::to_owned), landing_deg })
+        let Kind { name, habits, landing_deg, version } = *kind;
+        let (name, habits) = (name.to_owned(), habits.map(str::to_owned));
+        Some(AutopilotKind { name, habits, landing_deg, version: version.map(|version| version.to_string()) })
     }
 
     /// The variable `navigation`.

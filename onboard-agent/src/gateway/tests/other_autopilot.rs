@@ -101,9 +101,12 @@ impl GliderDriver {
     fn receive_line(&mut self, line: &str) {
         let mut words = line.split_whitespace();
         let report = match words.next() {
-            Some("GLIDER") => {
-                Report::Capability(Ok(Kind { name: "Glider", habits: None, landing_deg: None }))
-            }
+            Some("GLIDER") => Report::Capability(Ok(Kind {
+                name: "Glider",
+                habits: None,
+                landing_deg: None,
+                version: None,
+            })),
             Some("AT") => self.at(&mut words),
             Some("MODE") => {
                 let name = words.next().unwrap_or_default();

@@ -20,6 +20,8 @@ pub enum Watch {
     PositionStale,
     /// Something that it used to say no longer comes.
     StreamStopped,
+    /// Its parameters are in the way of a flight.
+    SetUp,
     /// An order is not followed.
     Disobeys,
     /// It sinks below what was commanded.
@@ -71,7 +73,7 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 25] = [
+pub const WATCHES: [Watch; 26] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
@@ -79,6 +81,7 @@ pub const WATCHES: [Watch; 25] = [
     Watch::AutopilotSilent,
     Watch::PositionStale,
     Watch::StreamStopped,
+    Watch::SetUp,
     Watch::Disobeys,
     Watch::Sinks,
     Watch::Slow,
@@ -163,6 +166,15 @@ const WORDS: [Words; WATCHES.len()] = [
         cause: None,
         // after a silence all comes again, one after the other
         patience: Duration::from_secs(2),
+    },
+    Words {
+        watch: Watch::SetUp,
+        id: "set-up",
+        severity: Severity::Caution,
+        source: "autopilot",
+        advice: "The autopilot's parameters are in the way of a flight. Set them as is said here, on the ground.",
+        cause: None,
+        patience: Duration::from_secs(0),
     },
     Words {
         watch: Watch::Disobeys,

@@ -19,7 +19,7 @@ use mavlink::dialects::ardupilotmega::{MavAutopilot, MavType, WIND_DATA};
 
 /// ArduPlane, a fixed wing.
 pub const DIALECT: Dialect = Dialect {
-    kind: Kind { name: "ArduPlane", habits: Some("arduplane"), landing_deg: None },
+    kind: Kind { name: "ArduPlane", habits: Some("arduplane"), landing_deg: None, version: None },
     is: |beat| {
         beat.autopilot == MavAutopilot::MAV_AUTOPILOT_ARDUPILOTMEGA
             && beat.mavtype == MavType::MAV_TYPE_FIXED_WING

@@ -6,9 +6,11 @@
 mod arming;
 mod capability;
 mod mode;
+mod set_up;
 mod speed;
 
-pub use capability::unsupported;
+pub use capability::{unsupported, version};
+use set_up::SetUp;
 
 use super::super::{Driver, FromLink, Registration, Setup};
 use super::Peer;
@@ -19,7 +21,7 @@ use super::list::{Change, List, Step};
 use super::mission::Outcome;
 use super::parameters::Asked;
 use super::session::{self, Session, SessionEvent};
-use crate::gateway::order::{Aim, Kind, Mode, Order, OrderId, Report, Time};
+use crate::gateway::order::{Aim, Kind, Mode, Order, OrderId, Report, Time, Version};
 use autopilot_link::Outbox;
 use mavlink::dialects::ardupilotmega::{MavAutopilot, MavType};
 use std::collections::VecDeque;
@@ -36,6 +38,8 @@ pub const REGISTRATION: Registration = Registration {
 #[derive(Debug, Clone, Copy)]
 struct Known {
     kind: (MavAutopilot, MavType),
+    /// Heartbeats in a row that say that it is something else.
+    unlike: u8,
     /// `None`: we can't fly it.
     dialect: Option<&'static Dialect>,
 }
@@ -62,6 +66,8 @@ pub struct MavlinkDriver {
     list: List,
     known: Option<Known>,
     needed: Asked,
+    version: Option<Version>,
+    set_up: SetUp,
     /// How steep a landing it takes.
     landing_limit: Asked,
     /// How wide it circles where no radius is commanded.
@@ -172,6 +178,10 @@ impl MavlinkDriver {
             SessionEvent::Mode(mode) => self.on_summary(now, mode, more),
             SessionEvent::Parameter(value) => {
                 self.hear_parameter(&value);
+            }
+            SessionEvent::Version(said) => {
+                self.version = version(said);
+                self.judge();
             }
             SessionEvent::Current(seq) => {
                 self.reports.push_back(Report::Alive);

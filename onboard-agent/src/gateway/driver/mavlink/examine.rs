@@ -44,6 +44,11 @@ impl Advice {
         Self { name, is_good, otherwise, degree: Degree::ToDo }
     }
 
+    /// What a value is, leads to, and what to do.
+    pub fn sentence(&self, value: f64) -> String {
+        format!("{} is {value}: {}", self.name, self.otherwise)
+    }
+
     /// One with which it flies, but not as planned.
     pub const fn better(name: &'static str, is_good: fn(f64) -> bool, otherwise: &'static str) -> Self {
         Self { name, is_good, otherwise, degree: Degree::Note }

@@ -49,6 +49,8 @@ pub enum SessionEvent {
     Mission(Outcome),
     /// A parameter.
     Parameter(PARAM_VALUE_DATA),
+    /// Its version, as `flight_sw_version`; 0: it does not say it.
+    Version(u32),
     /// Another station has put another list in the place of ours.
     Replaced,
     /// Telemetry.
@@ -290,6 +292,9 @@ impl Session {
                 self.on_other(now, message, peer, events);
             }
             MavMessage::PARAM_VALUE(value) => events.push(SessionEvent::Parameter(value.clone())),
+            MavMessage::AUTOPILOT_VERSION(said) => {
+                events.push(SessionEvent::Version(said.flight_sw_version));
+            }
             _ => self.on_other(now, message, peer, events),
         }
         self.tick(now, events);

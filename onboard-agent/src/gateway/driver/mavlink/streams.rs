@@ -17,7 +17,7 @@ const STOPPED: Duration = Duration::from_secs(10);
 
 /// `(message, interval in milliseconds, what it says)`; interval 0: asked for once, until it comes. What says nothing that is missed has no
 /// name: some autopilots steer nowhere while somebody flies by hand, and do not send it.
-const WANTED: [(u32, u32, &str); 16] = [
+const WANTED: [(u32, u32, &str); 17] = [
     (GLOBAL_POSITION_INT_DATA::ID, 100, "position"),
     (ATTITUDE_DATA::ID, 100, "attitude"),
     (MISSION_CURRENT_DATA::ID, 100, "place on the list"),
@@ -34,6 +34,16 @@ const WANTED: [(u32, u32, &str); 16] = [
     (EXTENDED_SYS_STATE_DATA::ID, 500, "whether it stands"),
     (POSITION_TARGET_GLOBAL_INT_DATA::ID, 1000, ""),
     (HOME_POSITION_DATA::ID, 0, "home"),
+    (AUTOPILOT_VERSION_DATA::ID, 0, "version"),
+];
+
+/// Without these nothing is flown; each autopilot has them, and they are missed even if they never came.
+const NEEDED: [u32; 5] = [
+    GLOBAL_POSITION_INT_DATA::ID,
+    ATTITUDE_DATA::ID,
+    MISSION_CURRENT_DATA::ID,
+    VFR_HUD_DATA::ID,
+    GPS_RAW_INT_DATA::ID,
 ];
 
 /// How ArduPilot begins to say that it has no such message; its number and a bracket follow.
@@ -46,14 +56,15 @@ const WINDS: [u32; 2] = [WIND_DATA::ID, WIND_COV_DATA::ID];
 #[derive(Debug, Clone, Default)]
 pub struct Streams {
     streams: [Stream; WANTED.len()],
-    got_home: bool,
     /// What was last said of those that have stopped.
     told: Vec<&'static str>,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Stream {
-    /// Counted since then; `None`: never asked for.
+    /// When it was first asked for; `None`: never.
+    asked: Option<Time>,
+    /// Counted since then; `None`: not asked for over this link.
     since: Option<Time>,
     count: u32,
     /// Asked for in vain, one time after the other.
@@ -62,6 +73,8 @@ struct Stream {
     is_lacking: bool,
     /// When it came last.
     came: Option<Time>,
+    /// It is asked for once, and has come over this link.
+    is_got: bool,
 }
 
 impl Stream {
@@ -69,6 +82,7 @@ impl Stream {
     fn is_due(&mut self, now: Time, interval_ms: u32) -> bool {
         let Some(since) = self.since else {
             self.since = Some(now);
+            self.asked.get_or_insert(now);
             return true;
         };
         let looked = now.saturating_sub(since);
@@ -88,22 +102,21 @@ impl Streams {
     /// come over this one.
     pub fn begin_anew(&mut self) {
         for stream in &mut self.streams {
-            *stream = Stream { came: stream.came, ..Stream::default() };
+            *stream = Stream { asked: stream.asked, came: stream.came, ..Stream::default() };
         }
-        self.got_home = false;
     }
 
     /// A message came.
     pub fn seen(&mut self, now: Time, message: &MavMessage) {
         let id = message.message_id();
         let known = WANTED.iter().zip(&mut self.streams).find(|((wanted, ..), _)| *wanted == id);
-        if let Some((_, stream)) = known {
+        if let Some(((_, interval_ms, _), stream)) = known {
             stream.count += 1;
+            stream.is_got = *interval_ms == 0;
             stream.is_lacking = false;
             if says_something(message) {
                 stream.came = Some(now);
             }
-            self.got_home |= id == HOME_POSITION_DATA::ID;
         }
     }
 
@@ -122,22 +135,26 @@ impl Streams {
     pub fn tick(&mut self, now: Time, peer: Peer, wind: u32, out: &mut Vec<MavMessage>) {
         for ((id, interval_ms, _), stream) in WANTED.iter().zip(&mut self.streams) {
             let other_wind = WINDS.contains(id) && *id != wind;
-            let wanted = !other_wind && !stream.is_lacking && (*interval_ms > 0 || !self.got_home);
+            let wanted = !other_wind && !stream.is_lacking && !stream.is_got;
             if wanted && stream.is_due(now, *interval_ms) {
                 out.push(ask(*id, *interval_ms, peer));
             }
         }
     }
 
-    /// What no longer comes, if that has changed; of the messages that say the wind, this one counts.
+    /// What no longer comes, and of what is needed what never came, if that has changed; of the messages that say the wind, this one counts.
     pub fn stopped(&mut self, now: Time, wind: u32) -> Option<Vec<&'static str>> {
-        let over = |stream: &Stream| stream.came.is_some_and(|at| now.saturating_sub(at) > STOPPED);
+        let over = |id: u32, stream: &Stream| {
+            let since = stream.came.or(stream.asked.filter(|_| NEEDED.contains(&id)));
+            since.is_some_and(|at| now.saturating_sub(at) > STOPPED)
+        };
         let asked_for = |id: u32, interval_ms: u32| interval_ms > 0 && (id == wind || !WINDS.contains(&id));
         let known = WANTED
             .iter()
             .zip(&self.streams)
             .filter(|((id, ms, what), _)| asked_for(*id, *ms) && !what.is_empty());
-        let stopped: Vec<_> = known.filter(|(_, stream)| over(stream)).map(|((.., what), _)| *what).collect();
+        let stopped: Vec<_> =
+            known.filter(|((id, ..), stream)| over(*id, stream)).map(|((.., what), _)| *what).collect();
         if self.told == stopped {
             return None;
         }
@@ -203,6 +220,32 @@ mod tests {
 
     fn wind() -> MavMessage {
         MavMessage::WIND(WIND_DATA::DEFAULT)
+    }
+
+    #[test]
+    fn what_is_needed_is_missed_even_if_it_never_came() {
+        let (mut streams, peer, at) =
+            (Streams::default(), Peer { system: 1, component: 1 }, Duration::from_secs);
+        streams.tick(at(0), peer, WIND_DATA::ID, &mut vec![]);
+        assert_eq!(streams.stopped(at(10), WIND_DATA::ID), None);
+        let missing = vec!["position", "attitude", "place on the list", "airspeed", "GPS"];
+        assert_eq!(streams.stopped(at(11), WIND_DATA::ID), Some(missing.clone()));
+        streams.seen(at(12), &MavMessage::ATTITUDE(ATTITUDE_DATA::DEFAULT));
+        let rest: Vec<_> = missing.into_iter().filter(|what| *what != "attitude").collect();
+        assert_eq!(streams.stopped(at(12), WIND_DATA::ID), Some(rest));
+    }
+
+    #[test]
+    fn home_and_version_are_asked_for_until_they_come() {
+        let (mut streams, mut out, at) = (Streams::default(), vec![], Duration::from_secs);
+        let peer = Peer { system: 1, component: 1 };
+        (0..30).for_each(|second| streams.tick(at(second), peer, WIND_DATA::ID, &mut out));
+        let before = asked_for(&out, HOME_POSITION_DATA::ID);
+        assert!(before > 1, "{before}");
+        streams.seen(at(30), &MavMessage::HOME_POSITION(HOME_POSITION_DATA::DEFAULT));
+        (30..300).for_each(|second| streams.tick(at(second), peer, WIND_DATA::ID, &mut out));
+        assert_eq!(asked_for(&out, HOME_POSITION_DATA::ID), before);
+        assert!(asked_for(&out, AUTOPILOT_VERSION_DATA::ID) > before);
     }
 
     /// Its monitor has failed.

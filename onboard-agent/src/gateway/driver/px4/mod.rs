@@ -23,7 +23,7 @@ use mavlink::dialects::ardupilotmega::{HEARTBEAT_DATA, MavAutopilot, MavType, WI
 
 /// PX4 on a fixed wing.
 pub const FIXED_WING: Dialect = Dialect {
-    kind: Kind { name: "PX4 fixed wing", habits: Some("px4"), landing_deg: None },
+    kind: Kind { name: "PX4 fixed wing", habits: Some("px4"), landing_deg: None, version: None },
     is: |beat| is_px4(beat) && beat.mavtype == MavType::MAV_TYPE_FIXED_WING,
     feeding: |chain, landing_deg| Box::new(window::Window::new(chain, landing_deg)),
     rules: &RULES,
@@ -56,7 +56,7 @@ pub const FIXED_WING: Dialect = Dialect {
 
 /// PX4 on a VTOL: it rises, and then flies as a wing.
 pub const VTOL: Dialect = Dialect {
-    kind: Kind { name: "PX4 VTOL, flown as a wing", habits: Some("px4"), landing_deg: None },
+    kind: Kind { name: "PX4 VTOL, flown as a wing", habits: Some("px4"), landing_deg: None, version: None },
     is: |beat| is_px4(beat) && VTOLS.contains(&beat.mavtype),
     entries: |start, list, peer| entries(start, list, peer, TakeOff::Vertical),
     ..FIXED_WING

@@ -7,7 +7,9 @@ use mavlink::dialects::ardupilotmega::HEARTBEAT_DATA;
 
 impl MavlinkDriver {
     pub(super) fn on_heartbeat(&mut self, now: Time, beat: &HEARTBEAT_DATA, events: &mut Vec<SessionEvent>) {
-        self.recognise(beat);
+        if !self.recognise(beat) {
+            return;
+        }
         let (armed, failsafe) = (session::is_armed(beat), session::is_failsafe(beat));
         let Some(dialect) = self.dialect() else {
             // without a dialect nothing is known of its modes

@@ -1,6 +1,6 @@
 //! What was found out, in words: whether a plan can be flown, and what to change.
 
-use super::super::driver::unsupported;
+use super::super::driver::{self, unsupported};
 use super::super::session::is_armed;
 use super::{Looked, SETTLED};
 use crate::gateway::driver::examination::{Degree, Finding};
@@ -49,33 +49,20 @@ fn system(looked: &Looked) -> u8 {
     looked.session.peer().map_or(0, |peer| peer.system)
 }
 
-/// Major, minor, patch and kind of release are a byte each, the highest first.
 fn version(said: Option<u32>, flown: [u8; 2]) -> Finding {
-    let Some([major, minor, patch, kind]) = said.filter(|version| *version > 0).map(u32::to_be_bytes) else {
+    let Some(version) = said.and_then(driver::version) else {
         return note("version", "it does not say its version");
     };
-    let version = format!("{major}.{minor}.{patch}{}", release(kind));
-    let [flown_major, flown_minor] = flown;
-    if [major, minor] == flown {
+    let [major, minor] = flown;
+    if version.series == flown {
         return ok("version", format!("{version}, of the {major}.{minor} that this agent has flown"));
     }
     note(
         "version",
         format!(
-            "{version}: this agent has flown {flown_major}.{flown_minor}; fly this one in its simulation first, for it may have other habits"
+            "{version}: this agent has flown {major}.{minor}; fly this one in its simulation first, for it may have other habits"
         ),
     )
-}
-
-/// As `FIRMWARE_VERSION_TYPE` says it.
-fn release(kind: u8) -> &'static str {
-    match kind {
-        0..64 => "-dev",
-        64..128 => "-alpha",
-        128..192 => "-beta",
-        192..255 => "-rc",
-        255 => "",
-    }
 }
 
 fn place(beat: &HEARTBEAT_DATA) -> Finding {
@@ -103,9 +90,7 @@ fn advised(looked: &Looked) -> Vec<Finding> {
         let name = advice.name;
         Some(match (advice.is_good)(value) {
             true => ok("parameters", format!("{name} is {value}")),
-            false => {
-                Finding::new(advice.degree, "parameters", format!("{name} is {value}: {}", advice.otherwise))
-            }
+            false => Finding::new(advice.degree, "parameters", advice.sentence(value)),
         })
     });
     let silent = advice.iter().filter(|advice| !looked.advised.contains_key(advice.name));
