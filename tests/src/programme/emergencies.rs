@@ -47,6 +47,14 @@ pub const SCENARIOS: &[Scenario] = &[
         fly: |rig| Box::pin(engine_lost(rig, &["engine-suspected"])),
     },
     Scenario {
+        name: "iced",
+        happens: "ice, or an engine with a part of its power: too little for altitude or speed, until that is told",
+        expected: "alarm: it is slow, sinks, or is off its altitude; and a landing",
+        plan: of_field,
+        simulator: &[],
+        fly: |rig| Box::pin(iced(rig)),
+    },
+    Scenario {
         name: "battery_low",
         happens: "the battery falls below its reserve",
         expected: "alarm, and the plan for the cause energy, to its landing",
@@ -96,6 +104,16 @@ async fn engine_lost(rig: &mut Rig, alarms: &[&str]) -> anyhow::Result<()> {
     rig.until("an alarm", 60.0, |_, seen| alarms.iter().any(|id| seen.alarmed(id))).await?;
     started_for(rig, Cause::Engine).await?;
     rig.until("down", FLIGHT_S, |rig, _| rig.position().is_some_and(|p| p.on_ground)).await
+}
+
+async fn iced(rig: &mut Rig) -> anyhow::Result<()> {
+    on_leg(rig, "sweep").await?;
+    rig.disturb("fault ice")?;
+    let told = ["slow", "sinks", "off-altitude"];
+    rig.until("an alarm", 120.0, |_, seen| told.iter().any(|id| seen.alarmed(id))).await?;
+    rig.disturb("clear ice")?;
+    // where it is taken for an engine that failed, it glides to wherever it gets
+    rig.until("landed", FLIGHT_S, |_, seen| seen.landed()).await
 }
 
 async fn battery_low(rig: &mut Rig) -> anyhow::Result<()> {

@@ -4,7 +4,7 @@ use super::{FLIGHT_S, Scenario, expect_whole_mission, in_state, land, of_field, 
 use crate::rig::{Rig, Seen};
 use anyhow::{Context, ensure};
 use std::time::Duration;
-use usal::contract::{GatewayState, PlanEvent};
+use usal::contract::{GatewayRequest, GatewayState, PlanEvent};
 
 pub const SCENARIOS: &[Scenario] = &[
     Scenario {
@@ -32,12 +32,28 @@ pub const SCENARIOS: &[Scenario] = &[
         fly: |rig| Box::pin(fp_manager_gone_for_good(rig)),
     },
     Scenario {
+        name: "runways_taken_away",
+        happens: "somebody takes the stored runways away in flight; then the FP Manager is killed and does not come back",
+        expected: "it is refused; Safe hold, then return and landing on the stored runway",
+        plan: of_field,
+        simulator: &[],
+        fly: |rig| Box::pin(runways_taken_away(rig)),
+    },
+    Scenario {
         name: "gateway_killed",
         happens: "the gateway is killed, and comes back",
         expected: "the FP Manager joins it again, and the mission goes on",
         plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(gateway_killed(rig)),
+    },
+    Scenario {
+        name: "gateway_without_memory",
+        happens: "the gateway is killed, and what it had stored is lost",
+        expected: "the list aboard is known to be ours, and nothing of it is known; the mission from the same place",
+        plan: of_field,
+        simulator: &[],
+        fly: |rig| Box::pin(gateway_without_memory(rig)),
     },
     Scenario {
         name: "both_killed",
@@ -140,6 +156,13 @@ async fn fp_manager_gone_for_good(rig: &mut Rig) -> anyhow::Result<()> {
     Ok(())
 }
 
+async fn runways_taken_away(rig: &mut Rig) -> anyhow::Result<()> {
+    on_leg(rig, "far").await?;
+    let taken = rig.ask_gateway(GatewayRequest::SetRunways { runways: vec![] }).await;
+    ensure!(taken.is_err(), "the aircraft flies, and no runway is left to it");
+    fp_manager_gone_for_good(rig).await
+}
+
 async fn gateway_killed(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "sweep").await?;
     let flown_out = rig.seen.flown_out();
@@ -158,6 +181,16 @@ async fn gateway_killed(rig: &mut Rig) -> anyhow::Result<()> {
     goes_on(rig).await?;
     ensure!(!rig.seen.went_to(GatewayState::SafeHold), "its waypoints ran dry");
     Ok(())
+}
+
+async fn gateway_without_memory(rig: &mut Rig) -> anyhow::Result<()> {
+    on_leg(rig, "sweep").await?;
+    rig.gateway.kill()?;
+    rig.fp_manager_is_there(false).await?;
+    rig.forget_gateway()?;
+    rig.restart_gateway()?;
+    rig.fp_manager_is_there(true).await?;
+    goes_on(rig).await
 }
 
 async fn both_killed(rig: &mut Rig) -> anyhow::Result<()> {
@@ -196,6 +229,9 @@ async fn goes_on(rig: &mut Rig) -> anyhow::Result<()> {
 async fn ground_station_gone(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "out").await?;
     rig.leave().await?;
+    if !rig.is_in_lockstep() {
+        tokio::time::sleep(MACHINE_STARTS_IN).await;
+    }
     rig.come_back().await?;
     super::land_by_plan(rig).await?;
     expect_whole_mission(rig)

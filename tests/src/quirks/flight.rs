@@ -217,6 +217,24 @@ pub(super) const QUIRKS: &[Quirk] = &[
         flies: true,
     },
     Quirk {
+        name: "altitude_of_a_place_is_amsl_whatever_the_frame",
+        of: PX4,
+        does: "`DO_REPOSITION` with an altitude above home, as its frame says: it sinks to that altitude AMSL",
+        check: |s| {
+            airborne(s, 5)?;
+            let (_, from_m) = here(s)?;
+            let to = COMMAND_INT_DATA { param2: 1., ..ahead(s)? };
+            same("the answer", s.command_int(to)?, ACCEPTED)?;
+            s.hear_within(FLIGHT, "it sinks", |message| match message {
+                MavMessage::GLOBAL_POSITION_INT(p) => {
+                    (f64::from(p.alt) / 1000.0 < from_m - 15.0).then_some(())
+                }
+                _ => None,
+            })
+        },
+        flies: true,
+    },
+    Quirk {
         name: "return_flies_the_landing_of_the_list",
         of: ARDUPLANE,
         does: "RTL with RTL_AUTOLAND 2 and `DO_LAND_START` in the list: AUTO, behind that item",
@@ -356,23 +374,30 @@ fn climbed_in_a_third_of_the_way(s: &mut Station) -> anyhow::Result<f64> {
         x: e7(place.lat_deg),
         y: e7(place.lon_deg),
         z: (from_m + UP_M) as f32,
+        // PX4 takes any altitude for one AMSL
+        frame: MavFrame::MAV_FRAME_GLOBAL,
         ..ahead(s)?
     };
     same("the answer", s.command_int(to)?, ACCEPTED)?;
     let height_m = s.hear_within(FLIGHT, "a third of the way", |message| match message {
         MavMessage::GLOBAL_POSITION_INT(p) => {
             let now = LatLon::new(f64::from(p.lat) * 1e-7, f64::from(p.lon) * 1e-7);
-            (from.distance_m(now) > WAY_M / 3.0).then(|| f64::from(p.relative_alt) / 1000.0)
+            (from.distance_m(now) > WAY_M / 3.0).then(|| f64::from(p.alt) / 1000.0)
         }
         _ => None,
     })?;
     Ok((height_m - from_m) / UP_M)
 }
 
-/// Where it is, and its height above home, metres.
+/// Where it is, and its altitude, metres AMSL.
 fn here(s: &mut Station) -> anyhow::Result<(LatLon, f64)> {
-    let (lat, lon, height_m) = s.place()?;
-    Ok((LatLon::new(f64::from(lat) * 1e-7, f64::from(lon) * 1e-7), height_m))
+    s.hear("a position", |message| match message {
+        MavMessage::GLOBAL_POSITION_INT(p) => {
+            let place = LatLon::new(f64::from(p.lat) * 1e-7, f64::from(p.lon) * 1e-7);
+            Some((place, f64::from(p.alt) / 1000.0))
+        }
+        _ => None,
+    })
 }
 
 /// To a place a little ahead, as high as it is.

@@ -153,11 +153,15 @@ impl Rig {
         Ok(self.ground()?.session.call(fp_manager::FORESEE, &Foresee { command: None }, CALL).await?)
     }
 
-    /// Has the flight ended by force.
-    pub async fn terminate(&self) -> anyhow::Result<()> {
-        let request = GatewayRequest::Terminate { confirm: processes::VEHICLE.into() };
+    /// Asks the gateway for something itself.
+    pub async fn ask_gateway(&self, request: GatewayRequest) -> anyhow::Result<()> {
         self.ground()?.session.call(gateway::REQUEST, &request, CALL).await?;
         Ok(())
+    }
+
+    /// Has the flight ended by force.
+    pub async fn terminate(&self) -> anyhow::Result<()> {
+        self.ask_gateway(GatewayRequest::Terminate { confirm: processes::VEHICLE.into() }).await
     }
 
     /// Loads the mission and starts it; comes back when the aircraft is airborne.
@@ -278,6 +282,11 @@ impl Rig {
     pub fn restart_gateway(&mut self) -> anyhow::Result<()> {
         self.gateway = self.places.start_gateway()?;
         Ok(())
+    }
+
+    /// What the gateway has stored is gone.
+    pub fn forget_gateway(&self) -> anyhow::Result<()> {
+        self.places.forget_gateway()
     }
 
     /// Starts the flight recorder, which takes no part in the time.

@@ -44,6 +44,11 @@ impl Places {
         self.start("gateway", &own, &self.state.path().join("gateway"))
     }
 
+    /// The state that the gateway left is gone.
+    pub fn forget_gateway(&self) -> anyhow::Result<()> {
+        Ok(std::fs::remove_dir_all(self.state.path().join("gateway"))?)
+    }
+
     /// The FP Manager, over the state that it left before.
     pub fn start_fp_manager(&self) -> anyhow::Result<Program> {
         self.start("fp-manager", &["--connect", &self.endpoint], &self.state.path().join("fp-manager"))

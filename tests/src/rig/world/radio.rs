@@ -198,8 +198,8 @@ impl Relay {
     /// told it is in no simulation, and hears nothing more.
     fn begin(&mut self, conditions: Vec<Control>) {
         let calm = Wish::Wind { east_mps: 0.0, north_mps: 0.0 };
-        for wish in [calm, Wish::Gps(true), Wish::EngineAsNew, Wish::Battery(FULL_PERCENT), Wish::Fence(None)]
-        {
+        let (battery, power) = (Wish::Battery(FULL_PERCENT), Wish::Power(true));
+        for wish in [calm, Wish::Gps(true), Wish::EngineAsNew, power, battery, Wish::Fence(None)] {
             self.voice.wish(wish);
         }
         conditions.into_iter().for_each(|control| self.on_control(control));
@@ -302,6 +302,9 @@ impl Relay {
         if now.engine_out != before.engine_out {
             self.voice.wish(Wish::Engine(!now.engine_out));
         }
+        if now.ice != before.ice {
+            self.voice.wish(Wish::Power(!now.ice));
+        }
         if now.low_battery != before.low_battery {
             self.voice.wish(Wish::Battery(if now.low_battery { LOW_PERCENT } else { FULL_PERCENT }));
         }
@@ -333,10 +336,8 @@ fn is_had(fault: Fault) -> bool {
         | Fault::Reorder(_)
         | Fault::Bandwidth(_)
         | Fault::Silence => true,
-        Fault::GpsLoss | Fault::EngineOut | Fault::LowBattery | Fault::NoRpm => true,
-        Fault::NoStream(_) | Fault::Ice | Fault::Crash | Fault::Reboot | Fault::FliesOn | Fault::Jammed => {
-            false
-        }
+        Fault::GpsLoss | Fault::EngineOut | Fault::Ice | Fault::LowBattery | Fault::NoRpm => true,
+        Fault::NoStream(_) | Fault::Crash | Fault::Reboot | Fault::FliesOn | Fault::Jammed => false,
     }
 }
 

@@ -20,6 +20,8 @@ pub enum Wish {
     Gps(bool),
     /// Whether the engine gives what it is asked for.
     Engine(bool),
+    /// Whether it has its full power; if not, too little for the altitude or the speed.
+    Power(bool),
     /// What an earlier flight has done to the engine is over, as far as that can be told.
     EngineAsNew,
     /// How much the battery has left, percent.
@@ -100,6 +102,7 @@ fn arduplane(wish: Wish) -> Option<Vec<Order>> {
         // a mask of servos; the throttle is the third one. SIM_ENGINE_MUL, by which it is multiplied, is 0 by default
         Wish::Engine(false) => vec![real("SIM_ENGINE_FAIL", 4.0)],
         Wish::Engine(true) | Wish::EngineAsNew => vec![real("SIM_ENGINE_FAIL", 0.0)],
+        Wish::Power(full) => vec![real("THR_MAX", if full { 100.0 } else { 25.0 })],
         // the first battery
         Wish::Battery(percent) => vec![Order::Do(MavCmd::MAV_CMD_BATTERY_RESET, [1.0, percent, 0.0])],
         // a circle, and a return; the radius is not taken away with it
@@ -130,6 +133,7 @@ fn px4(wish: Wish) -> Option<Vec<Order>> {
         Wish::Engine(true) => return None,
         Wish::EngineAsNew => vec![],
         Wish::Engine(false) => vec![real("SIH_F_T_MAX", 0.0)],
+        Wish::Power(full) => vec![real("FW_THR_MAX", if full { 1.0 } else { 0.4 })],
         // it runs down to this within the first minute of the flight
         Wish::Battery(percent) => vec![real("SIM_BAT_MIN_PCT", percent.into())],
         // 3: it returns

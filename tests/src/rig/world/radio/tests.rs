@@ -102,7 +102,8 @@ async fn the_world_is_put_right_before_it_is_disturbed() {
     let mut ends = Ends::open(conditions.into()).await;
     ends.says(1).await;
     let (wind, gps) = (["SIM_WIND_DIR", "SIM_WIND_SPD"], ["SIM_GPS1_ENABLE"]);
-    let right = [&wind[..], &gps, &["SIM_ENGINE_FAIL", "MAV_CMD_BATTERY_RESET", "FENCE_ENABLE"]].concat();
+    let right =
+        [&wind[..], &gps, &["SIM_ENGINE_FAIL", "THR_MAX", "MAV_CMD_BATTERY_RESET", "FENCE_ENABLE"]].concat();
     let mut told: Vec<String> = vec![];
     while told.len() < right.len() + wind.len() + gps.len() {
         told.push(ends.confirms().await);

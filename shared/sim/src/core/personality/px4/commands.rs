@@ -4,7 +4,6 @@ use super::failsafe::Failsafe;
 use super::{Px4, STARTS_UP_NS, items, mode_of, needs_sticks};
 use crate::core::autopilot::{Autopilot, Severity};
 use crate::core::commands::Command;
-use crate::core::item::{Datum, datum_of};
 use crate::core::mode::Mode;
 use crate::core::params::Setting;
 use mavlink::dialects::ardupilotmega::*;
@@ -169,8 +168,8 @@ impl Px4 {
         if result == ACCEPTED && a.is_armed() {
             let s = *a.aircraft.state();
             let position = if c.position.is_valid() { c.position } else { s.position };
-            let datum = c.frame.and_then(|frame| datum_of(frame).ok()).unwrap_or(Datum::Amsl);
-            let altitude_m = if c.z.is_finite() { a.amsl_m(c.z.into(), datum) } else { s.altitude_amsl_m };
+            // whatever the frame says
+            let altitude_m = if c.z.is_finite() { c.z.into() } else { s.altitude_amsl_m };
             a.circle(Mode::Loiter, position, altitude_m, radius_m);
         }
         result

@@ -32,8 +32,8 @@ fn reposition_as_int_and_as_long_circles_as_usual_whatever_radius_is_asked_for()
     let home = Config::default().home.position;
     let point = home.destination(90.0, 1500.0);
     let reposition = MavCmd::MAV_CMD_DO_REPOSITION;
-    // an integer command has a frame, here that of heights over home; the other is AMSL
-    for (as_int, z) in [(true, 151.0), (false, 500.0)] {
+    // an integer command has a frame, here that of heights over home: that is passed over
+    for (as_int, z) in [(true, 500.0), (false, 500.0)] {
         let mut ground = Ground::px4_airborne(&circuit(home));
         let stay = go(&mut ground, reposition, [-1., 0., 250., 1.], point, z, as_int);
         assert_eq!(stay, MavResult::MAV_RESULT_DENIED);
@@ -65,7 +65,7 @@ fn orbit_has_a_radius_and_a_direction() {
     let home = Config::default().home.position;
     let point = home.destination(90.0, 1500.0);
     let mut ground = Ground::px4_airborne(&circuit(home));
-    let result = go(&mut ground, MavCmd::MAV_CMD_DO_ORBIT, [-250., 0., 0., 0.], point, 151., true);
+    let result = go(&mut ground, MavCmd::MAV_CMD_DO_ORBIT, [-250., 0., 0., 0.], point, 500., true);
     assert_eq!((result, ground.mode_now()), (MavResult::MAV_RESULT_ACCEPTED, Mode::Loiter));
     let (off, bank) = circling(&mut ground, point, 250.0);
     assert!(off.abs() < 12.0 && bank < 0.0, "{off} m off, bank {bank}");
