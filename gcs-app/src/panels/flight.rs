@@ -229,7 +229,8 @@ fn gps(ui: &mut Ui, scene: &Scene<'_>) {
     let gps = &scene.vehicle.gps;
     let text = gps.as_ref().map(|g| {
         let fix = if g.value.fix_3d { "3D fix" } else { "NO FIX" };
-        format!("{fix} · {} sats · HDOP {:.1}", g.value.satellites, g.value.hdop)
+        let satellites = g.value.satellites.map_or("?".into(), |count| count.to_string());
+        format!("{fix} · {satellites} sats · HDOP {:.1}", g.value.hdop)
     });
     value_with_age(ui, "GPS", &text.unwrap_or_default(), age_as_heard(gps, scene));
 }

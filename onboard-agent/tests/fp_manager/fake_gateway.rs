@@ -151,7 +151,7 @@ impl FakeGateway {
         let power = Power { voltage_v: 24.0, current_a: 10.0, battery: self.battery, fuel: None };
         self.power.set(time_s, 1.0, &power);
         let unix_s = self.unix_s.map(|start| start + time_s as i64);
-        self.gps.set(time_s, 1.0, &Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s });
+        self.gps.set(time_s, 1.0, &Gps { fix_3d: true, satellites: Some(12), hdop: 0.8, unix_s });
         self.position.set(time_s, 1.0, &self.flying.position());
         self.navigation.set(time_s, 1.0, &self.flying.navigation());
         self.status.set(time_s, 1.0, &self.flying.status());

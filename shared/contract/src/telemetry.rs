@@ -64,8 +64,9 @@ pub struct Air {
 pub struct Gps {
     /// A three-dimensional fix or better.
     pub fix_3d: bool,
-    /// Satellites in use.
-    pub satellites: u8,
+    /// Satellites in use; `None`: the autopilot does not say it.
+    #[serde(default)]
+    pub satellites: Option<u8>,
     /// Horizontal dilution of precision.
     pub hdop: f64,
     /// Time of day, whole seconds since 1970-01-01T00:00:00Z; `None`: the autopilot doesn't know it (yet).

@@ -4,7 +4,7 @@ use super::*;
 use crate::link::LinkMessage;
 
 fn gps(time_s: f64) -> Telemetry {
-    let value = usal::contract::Gps { fix_3d: true, satellites: 9, hdop: 1.0, unix_s: None };
+    let value = usal::contract::Gps { fix_3d: true, satellites: Some(9), hdop: 1.0, unix_s: None };
     Telemetry::Gps(Stamped { time_s, validity_s: 2.0, value })
 }
 
@@ -235,7 +235,7 @@ async fn a_stranger_is_told_and_not_believed_and_a_new_process_is() {
 
     let stranger = Session::open(usal::Config::client("uav1", &endpoint)).await.unwrap();
     let forged = stranger.publish(gateway::GPS).unwrap();
-    let value = usal::contract::Gps { fix_3d: false, satellites: 0, hdop: 99.0, unix_s: None };
+    let value = usal::contract::Gps { fix_3d: false, satellites: Some(0), hdop: 99.0, unix_s: None };
     forged.set(1e9, 2.0, &value);
     let told = |event: &LinkEvent| match event {
         LinkEvent::Strangers { service, count } => Some((*service, *count)),

@@ -104,7 +104,7 @@ impl Core {
 
     fn in_stop_with(waypoints: Vec<Waypoint>) -> Self {
         let mut core = Self::new();
-        let gps = Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: None };
+        let gps = Gps { fix_3d: true, satellites: Some(12), hdop: 0.8, unix_s: None };
         let ground = [beat(Mode::Hold, false), Report::OnGround(true), fix(0.0), Report::Gps(gps)];
         core.step(Input::Report(Report::Capability(Ok(PLANE))));
         core.run(1, &ground);

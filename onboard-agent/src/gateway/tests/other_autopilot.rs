@@ -132,7 +132,7 @@ impl GliderDriver {
 
     fn at(&mut self, words: &mut SplitWhitespace) -> Report {
         let position = LatLon::new(number(words), number(words));
-        let gps = Gps { fix_3d: true, satellites: 9, hdop: 1.0, unix_s: None };
+        let gps = Gps { fix_3d: true, satellites: Some(9), hdop: 1.0, unix_s: None };
         self.reports.push_back(Report::Gps(gps));
         Report::Fix(Fix {
             position,

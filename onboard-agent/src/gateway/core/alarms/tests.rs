@@ -44,7 +44,7 @@ fn good(tenth: i64) -> Vec<Report> {
             east_mps: 0.0,
             down_mps: 0.0,
         }),
-        Report::Gps(Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: None }),
+        Report::Gps(Gps { fix_3d: true, satellites: Some(12), hdop: 0.8, unix_s: None }),
         Report::Engine(Engine { rpm: 5000.0, temperature_c: 80.0, throttle: 0.5 }),
         Report::Power(Power { voltage_v: 24.0, current_a: 12.0, battery: 0.8, fuel: None }),
     ]
@@ -55,7 +55,7 @@ fn each_fault_raises_its_alarm_in_time_and_clears_it() {
     type Spoil = fn(&mut Vec<Report>);
     let cases: [(&str, i64, Spoil); 5] = [
         ("gps-lost", 10, |r| {
-            r[3] = Report::Gps(Gps { fix_3d: false, satellites: 0, hdop: 99.0, unix_s: None })
+            r[3] = Report::Gps(Gps { fix_3d: false, satellites: Some(0), hdop: 99.0, unix_s: None })
         }),
         ("engine-out", 10, |r| {
             r[4] = Report::Engine(Engine { rpm: 0.0, temperature_c: 80.0, throttle: 0.9 })
@@ -85,7 +85,7 @@ fn what_is_raised_asks_on_the_ground_for_nothing_that_is_done_in_the_air() {
             let now = Duration::from_secs(second);
             let mut reports = good(second as i64);
             reports[1] = Report::OnGround(on_ground);
-            reports[3] = Report::Gps(Gps { fix_3d: false, satellites: 0, hdop: 99.0, unix_s: None });
+            reports[3] = Report::Gps(Gps { fix_3d: false, satellites: Some(0), hdop: 99.0, unix_s: None });
             reports[4] = Report::Engine(Engine { rpm: 0.0, temperature_c: 80.0, throttle: 0.9 });
             reports[5] = Report::Power(Power { voltage_v: 20.0, current_a: 12.0, battery: 0.1, fuel: None });
             reports.iter().for_each(|r| telemetry.take(now, r));

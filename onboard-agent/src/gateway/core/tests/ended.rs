@@ -61,7 +61,8 @@ fn what_was_ended_before_a_restart_waits_for_the_time_of_day_and_no_longer() {
 /// Its autopilot says what time it is, and that an hour has passed: an earlier gateway's end would be over.
 #[test]
 fn what_flies_on_for_an_hour_is_ended_all_the_same() {
-    let time = |unix_s| Report::Gps(Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: Some(unix_s) });
+    let time =
+        |unix_s| Report::Gps(Gps { fix_3d: true, satellites: Some(12), hdop: 0.8, unix_s: Some(unix_s) });
     let mut core = Core::in_nav();
     core.run(1, &[time(1_800_000_000)]);
     core.step(Input::Request(4, GatewayRequest::Terminate { confirm: "test".into() }));

@@ -98,7 +98,7 @@ fn reports(state: GatewayState, mode: Mode, loss: Loss) -> Vec<Report> {
     let rpm = if loss == Loss::Engine || stands || state == Terminate { 0.0 } else { 5000.0 };
     let throttle = if stands { 0.0 } else { 0.6 };
     let battery = if loss == Loss::Energy { 0.1 } else { 0.9 };
-    let gps = Gps { fix_3d: loss != Loss::Gps, satellites: 12, hdop: 0.8, unix_s: None };
+    let gps = Gps { fix_3d: loss != Loss::Gps, satellites: Some(12), hdop: 0.8, unix_s: None };
     vec![
         beat(mode, !stands && state != Terminate),
         Report::OnGround(stands),

@@ -85,7 +85,7 @@ fn nothing_is_launched_that_can_not_fly() {
     core.step(Input::Report(Report::Capability(Ok(PLANE))));
     is_refused(&mut core, launch(), "nothing to fly");
     let mut core = Core::in_stop_with_a_plan();
-    let lost = Gps { fix_3d: false, satellites: 2, hdop: 9.0, unix_s: None };
+    let lost = Gps { fix_3d: false, satellites: Some(2), hdop: 9.0, unix_s: None };
     core.step(Input::Report(Report::Gps(lost)));
     is_refused(&mut core, launch(), "no GPS fix");
     core.gateway.telemetry.gps = None;

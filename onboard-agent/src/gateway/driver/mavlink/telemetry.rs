@@ -274,7 +274,7 @@ fn attitude(m: &ATTITUDE_DATA) -> Option<Attitude> {
 fn gps(m: &GPS_RAW_INT_DATA, unix_s: Option<i64>) -> Gps {
     Gps {
         fix_3d: m.fix_type as u32 >= GpsFixType::GPS_FIX_TYPE_3D_FIX as u32,
-        satellites: m.satellites_visible,
+        satellites: (m.satellites_visible != u8::MAX).then_some(m.satellites_visible),
         hdop: if m.eph == NOT_MEASURED { NO_HDOP } else { f64::from(m.eph) / 100.0 },
         unix_s,
     }
@@ -414,9 +414,10 @@ mod tests {
         let (out, _) = taken(MavMessage::SYS_STATUS(status));
         let [SessionEvent::Telemetry(Report::Power(power))] = out.as_slice() else { panic!("{out:?}") };
         assert_eq!((power.voltage_v, power.current_a, power.battery), (0.0, 0.0, 0.5));
-        let (out, _) =
-            taken(MavMessage::GPS_RAW_INT(GPS_RAW_INT_DATA { eph: u16::MAX, ..GPS_RAW_INT_DATA::DEFAULT }));
+        let unknown =
+            GPS_RAW_INT_DATA { eph: u16::MAX, satellites_visible: 255, ..GPS_RAW_INT_DATA::DEFAULT };
+        let (out, _) = taken(MavMessage::GPS_RAW_INT(unknown));
         let [SessionEvent::Telemetry(Report::Gps(gps))] = out.as_slice() else { panic!("{out:?}") };
-        assert_eq!(gps.hdop, 99.99);
+        assert_eq!((gps.hdop, gps.satellites), (99.99, None));
     }
 }

@@ -210,7 +210,7 @@ impl Autopilot {
         if !self.ticks.is_multiple_of(5) {
             return reports;
         }
-        reports.push(Report::Gps(Gps { fix_3d: true, satellites: 12, hdop: 0.8, unix_s: None }));
+        reports.push(Report::Gps(Gps { fix_3d: true, satellites: Some(12), hdop: 0.8, unix_s: None }));
         let rpm = if self.engine_runs { 5000.0 } else { 0.0 };
         reports.push(Report::Engine(Engine { rpm, temperature_c: 80.0, throttle: 0.6 }));
         reports
