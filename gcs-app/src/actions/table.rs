@@ -1,11 +1,12 @@
 //! The actions, one a line: group, identifier, name, kind, keys, and what it asks for or why it can't.
 
-use super::{Action, Group, Kind, bindings, flight};
+use super::{Action, Group, Kind, bindings, flight, layers};
 use crate::command::{
     BranchId, Clip, Command, DocumentCommand, FlyCommand, PreviewCommand, Replacement, Selection, ViewCommand,
 };
 use crate::guide::Answer;
 use crate::help::topic_of;
+use crate::layers::LayerCommand;
 use crate::map::furniture::Edge;
 use crate::panels::tree::Renamed;
 use crate::panels::tree::menu::NOT_ONE_LIST;
@@ -148,6 +149,9 @@ pub const ENTRIES: &[Entry] = &[
     choice(Group::WhatIf, "what-if-operator", "The operator calls it off here", |s| alarm_is(s, Cause::Operator), |s| raise(s, Cause::Operator)),
     entry(Group::WhatIf, "what-if-reset", "Back to the plan's own world", &[], |_| preview(PreviewCommand::Reset)),
     entry(Group::Maps, "maps", "Maps and elevations…", &[], |_| view(ViewCommand::Maps(true))),
+    entry(Group::Maps, "add-map-file", "Add a file of a map or of elevations…", &[], |_| layer(LayerCommand::Ask { folder: false })),
+    entry(Group::Maps, "add-map-folder", "Add a folder of elevations…", &[], |_| layer(LayerCommand::Ask { folder: true })),
+    entry(Group::Maps, layers::ADD, "Add a map by its path…", &[], |_| view(ViewCommand::Palette(Some(layers::QUERY)))),
     choice(Group::Maps, "graticule", "Graticule", |s| Kind::Switch(s.view.edge.graticule), |s| view(ViewCommand::Edge(Edge { graticule: !s.view.edge.graticule, ..s.view.edge }))),
     choice(Group::Maps, "legend", "Legend of the lines", |s| Kind::Switch(!s.view.edge.no_legend), |s| view(ViewCommand::Edge(Edge { no_legend: !s.view.edge.no_legend, ..s.view.edge }))),
     choice(Group::Maps, "rings", "Range rings", |s| Kind::Switch(s.view.edge.rings), |s| view(ViewCommand::Edge(Edge { rings: !s.view.edge.rings, ..s.view.edge }))),
@@ -208,6 +212,10 @@ fn document(command: DocumentCommand) -> Asked {
 
 fn view(command: ViewCommand) -> Asked {
     Ok(Command::View(command))
+}
+
+fn layer(command: LayerCommand) -> Asked {
+    Ok(Command::Layer(command))
 }
 
 fn recover(scene: &Scene<'_>) -> Asked {

@@ -169,6 +169,7 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
         action.id == "palette"
             || (action.id == bindings::ID && query.starts_with(bindings::QUERY))
             || (action.id == flight::CONNECT_TO && query.starts_with(flight::QUERY))
+            || (action.id == layers::ADD && query.starts_with(layers::QUERY))
     };
     actions.retain(|action| !led_here(action));
     if query.trim().is_empty() {
@@ -189,16 +190,17 @@ fn find(query: &str, scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
 
 /// What there is to be done with what is selected, flown and asked now, and the places of the plan.
 fn of_the_moment(query: &str, scene: &Scene<'_>) -> Vec<Action> {
-    let connect = flight::connect_to(query, scene).into_iter().collect();
+    let typed = flight::connect_to(query, scene).or_else(|| layers::add(query)).into_iter().collect();
     let plan = [alternates::of(scene), bindings::of(scene), offers::of(scene)].concat();
     let shown = [layers::of(scene), places::of(scene.document)].concat();
-    [plan, flight::of(scene), connect, answers::of(scene), shown].concat()
+    [plan, flight::of(scene), typed, answers::of(scene), shown].concat()
 }
 
 /// All that one query or another finds.
 pub fn everything(scene: &Scene<'_>, fittings: &Fittings) -> Vec<Action> {
     let with_address = format!("{}10.0.0.2:7447", flight::QUERY);
-    [all(scene, fittings), of_the_moment(&with_address, scene)].concat()
+    let with_path = layers::add(&format!("{}map.mbtiles", layers::QUERY)).into_iter().collect();
+    [all(scene, fittings), of_the_moment(&with_address, scene), with_path].concat()
 }
 
 /// By its name here, or another word for it.

@@ -6,6 +6,7 @@ use super::{PATIENCE, SQUARE, Window};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, Pos2, TouchPhase, vec2};
 use egui_kittest::kittest::Queryable;
+use gcs_app::layers::Layer;
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -87,7 +88,7 @@ fn a_double_click_does_not_move_the_map() {
     assert!(window.centre("Fix A").distance(a) < 0.5);
 }
 
-fn drop_file(window: &mut Window, path: &Path) {
+pub fn drop_file(window: &mut Window, path: &Path) {
     window.harness.input_mut().dropped_files.push(Arc::new(Dropped(path.to_owned())));
     window.steps(2);
 }
@@ -98,11 +99,11 @@ fn hgt(height_m: i16) -> Vec<u8> {
 }
 
 /// The map of the whole world as one tile.
-fn world(path: &Path) {
+pub fn world(path: &Path) {
     let database = rusqlite::Connection::open(path).unwrap();
     let tables = "CREATE TABLE metadata (name TEXT, value TEXT);
         CREATE TABLE tiles (zoom_level INTEGER, tile_column INTEGER, tile_row INTEGER, tile_data BLOB);
-        INSERT INTO metadata VALUES ('maxzoom', '0'), ('attribution', 'Somebody');";
+        INSERT INTO metadata VALUES ('maxzoom', '0'), ('attribution', 'Somebody'), ('bounds', '-170,-80,170,80');";
     database.execute_batch(tables).unwrap();
     let mut png = std::io::Cursor::new(Vec::new());
     image::RgbaImage::from_pixel(64, 64, image::Rgba([90, 0, 200, 255]))
@@ -133,6 +134,42 @@ fn a_map_that_is_dropped_is_shown_and_remembered() {
     next.click("Remove world.mbtiles");
     assert_eq!(next.app().layers().iter().count(), 0);
     assert!(path.exists());
+}
+
+/// They were in the dialog alone.
+#[test]
+fn all_that_is_done_with_a_map_is_done_from_the_palette() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window();
+    let path = |name: &str| {
+        let path = folder.path().join(name);
+        world(&path);
+        path
+    };
+    window.ask_for("add a map by its path");
+    window.press(Key::Enter);
+    window.harness.get_by_label("Search commands").type_text(&path("below.mbtiles").display().to_string());
+    window.steps(3);
+    window.press(Key::Enter);
+    window.until("a map", |app| app.layers().iter().any(|layer| layer.bounds().is_some()));
+    drop_file(&mut window, &path("above.mbtiles"));
+    window.until("two maps", |app| app.layers().iter().filter(|layer| layer.bounds().is_some()).count() == 2);
+    let names = |window: &Window| window.app().layers().iter().map(Layer::name).collect::<Vec<_>>();
+    assert_eq!(names(&window), ["above.mbtiles", "below.mbtiles"]);
+    window.ask_for("raise the layer above");
+    assert!(!window.is_enabled("Maps Raise the layer above.mbtiles"), "nothing is above it");
+    window.press(Key::Escape);
+    for words in ["raise the layer below", "opacity 25 % of the layer below", "go to the layer below"] {
+        window.ask_for(words);
+        window.press(Key::Enter);
+    }
+    assert_eq!(names(&window), ["below.mbtiles", "above.mbtiles"]);
+    assert_eq!(window.app().layers().iter().next().unwrap().kept.opacity, 0.25);
+    let a = window.harness.query_by_label("Fix A").map(|fix| fix.rect());
+    assert!(a.is_none_or(|a| a.center().distance(window.centre("Fix B")) < 2.0), "the whole world is shown");
+    window.ask_for("remove the layer below");
+    window.press(Key::Enter);
+    assert_eq!(names(&window), ["above.mbtiles"]);
 }
 
 #[test]

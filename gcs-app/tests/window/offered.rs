@@ -9,6 +9,7 @@ use super::vehicle::{decision, status};
 use super::{SQUARE, Window, announcing};
 use flight_exec::{EntryReport, Phase, ProposalReport};
 use gcs_app::command::Command;
+use gcs_app::layers::State;
 use gcs_app::link::Reply;
 use gcs_app::story::{End, Story};
 use std::collections::BTreeSet;
@@ -58,8 +59,9 @@ const ELSEWHERE: [(&str, &[&str]); 5] = [
 
 /// `View::Fit` of all commands.
 fn commands() -> Vec<String> {
-    let source = include_str!("../../src/command.rs");
+    let (source, layers) = (include_str!("../../src/command.rs"), include_str!("../../src/layers/mod.rs"));
     let of = |name: &str| {
+        let source = if name == "Layer" { layers } else { source };
         let begin = source.find(&format!("pub enum {name}Command {{")).unwrap();
         let body = &source[begin..begin + source[begin..].find("\n}").unwrap()];
         let variants = body.lines().filter_map(|line| line.strip_prefix("    "));
@@ -67,7 +69,7 @@ fn commands() -> Vec<String> {
         let is_name = |c: char| !c.is_ascii_alphanumeric();
         variants.map(|line| format!("{name}::{}", line.split(is_name).next().unwrap())).collect::<Vec<_>>()
     };
-    ["Document", "View", "Preview", "Link", "Fly"].into_iter().flat_map(of).collect()
+    ["Document", "View", "Preview", "Link", "Layer", "Fly"].into_iter().flat_map(of).collect()
 }
 
 /// `View::Fit` of a command; of several in a row those.
@@ -78,7 +80,7 @@ fn names(command: &Command) -> Vec<String> {
         Command::Preview(command) => ("Preview", format!("{command:?}")),
         Command::Link(command) => ("Link", format!("{command:?}")),
         Command::Fly(command) => ("Fly", format!("{command:?}")),
-        Command::Layer(_) => return Vec::new(),
+        Command::Layer(command) => ("Layer", format!("{command:?}")),
         Command::Each(commands) => return commands.iter().flat_map(names).collect(),
     };
     let is_name = |c: char| !c.is_ascii_alphanumeric();
@@ -122,6 +124,22 @@ fn planning(found: &mut BTreeSet<String>) {
     let folder = tempfile::tempdir().unwrap();
     edit_and_kill(folder.path());
     found.extend(offered(&window_in(folder.path(), "")));
+}
+
+/// With two maps, one above the other.
+fn over_maps(found: &mut BTreeSet<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = Window::open(SQUARE);
+    window.until_analysed();
+    for name in ["below.mbtiles", "above.mbtiles"] {
+        let path = folder.path().join(name);
+        super::maps::world(&path);
+        super::maps::drop_file(&mut window, &path);
+    }
+    window.until("two maps", |app| {
+        app.layers().iter().filter(|layer| matches!(layer.state, State::Map(..))).count() == 2
+    });
+    found.extend(offered(&window));
 }
 
 /// Connected, on the ground and in the air.
@@ -168,6 +186,7 @@ fn every_command_is_in_the_palette_or_it_is_said_where_it_is() {
     let elsewhere: BTreeSet<&str> = ELSEWHERE.iter().flat_map(|(_, commands)| *commands).copied().collect();
     let mut found = BTreeSet::new();
     planning(&mut found);
+    over_maps(&mut found);
     in_flight(&mut found);
     let missing: Vec<_> = all
         .iter()
