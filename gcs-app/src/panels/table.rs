@@ -2,30 +2,37 @@
 //! airspeeds are typed where they stand.
 
 mod cell;
+mod keyboard;
+mod moving;
 mod rows;
 pub(super) mod typed;
+mod unflown;
 
 use super::in_place::{InPlace, Typed};
-use super::tree::menu;
+use super::tree::{View, menu};
 use super::{Panel, PanelId, Place, Scene, row_menu, timeline};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::derived::{Derived, Source};
 use crate::theme;
 use cell::{cell, heading, not_flown};
-use egui::{
-    Align, Context, EventFilter, Id as WidgetId, Key, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, vec2,
-};
+use egui::{Align, Context, Id as WidgetId, Rect, RichText, ScrollArea, Sense, Ui, vec2};
 use egui_extras::{TableBuilder, TableRow};
 use flight_plan::Id;
-use rows::{Entry, Row, Said, cells, heads, label, part, rows, said};
+use moving::Moving;
+use rows::{Entry, Row, Said, Why, cells, heads, label, part, rows, said};
 use std::collections::HashMap;
 use typed::Column;
 
 /// The panel.
 #[derive(Debug, Default)]
 pub struct Table {
-    /// Of which forecast.
-    listed: Derived<u64, Listed>,
+    /// Of which forecast, and with the legs that are not flown.
+    listed: Derived<(u64, bool), Listed>,
+    /// Legs that the preview does not fly are listed, too.
+    shows_all: bool,
+    moving: Moving,
+    /// How far it is to be scrolled.
+    scroll: Option<f32>,
     cursor: Cursor,
     /// What was selected when it was last drawn.
     selected: Option<Selection>,
@@ -42,6 +49,14 @@ struct Listed {
     rows: Vec<Row>,
     said: HashMap<Id, Said>,
 }
+
+/// Of a row, screen points.
+const HEIGHT: f32 = 22.0;
+/// Between two rows, screen points.
+const BETWEEN: f32 = 1.0;
+/// What the switch in the header does.
+const SHOWS_ALL: &str =
+    "Also list the legs that this preview does not fly: other branches, emergency plans, procedures";
 
 /// The cell that the keyboard is at.
 #[derive(Debug)]
@@ -72,6 +87,7 @@ struct Editing {
 enum Done {
     Chosen,
     Edited,
+    Dragged,
     Typed(Typed),
 }
 
@@ -103,10 +119,15 @@ impl Panel for Table {
         164.0
     }
     fn header(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
+        let all = if timeline::is_narrow(ui) { "All" } else { "All legs" };
+        ui.toggle_value(&mut self.shows_all, all).on_hover_text(SHOWS_ALL);
         timeline::show(ui, scene, queue);
     }
     fn ui(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         let is_new = self.refresh(scene);
+        if is_new {
+            self.moving.renew(&self.listed, scene);
+        }
         self.follow(scene, is_new);
         self.keys(ui, scene, queue);
         timeline::strip(ui, scene, queue);
@@ -119,10 +140,11 @@ impl Panel for Table {
 impl Table {
     /// True: the rows are other ones.
     fn refresh(&mut self, scene: &Scene<'_>) -> bool {
-        let source = Source::new(scene.document, scene.analysis.forecast_version);
+        let shows_all = self.shows_all;
+        let source = Source::new(scene.document, (scene.analysis.forecast_version, shows_all));
         let forecast = scene.analysis.forecast.clone();
         self.listed.refresh(source, scene.layers.wake(), move |plan, _| Listed {
-            rows: rows(&forecast, plan),
+            rows: rows(&forecast, plan, shows_all),
             said: said(plan),
         })
     }
@@ -136,7 +158,7 @@ impl Table {
             return;
         }
         let is_it = |row: &Row| match (row, &self.selected) {
-            (Row::Stage(stage), Some(Selection::Stage(id))) => stage == id,
+            (Row::Heading(of), selected) => selected.as_ref() == Some(of),
             (row, Some(Selection::Leg(id))) => {
                 row.entry(scene.forecast()).is_some_and(|entry| entry.leg == id)
             }
@@ -149,56 +171,6 @@ impl Table {
         }
     }
 
-    fn keys(&mut self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        if !has_focus(ui.ctx()) || self.editing.is_some() {
-            return;
-        }
-        let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
-        ui.memory_mut(|m| m.set_focus_lock_filter(cursor_id(), filter));
-        let pressed = |modifiers, key| ui.input_mut(|i| i.consume_key(modifiers, key));
-        // with Shift first, for a key alone is part of that
-        for (modifiers, extends) in [(Modifiers::SHIFT, true), (Modifiers::NONE, false)] {
-            for (key, by) in [(Key::ArrowDown, 1), (Key::ArrowUp, -1)] {
-                if pressed(modifiers, key) {
-                    self.walk(by, extends, scene, queue);
-                }
-            }
-        }
-        for (key, by) in [(Key::ArrowLeft, -1), (Key::ArrowRight, 1)] {
-            if pressed(Modifiers::NONE, key) {
-                self.cursor.column = self.cursor.column.beside(by).unwrap_or(self.cursor.column);
-            }
-        }
-        if pressed(Modifiers::SHIFT, Key::F10) || pressed(Modifiers::NONE, Key::Menu) {
-            (self.cursor.moved, self.cursor.opens_menu) = (true, true);
-        }
-        if pressed(Modifiers::NONE, Key::F2) || pressed(Modifiers::NONE, Key::Enter) {
-            self.edit(scene);
-        }
-    }
-
-    /// To another row, which is selected; with those on the way to it, too.
-    fn walk(&mut self, by: isize, extends: bool, scene: &Scene<'_>, queue: &mut Queue) {
-        let to = self.cursor.row.saturating_add_signed(by).min(self.listed.rows.len().saturating_sub(1));
-        self.cursor = Cursor { row: to, moved: true, ..self.cursor };
-        match self.range(scene).filter(|_| extends) {
-            Some(range) => queue.view(ViewCommand::SelectTogether(range)),
-            None => self.select(scene, queue),
-        }
-    }
-
-    /// All legs from the selected row to the one that the keyboard is at, the former first. `None`: that row is not there.
-    fn range(&self, scene: &Scene<'_>) -> Option<Vec<Selection>> {
-        let first = self.selected.as_ref().filter(|selected| selected.is_in_sets())?;
-        let to = self.cursor.row;
-        let is_first = |row: &usize| self.of_row(*row, scene).as_ref() == Some(first);
-        // of several passages the nearest
-        let from = (0..self.listed.rows.len()).filter(is_first).min_by_key(|row| row.abs_diff(to))?;
-        let flown = (from.min(to)..=from.max(to)).filter(|row| self.entry(*row, scene).is_some());
-        let flown = flown.filter_map(|row| self.of_row(row, scene));
-        Some(std::iter::once(first.clone()).chain(flown).collect())
-    }
-
     /// What the keyboard is at.
     fn current(&self, scene: &Scene<'_>) -> Option<Selection> {
         self.of_row(self.cursor.row, scene)
@@ -206,7 +178,7 @@ impl Table {
 
     fn of_row(&self, row: usize, scene: &Scene<'_>) -> Option<Selection> {
         match self.listed.rows.get(row)? {
-            Row::Stage(stage) => Some(Selection::Stage(stage.clone())),
+            Row::Heading(of) => Some(of.clone()),
             row => Some(part(scene, &row.entry(scene.forecast())?)),
         }
     }
@@ -239,13 +211,13 @@ impl Table {
     }
 
     fn table(&mut self, ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        ui.spacing_mut().item_spacing = vec2(6.0, 1.0);
+        ui.spacing_mut().item_spacing = vec2(6.0, BETWEEN);
         let weak = theme::of(ui).weak;
         let whole = ui.clip_rect();
         let mut table = TableBuilder::new(ui)
             .id_salt("plan table")
             .striped(true)
-            .sense(Sense::click())
+            .sense(Sense::click_and_drag())
             .animate_scrolling(false)
             // a low dock has less than its usual least height: its last rows were below the window
             .min_scrolled_height(0.0)
@@ -261,6 +233,9 @@ impl Table {
         if std::mem::take(&mut self.cursor.moved) {
             table = table.scroll_to_row(self.cursor.row, None);
         }
+        if let Some(offset) = self.scroll.take() {
+            table = table.vertical_scroll_offset(offset);
+        }
         let mut done = None;
         let table = table.header(20.0, |mut header| {
             for head in heads(scene.units()) {
@@ -272,11 +247,16 @@ impl Table {
         // drawing a leg changes what is typed, and never the rows
         let listed = self.listed.shared();
         let rows = &listed.rows;
-        table.body(|body| {
-            body.rows(22.0, rows.len(), |mut row| {
+        let mut grabbed = None;
+        let shown = table.body(|body| {
+            body.rows(HEIGHT, rows.len(), |mut row| {
                 let index = row.index();
                 match rows.get(index) {
-                    Some(Row::Stage(stage)) => heading(&mut row, whole, scene, stage, queue),
+                    Some(Row::Heading(of)) => {
+                        if heading(&mut row, whole, scene, of, queue) {
+                            grabbed = Some(index);
+                        }
+                    }
                     other => {
                         if let Some(entry) = other.and_then(|other| other.entry(scene.forecast())) {
                             let drawn = self.leg(&mut row, whole, scene, &entry, queue);
@@ -286,6 +266,12 @@ impl Table {
                 }
             });
         });
+        if let Some(row) = grabbed {
+            self.moving.begin(row, &listed, scene);
+        }
+        let (rect, offset) = (shown.inner_rect.intersect(whole), shown.state.clamped_offset().y);
+        let view = View { rect, offset, step: HEIGHT + BETWEEN };
+        self.scroll = self.moving.show(ui, view, scene, queue);
         if let Some((row, (column, what))) = done {
             self.take(ui, row, column, what, scene, queue);
         }
@@ -306,6 +292,7 @@ impl Table {
         let mut done = None;
         let mut columns = Column::ALL.into_iter();
         let mut typed_into = Vec::new();
+        let is_dim = matches!(entry.flown, Err(Why::Aside(_)));
         for (number, text) in cells(scene, entry, &said).into_iter().enumerate() {
             let column = columns.next();
             if let (None, Err(why)) = (column, entry.flown) {
@@ -316,27 +303,33 @@ impl Table {
                 });
                 continue;
             }
-            row.col(|ui| match (column, &mut self.editing) {
-                (Some(column), Some(Editing { row, column: at, field }))
-                    if *row == index && *at == column =>
-                {
-                    let name = format!("{} of {}", column.name(), entry.leg);
-                    let typed = field.show(ui, ui.max_rect(), &name);
-                    done = typed.map(|typed| (column, Done::Typed(typed))).or(done.take());
-                }
-                (Some(column), _) => {
-                    let is_current = (self.cursor.row, self.cursor.column) == (index, column);
-                    let name = format!("{} of {}", column.name(), entry.leg);
-                    let response = cell(ui, (index, column), is_current, text, &name);
-                    if response.double_clicked() {
-                        done = Some((column, Done::Edited));
-                    } else if response.clicked() {
-                        done = Some((column, Done::Chosen));
+            let colour = |ui: &Ui| is_dim.then(|| theme::of(ui).weak);
+            row.col(|ui| {
+                ui.visuals_mut().override_text_color = colour(ui);
+                match (column, &mut self.editing) {
+                    (Some(column), Some(Editing { row, column: at, field }))
+                        if *row == index && *at == column =>
+                    {
+                        let name = format!("{} of {}", column.name(), entry.leg);
+                        let typed = field.show(ui, ui.max_rect(), &name);
+                        done = typed.map(|typed| (column, Done::Typed(typed))).or(done.take());
                     }
-                    typed_into.push(response);
-                }
-                (None, _) => {
-                    ui.add(egui::Label::new(text).truncate().selectable(false));
+                    (Some(column), _) => {
+                        let is_current = (self.cursor.row, self.cursor.column) == (index, column);
+                        let name = format!("{} of {}", column.name(), entry.leg);
+                        let response = cell(ui, (index, column), is_current, text, &name);
+                        if response.drag_started() {
+                            done = Some((column, Done::Dragged));
+                        } else if response.double_clicked() {
+                            done = Some((column, Done::Edited));
+                        } else if response.clicked() {
+                            done = Some((column, Done::Chosen));
+                        }
+                        typed_into.push(response);
+                    }
+                    (None, _) => {
+                        ui.add(egui::Label::new(text).truncate().selectable(false));
+                    }
                 }
             });
         }
@@ -345,7 +338,9 @@ impl Table {
         let anywhere = typed_into.into_iter().fold(response.clone(), |all, cell| all.union(cell));
         let opens = self.cursor.row == index && std::mem::take(&mut self.cursor.opens_menu);
         row_menu::show(&anywhere, opens, |ui| menu::show(ui, scene, &part, queue));
-        if done.is_none() && response.clicked() {
+        if done.is_none() && response.drag_started() {
+            done = Some((self.cursor.column, Done::Dragged));
+        } else if done.is_none() && response.clicked() {
             done = Some((self.cursor.column, Done::Chosen));
         }
         done
@@ -362,6 +357,7 @@ impl Table {
         queue: &mut Queue,
     ) {
         match done {
+            Done::Dragged => return self.moving.begin(row, &self.listed, scene),
             Done::Typed(Typed::Cancelled) => self.editing = None,
             Done::Typed(Typed::Text(text)) => self.finish(row, column, &text, scene, queue),
             Done::Edited => {

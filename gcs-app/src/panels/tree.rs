@@ -15,7 +15,8 @@ mod search;
 use super::{Panel, PanelId, Place, Scene, row_menu};
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::derived::{Derived, Source};
-use drag::{Asking, Drag, STEP, View};
+use drag::{Asking, STEP};
+pub(super) use drag::{Drag, View, go_on};
 use egui::{EventFilter, Rect, ScrollArea, Ui, pos2, vec2};
 use flight_exec::Phase;
 use flight_plan::{FlightPlan, Problem};
@@ -23,7 +24,8 @@ use keyboard::Step;
 use rename::Renaming;
 pub use rename::{Renamed, begin as rename};
 use row::{Done, HEIGHT, Look};
-use rows::{Row, rows};
+pub(super) use rows::Row;
+use rows::rows;
 pub use rows::{leg_tag, title};
 pub use search::focus as focus_search;
 use std::collections::{BTreeMap, BTreeSet};
@@ -136,7 +138,7 @@ impl Panel for Tree {
                 done = self.row(ui, index, scene, queue).map(|d| (index, d)).or(done.take());
             }
         });
-        self.view = Some(View { rect: shown.inner_rect, offset: shown.state.clamped_offset().y });
+        self.view = Some(View { rect: shown.inner_rect, offset: shown.state.clamped_offset().y, step: STEP });
         self.cursor.opens_menu = false;
         self.keep_focus(ui);
         if let Some((index, done)) = done {
@@ -381,16 +383,10 @@ impl Tree {
     }
 
     fn dragging(&mut self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) {
-        let (Some(drag), Some(view)) = (&mut self.drag, self.view) else { return };
-        let was_dropped = drag.show(ui, &self.rows, view, scene.document.plan());
-        if ui.input(|i| i.key_pressed(egui::Key::Escape)) {
-            self.drag = None;
-        } else if was_dropped {
-            self.asking = self.drag.take().and_then(|drag| drag.drop(ui, scene, queue));
-        } else if let Some(offset) = Drag::scrolls(ui, view) {
-            self.scroll = Some(offset);
-            ui.request_repaint();
-        }
+        let Some(view) = self.view else { return };
+        let (scroll, asking) = go_on(&mut self.drag, ui, (&self.rows, view), scene, queue);
+        self.scroll = scroll.or(self.scroll);
+        self.asking = asking.or(self.asking.take());
     }
 }
 

@@ -51,6 +51,7 @@ mod reach;
 mod reading;
 mod recovering;
 mod recreating;
+mod reordering;
 mod replacing;
 mod runways;
 mod sheets;

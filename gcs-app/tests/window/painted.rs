@@ -215,6 +215,35 @@ impl Window {
         colours.take_while(|found| *found != upper).filter(|found| *found == lower).count()
     }
 
+    /// Lines of one colour along the middle of which a thinner one of another is painted at once.
+    pub fn double_lines(&self, outer: Color32, inner: Color32) -> usize {
+        let path = |shape: &Shape| match shape {
+            Shape::Path(path) => match path.stroke.color {
+                ColorMode::Solid(colour) => Some((path.points.clone(), path.stroke.width, colour)),
+                ColorMode::UV(_) => None,
+            },
+            Shape::LineSegment { points, stroke } => Some((points.to_vec(), stroke.width, stroke.color)),
+            _ => None,
+        };
+        let paths: Vec<_> = self.harness.output().shapes.iter().map(|clipped| path(&clipped.shape)).collect();
+        let is_double = |pair: &&[Option<_>]| match pair {
+            [Some((a, wide, of)), Some((b, thin, between))] => {
+                a == b && (*of, *between) == (outer, inner) && (0.3..0.6).contains(&(thin / wide))
+            }
+            _ => false,
+        };
+        paths.windows(2).filter(is_double).count()
+    }
+
+    /// Level lines of this colour, from end to end.
+    pub fn level_lines(&self, colour: Color32) -> Vec<[Pos2; 2]> {
+        let segments = self.harness.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+            Shape::LineSegment { points, stroke } if stroke.color == colour => Some(*points),
+            _ => None,
+        });
+        segments.filter(|[a, b]| a.y == b.y).collect()
+    }
+
     fn lines_in(&self, rect: Rect, colour: Color32) -> usize {
         let shapes = self.harness.output().shapes.iter();
         let inside = shapes.filter(|clipped| rect.expand(1.0).contains_rect(clipped.clip_rect));

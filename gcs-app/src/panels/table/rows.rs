@@ -1,6 +1,7 @@
 //! The rows of the table: a heading where a stage begins, and the passages of its legs.
 
 use super::typed::Column;
+use super::unflown::{self, Flown};
 use crate::command::Selection;
 use crate::forecast::{Forecast, Passage, Point};
 use crate::panels::Scene;
@@ -16,14 +17,25 @@ use std::collections::{HashMap, HashSet};
 /// One row.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Row {
-    /// A stage begins.
-    Stage(Id),
+    /// A stage begins, or what stands behind all that is flown: an emergency plan, a procedure.
+    Heading(Selection),
     /// A passage of the forecast, by its index.
     Passage(usize),
     /// A leg that would be left out, by its index in the forecast.
     LeftOut(usize),
     /// A leg that the forecast does not come to: there is none yet, or the plan has an error; and its stage.
     Written(Id, Id),
+    /// A leg that the preview does not fly, what it is in, and why.
+    Aside(Id, Id, Aside),
+}
+
+/// What a leg is of that the preview does not fly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Aside {
+    /// Another way on from a fork.
+    Way,
+    Emergency,
+    Procedure,
 }
 
 /// A leg in the table.
@@ -42,6 +54,8 @@ pub(super) enum Why<'a> {
     LeftOut(&'a str),
     /// The forecast does not come so far, or there is none.
     NotForeseen,
+    /// The preview goes elsewhere.
+    Aside(Aside),
 }
 
 impl Why<'_> {
@@ -53,6 +67,9 @@ impl Why<'_> {
                 "Not flown yet: the plan has an error, see its problems".into()
             }
             Self::NotForeseen => format!("Not flown yet. {}", scene.analysis.why_no_forecast()),
+            Self::Aside(Aside::Way) => "Not flown in this preview: it goes another way".into(),
+            Self::Aside(Aside::Emergency) => "Flown in an emergency only".into(),
+            Self::Aside(Aside::Procedure) => "Not flown in this preview: nothing calls it".into(),
         }
     }
 }
@@ -61,7 +78,7 @@ impl Row {
     /// `None`: it is a heading.
     pub fn entry<'a>(&'a self, forecast: &'a Forecast) -> Option<Entry<'a>> {
         match self {
-            Self::Stage(_) => None,
+            Self::Heading(_) => None,
             Self::Passage(index) => {
                 let passage = forecast.passages.get(*index)?;
                 Some(Entry { leg: &passage.leg, stage: &passage.stage, flown: Ok(passage) })
@@ -71,18 +88,30 @@ impl Row {
                 Some(Entry { leg: &left.leg, stage: &left.stage, flown: Err(Why::LeftOut(&left.reason)) })
             }
             Self::Written(leg, stage) => Some(Entry { leg, stage, flown: Err(Why::NotForeseen) }),
+            Self::Aside(leg, stage, of) => Some(Entry { leg, stage, flown: Err(Why::Aside(*of)) }),
         }
     }
 }
 
 /// All rows of a flight: legs that would be left out stand where they would be flown; of a plan with errors those behind it, too.
-pub(super) fn rows(forecast: &Forecast, plan: &FlightPlan) -> Vec<Row> {
+/// `shows_all`: with the legs that are not flown at all.
+pub(super) fn rows(forecast: &Forecast, plan: &FlightPlan, shows_all: bool) -> Vec<Row> {
+    let flown = Flown::of(forecast, plan);
+    let behind: Vec<_> = match forecast.is_beginning || forecast.passages.is_empty() {
+        true => behind(forecast, plan).collect(),
+        false => Vec::new(),
+    };
+    let told = forecast.left_out.iter().map(|left| &left.leg).chain(behind.iter().map(|(leg, _)| *leg));
+    let told: HashSet<&Id> = told.collect();
+    let mut beside = if shows_all { unflown::beside(plan, &flown) } else { Vec::new() };
+    beside.retain(|beside| !told.contains(beside.leg));
+    let mut beside = beside.into_iter().peekable();
     let mut rows = Vec::with_capacity(forecast.passages.len());
     let mut left_out = forecast.left_out.iter().enumerate().peekable();
     let mut stage: Option<&Id> = None;
     let mut push = |rows: &mut Vec<Row>, of, row| {
         if stage != Some(of) {
-            rows.push(Row::Stage(of.clone()));
+            rows.push(Row::Heading(Selection::Stage(of.clone())));
             stage = Some(of);
         }
         rows.push(row);
@@ -91,14 +120,19 @@ pub(super) fn rows(forecast: &Forecast, plan: &FlightPlan) -> Vec<Row> {
         while let Some((number, left)) = left_out.next_if(|(_, left)| left.before <= index) {
             push(&mut rows, &left.stage, Row::LeftOut(number));
         }
+        while let Some(aside) = beside.next_if(|beside| beside.before <= index) {
+            let row = Row::Aside(aside.leg.clone(), aside.stage.clone(), Aside::Way);
+            push(&mut rows, aside.stage, row);
+        }
         if let Some(passage) = forecast.passages.get(index) {
             push(&mut rows, &passage.stage, Row::Passage(index));
         }
     }
-    if forecast.is_beginning || forecast.passages.is_empty() {
-        for (leg, stage) in behind(forecast, plan) {
-            push(&mut rows, stage, Row::Written(leg.clone(), stage.clone()));
-        }
+    for (leg, stage) in behind {
+        push(&mut rows, stage, Row::Written(leg.clone(), stage.clone()));
+    }
+    if shows_all {
+        rows.extend(unflown::elsewhere(plan, &flown));
     }
     rows
 }
@@ -108,8 +142,7 @@ fn behind<'p>(forecast: &Forecast, plan: &'p FlightPlan) -> impl Iterator<Item =
     let flown: HashSet<&Id> = forecast.passages.iter().map(|passage| &passage.leg).collect();
     let legs: Vec<_> = plan.all_legs();
     let main = legs.into_iter().filter(|context| context.section == Section::Main);
-    // what is around other legs is flown as these
-    let main = main.filter(|context| context.leg.as_loop().is_none() && context.leg.as_fork().is_none());
+    let main = main.filter(|context| !unflown::is_around_others(context.leg));
     let main: Vec<_> = main.map(|context| (&context.leg.id, &context.stage.id)).collect();
     let first = main.iter().rposition(|(leg, _)| flown.contains(leg)).map_or(0, |last| last + 1);
     main.into_iter().skip(first)

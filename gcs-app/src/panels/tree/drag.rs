@@ -10,8 +10,8 @@ use crate::panels::binding::DraggedVariable;
 use crate::theme;
 use egui::containers::menu::menu_style;
 use egui::{
-    Area, CursorIcon, DragAndDrop, Frame, Id as WidgetId, Layout, Order, Popup, PopupAnchor, PopupKind, Pos2,
-    Rect, RichText, Stroke, StrokeKind, Ui, pos2, vec2,
+    Area, CursorIcon, DragAndDrop, Frame, Id as WidgetId, Key, Layout, Order, Popup, PopupAnchor, PopupKind,
+    Pos2, Rect, RichText, Stroke, StrokeKind, Ui, pos2, vec2,
 };
 use flight_plan::create::{self, StageSpot};
 use flight_plan::{Edit, FlightPlan, Id};
@@ -56,7 +56,7 @@ enum Outcome {
 
 /// A drag.
 #[derive(Debug)]
-pub(super) struct Drag {
+pub(in crate::panels) struct Drag {
     what: What,
     name: String,
     /// Where it was last, and what a drop there would do; so long as the pointer means the same place.
@@ -65,16 +65,18 @@ pub(super) struct Drag {
 
 /// Where the rows are on the screen.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct View {
+pub(in crate::panels) struct View {
     /// What is seen of them.
     pub rect: Rect,
     /// How far they are scrolled, screen points.
     pub offset: f32,
+    /// From one row to the next, screen points.
+    pub step: f32,
 }
 
 /// An emergency plan was dropped: for which cause?
 #[derive(Debug)]
-pub(super) struct Asking {
+pub(in crate::panels) struct Asking {
     at: Pos2,
     alternate: Id,
     of: Vec<Option<Id>>,
@@ -102,7 +104,7 @@ impl Drag {
     }
 
     /// Shows where it would go. True when it was let go: see [`Drag::drop`].
-    pub fn show(&mut self, ui: &Ui, rows: &[Row], view: View, plan: &FlightPlan) -> bool {
+    fn show(&mut self, ui: &Ui, rows: &[Row], view: View, plan: &FlightPlan) -> bool {
         let Some(at) = ui.input(|i| i.pointer.latest_pos()) else { return false };
         if let What::Thing(Selection::Variable(name)) = &self.what {
             // fields of the inspector and the map take it
@@ -118,15 +120,15 @@ impl Drag {
         ui.input(|i| i.pointer.any_released())
     }
 
-    /// How far the tree scrolls now, because the drag is at its edge.
-    pub fn scrolls(ui: &Ui, view: View) -> Option<f32> {
+    /// How far the rows are scrolled now, because the drag is at their edge.
+    fn scrolls(ui: &Ui, view: View) -> Option<f32> {
         let at = ui.input(|i| i.pointer.latest_pos())?;
         let down = (at.y - view.rect.bottom() + EDGE).max(0.0) - (view.rect.top() + EDGE - at.y).max(0.0);
         (down != 0.0).then(|| (view.offset + down.clamp(-EDGE, EDGE) * 0.5).max(0.0))
     }
 
     fn find(&mut self, rows: &[Row], view: View, pointer: Pos2, plan: &FlightPlan) {
-        let y = (pointer.y - view.rect.top() + view.offset) / STEP;
+        let y = (pointer.y - view.rect.top() + view.offset) / view.step;
         if !view.rect.contains(pointer) || y < 0.0 || y as usize >= rows.len() {
             self.over = None;
             return;
@@ -181,7 +183,7 @@ impl Drag {
     }
 
     /// Does it; what is to be asked then.
-    pub fn drop(self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) -> Option<Asking> {
+    fn drop(self, ui: &Ui, scene: &Scene<'_>, queue: &mut Queue) -> Option<Asking> {
         let (_, outcome) = self.over?;
         match (outcome.ok()?, self.what) {
             (Outcome::Edit(edit), _) => queue.edit(*edit),
@@ -194,6 +196,27 @@ impl Drag {
         }
         None
     }
+}
+
+/// Goes on with a drag until it is let go or given up: how far the rows are scrolled meanwhile, and what is to be asked in the end.
+pub(in crate::panels) fn go_on(
+    dragged: &mut Option<Drag>,
+    ui: &Ui,
+    (rows, view): (&[Row], View),
+    scene: &Scene<'_>,
+    queue: &mut Queue,
+) -> (Option<f32>, Option<Asking>) {
+    let Some(drag) = dragged else { return (None, None) };
+    let was_dropped = drag.show(ui, rows, view, scene.document.plan());
+    if ui.input(|i| i.key_pressed(Key::Escape)) {
+        *dragged = None;
+    } else if was_dropped {
+        return (None, dragged.take().and_then(|drag| drag.drop(ui, scene, queue)));
+    } else if let Some(offset) = Drag::scrolls(ui, view) {
+        ui.request_repaint();
+        return (Some(offset), None);
+    }
+    (None, None)
 }
 
 impl Asking {
@@ -229,7 +252,7 @@ fn paint(ui: &Ui, mark: Mark, view: View, is_possible: bool) {
     let p = theme::of(ui);
     let painter = ui.painter().with_clip_rect(view.rect);
     let colour = if is_possible { p.accent } else { p.warning };
-    let top = |row: usize| view.rect.top() - view.offset + row as f32 * STEP;
+    let top = |row: usize| view.rect.top() - view.offset + row as f32 * view.step;
     let line = |y: f32, depth| {
         let x = indent(view.rect.left(), depth) + 14.0;
         painter.circle_filled(pos2(x, y), 3.0, colour);
@@ -239,7 +262,10 @@ fn paint(ui: &Ui, mark: Mark, view: View, is_possible: bool) {
         Mark::Above { row, depth } => line(top(row) - 0.5, depth),
         Mark::Below { row, depth } => line(top(row + 1) - 0.5, depth),
         Mark::Onto(row) => {
-            let rect = Rect::from_min_size(pos2(view.rect.left(), top(row)), vec2(view.rect.width(), HEIGHT));
+            let rect = Rect::from_min_size(
+                pos2(view.rect.left(), top(row)),
+                vec2(view.rect.width(), view.step - 1.0),
+            );
             painter.rect_stroke(rect, 4.0, Stroke::new(1.5, colour), StrokeKind::Inside);
         }
     }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// One line of the tree.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Row {
+pub(in crate::panels) struct Row {
     /// No two rows have the same; stays what it is from edit to edit.
     pub key: String,
     pub depth: usize,
