@@ -50,16 +50,16 @@ fn open(gate: &(Mutex<bool>, Condvar)) {
     gate.1.notify_all();
 }
 
-/// The square over that ground, and its gate.
-fn over_held_ground() -> (Window, Arc<(Mutex<bool>, Condvar)>) {
+/// A plan over that ground, and its gate.
+pub fn over_held_ground(text: &str) -> (Window, Arc<(Mutex<bool>, Condvar)>) {
     let (gate, ground) = (Arc::<(Mutex<bool>, Condvar)>::default(), gcs_app::assets::demo_terrain());
     let held = Held { window: std::thread::current().id(), gate: gate.clone(), ground };
-    (Window::open_over(SQUARE, vec2(1280.0, 800.0), None, Arc::new(held)), gate)
+    (Window::open_over(text, vec2(1280.0, 800.0), None, Arc::new(held)), gate)
 }
 
 #[test]
 fn frames_and_edits_go_on_while_the_preview_waits_for_the_ground() {
-    let (mut window, gate) = over_held_ground();
+    let (mut window, gate) = over_held_ground(SQUARE);
     window.steps(10);
     window.click("TF side2");
     window.press(egui::Key::Delete);
@@ -75,7 +75,7 @@ fn frames_and_edits_go_on_while_the_preview_waits_for_the_ground() {
 /// Nothing is said of a plan before all of it was looked at, as it is now.
 #[test]
 fn a_plan_is_being_checked_until_the_check_of_this_revision_is_there() {
-    let (mut window, gate) = over_held_ground();
+    let (mut window, gate) = over_held_ground(SQUARE);
     window.steps(10);
     assert!(window.shows("Being checked…") && !window.shows("can be flown"));
     let set = |is_open: bool| {
@@ -97,7 +97,7 @@ fn a_plan_is_being_checked_until_the_check_of_this_revision_is_there() {
 /// Legs without a forecast are not legs in error.
 #[test]
 fn the_table_says_that_a_sound_plan_is_still_being_looked_at() {
-    let (mut window, gate) = over_held_ground();
+    let (mut window, gate) = over_held_ground(SQUARE);
     super::fleet::tab(&mut window, "Table");
     window.steps(3);
     assert!(window.shows("Not flown yet. The preview is being computed"));
@@ -110,7 +110,7 @@ fn the_table_says_that_a_sound_plan_is_still_being_looked_at() {
 /// Whatever the ground does: a leg that is drawn is tried out over it in the background.
 #[test]
 fn drawing_goes_on_while_the_trial_of_a_leg_waits_for_the_ground() {
-    let (mut window, gate) = over_held_ground();
+    let (mut window, gate) = over_held_ground(SQUARE);
     window.harness.run_steps(10);
     window.harness.key_press(egui::Key::T);
     window.harness.run_steps(2);
@@ -137,7 +137,7 @@ fn drawing_goes_on_while_the_trial_of_a_leg_waits_for_the_ground() {
 /// What is asked of the ground in a frame: below the pointer, in a menu, for a runway that is drawn, and below an aircraft.
 #[test]
 fn frames_go_on_while_elevations_are_read() {
-    let (mut window, gate) = over_held_ground();
+    let (mut window, gate) = over_held_ground(SQUARE);
     window.steps(10);
     let at = window.centre("Map") + vec2(60.0, 120.0);
     window.harness.hover_at(at);
@@ -440,6 +440,39 @@ fn the_clock_goes_on_in_a_window_that_nobody_touches() {
     window.harness.input_mut().viewports.entry(viewport).or_default().minimized = Some(true);
     window.steps(5);
     assert!(longest_delay(&window) > Duration::from_secs(60), "nobody sees it");
+}
+
+/// Whoever asks for a frame asks the whole window to be drawn: in one that nobody touches it is the clock alone, at each full minute.
+#[test]
+fn nobody_asks_an_idle_window_for_a_frame() {
+    let clock = Duration::from_secs(60 - 1_790_000_000 % 60);
+    let mut window = Window::open(super::whatif::FIRE_WATCH);
+    window.until_analysed();
+    let looks: [(&str, fn(&mut Window)); 6] = [
+        ("settled", |_| ()),
+        ("a leg is selected", |w| w.select_row(("TF To the gap", 0))),
+        ("the table", |w| super::fleet::tab(w, "Table")),
+        ("what if", |w| super::fleet::tab(w, "What if")),
+        ("a tool", |w| w.press(egui::Key::T)),
+        ("the palette, where a field has the keyboard", |w| w.ask_for("fit")),
+    ];
+    for (what, look) in looks {
+        look(&mut window);
+        window.until_analysed();
+        // messages go by themselves, tooltips and what comes into sight take their time
+        window.steps(600);
+        let asked = Arc::<Mutex<Vec<Duration>>>::default();
+        let seen = asked.clone();
+        window.harness.ctx.set_request_repaint_callback(move |info| seen.lock().unwrap().push(info.delay));
+        window.harness.run_steps(120);
+        window.harness.ctx.set_request_repaint_callback(|_| ());
+        // a cursor that blinks is drawn by egui
+        let least = if window.harness.ctx.text_edit_focused() { Duration::from_millis(50) } else { clock };
+        let asked = asked.lock().unwrap();
+        let sooner: Vec<_> = asked.iter().filter(|delay| **delay < least).collect();
+        let causes = window.harness.ctx.repaint_causes();
+        assert!(sooner.is_empty(), "{what}: {sooner:?} {causes:?}");
+    }
 }
 
 /// How long the window rests if nothing happens.
