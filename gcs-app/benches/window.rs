@@ -324,7 +324,7 @@ fn at_work(verdicts: &mut Verdicts) {
     let mut window = begin(&plan(LEGS, 0), Arc::new(ground));
     add_server(&mut window, &slow_server());
     let folder = elevations();
-    window.state_mut().read_from(Arc::new(SlowDisk));
+    window.state_mut().use_disk(Arc::new(SlowDisk));
     for dropped in [std::env::temp_dir().join("slow.xml"), folder.path().to_owned()] {
         window.input_mut().dropped_files.push(Arc::new(Dropped(dropped)));
     }

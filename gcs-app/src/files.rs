@@ -98,8 +98,8 @@ impl Files {
         Self { outbox, inbox, wake, watch, jobs: Jobs::default(), disk: Arc::new(Machine), desktop: true }
     }
 
-    /// Reads what is opened from this disk.
-    pub fn read_from(&mut self, disk: Arc<dyn Disk>) {
+    /// Reads what is opened from this disk, and writes there what is saved.
+    pub fn use_disk(&mut self, disk: Arc<dyn Disk>) {
         self.disk = disk;
     }
 
@@ -220,12 +220,12 @@ impl Files {
 
     /// Asks where to save, and saves.
     pub fn ask_save(&self, suggestion: String, writing: Writing) {
-        let (desktop, document) = (self.desktop, writing.document);
+        let (desktop, disk, document) = (self.desktop, self.disk.clone(), writing.document);
         self.save_by(document, move || {
             let dialog = rfd::FileDialog::new().add_filter("Flight plan", &["xml"]).set_file_name(suggestion);
             let save = |path| {
                 let (path, over) = completed(path, "xml", writing.over);
-                saving::save(path, &Writing { over, ..writing })
+                saving::save(path, &Writing { over, ..writing }, disk.as_ref())
             };
             asked(desktop, Purpose::Save, || dialog.save_file(), save)
                 .or(Some(FileEvent::NotSaved { document, why: None }))
@@ -234,7 +234,8 @@ impl Files {
 
     /// Saves.
     pub fn save(&self, path: PathBuf, writing: Writing) {
-        self.save_by(writing.document, move || Some(saving::save(path, &writing)));
+        let disk = self.disk.clone();
+        self.save_by(writing.document, move || Some(saving::save(path, &writing, disk.as_ref())));
     }
 
     /// Flies a plan ahead of time and puts it into another program's format.
@@ -249,6 +250,7 @@ impl Files {
 
     /// Asks where to write it, and writes it.
     pub fn ask_export(&self, suggestion: String, exported: Arc<Exported>) {
+        let disk = self.disk.clone();
         let desktop = self.desktop;
         self.work(move || {
             let format = exported.format;
@@ -256,7 +258,7 @@ impl Files {
             let dialog = dialog.set_file_name(suggestion);
             let write = |path: PathBuf| {
                 let (path, over) = completed(path, format.name(), Over::Anything);
-                write_export(path, &exported, over)
+                write_export(path, &exported, over, disk.as_ref())
             };
             asked(desktop, Purpose::Export(format), || dialog.save_file(), write)
         });
@@ -264,7 +266,8 @@ impl Files {
 
     /// Writes it.
     pub fn write_export(&self, path: PathBuf, exported: Arc<Exported>, over: Over) {
-        self.work(move || Some(write_export(path, &exported, over)));
+        let disk = self.disk.clone();
+        self.work(move || Some(write_export(path, &exported, over, disk.as_ref())));
     }
 
     /// Has the desktop open a file.
@@ -333,8 +336,8 @@ fn completed(mut path: PathBuf, extension: &str, over: Over) -> (PathBuf, Over) 
     (path, Over::Nothing)
 }
 
-fn write_export(path: PathBuf, exported: &Arc<Exported>, over: Over) -> FileEvent {
-    match saving::export(&path, &exported.bytes, over) {
+fn write_export(path: PathBuf, exported: &Arc<Exported>, over: Over, disk: &dyn Disk) -> FileEvent {
+    match saving::export(&path, &exported.bytes, over, disk) {
         Ok(()) => FileEvent::ExportWritten { path, exported: exported.clone() },
         Err(why) => FileEvent::Failed(why),
     }

@@ -55,9 +55,9 @@ impl App {
         self.files.desktop = false;
     }
 
-    /// Reads files that are opened from this disk instead of the machine's.
-    pub fn read_from(&mut self, disk: std::sync::Arc<dyn crate::files::Disk>) {
-        self.files.read_from(disk);
+    /// Reads files from this disk instead of the machine's, and writes them there.
+    pub fn use_disk(&mut self, disk: std::sync::Arc<dyn crate::files::Disk>) {
+        self.files.use_disk(disk);
     }
 
     /// Waits like this for the disk to have taken the settings, on a thread.
@@ -73,7 +73,14 @@ impl App {
         if let Some(wait) = keeper.tend(unsaved, now.window_s, now.utc) {
             ctx.request_repaint_after(wait);
         }
-        self.view.notice = keeper.failure().or_else(|| self.view.notice.take());
+        match keeper.failure() {
+            // why the plan could not be saved says more
+            Some(why) if self.view.notice.as_ref().is_some_and(|notice| *notice != why) => {
+                self.toasts.add(now.window_s, Level::Caution, why);
+            }
+            Some(why) => self.view.notice = Some(why),
+            None => {}
+        }
     }
 
     pub(super) fn file_event(&mut self, event: FileEvent, now_s: f64) {

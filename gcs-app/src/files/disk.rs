@@ -1,5 +1,6 @@
-//! Where files that are opened are read from: the machine's disk, or in tests a slow one.
+//! Where files are read and written: the machine's disk, or in tests a slow or a full one.
 
+use super::saving::{Stamp, write_whole};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -17,6 +18,14 @@ pub trait Disk: Send + Sync {
     /// # Errors
     /// It can't be opened.
     fn open(&self, path: &Path) -> io::Result<Box<dyn Read>>;
+
+    /// Writes all of a file in the place of what is there, or nothing; gives its state then.
+    ///
+    /// # Errors
+    /// It can't be written: what was there is as it was.
+    fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<Option<Stamp>> {
+        write_whole(path, bytes)
+    }
 }
 
 /// The machine's own.

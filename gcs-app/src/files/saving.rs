@@ -1,6 +1,6 @@
 //! Writing files: whole or not at all, and over nothing that nobody knows of.
 
-use super::FileEvent;
+use super::{Disk, FileEvent};
 use flight_plan::FlightPlan;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, Metadata};
@@ -54,8 +54,8 @@ pub struct Writing {
     pub over: Over,
 }
 
-pub(super) fn save(path: PathBuf, writing: &Writing) -> FileEvent {
-    save_by(path, writing, write_whole)
+pub(super) fn save(path: PathBuf, writing: &Writing, disk: &dyn Disk) -> FileEvent {
+    save_by(path, writing, |path, bytes| disk.write(path, bytes))
 }
 
 fn save_by(
@@ -81,11 +81,11 @@ fn save_by(
 }
 
 /// Writes what another program is to read; the sentence says why that can't be.
-pub(super) fn export(path: &Path, bytes: &[u8], over: Over) -> Result<(), String> {
+pub(super) fn export(path: &Path, bytes: &[u8], over: Over, disk: &dyn Disk) -> Result<(), String> {
     if over == Over::Nothing && path.exists() {
         return Err(is_there(path));
     }
-    write_whole(path, bytes).map(drop).map_err(|error| not_saved(path, &error))
+    disk.write(path, bytes).map(drop).map_err(|error| not_saved(path, &error))
 }
 
 fn is_there(path: &Path) -> String {
@@ -93,7 +93,16 @@ fn is_there(path: &Path) -> String {
 }
 
 fn not_saved(path: &Path, error: &std::io::Error) -> String {
-    format!("{} was not saved: {error}. Save it elsewhere.", path.display())
+    let what_to_do = match error.kind() {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+            "the disk is full. Make room there and save again, or save it elsewhere."
+        }
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            "nothing may be written in this folder. Save it elsewhere."
+        }
+        _ => return format!("{} was not saved: {error}. Save it elsewhere.", path.display()),
+    };
+    format!("{} was not saved: {what_to_do}", path.display())
 }
 
 /// The plan in the words of the text that it comes from; without one, in those of its file that it takes the place of.
@@ -204,6 +213,7 @@ fn new_file_in(folder: &Path) -> std::io::Result<(PathBuf, File)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::disk::Machine;
 
     fn writing(name: &str, version: u64) -> Writing {
         let plan = FlightPlan { name: name.into(), ..FlightPlan::default() };
@@ -223,8 +233,11 @@ mod tests {
     fn saving_is_all_or_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("plan.xml");
-        assert!(matches!(save(path.clone(), &writing("one", 1)), FileEvent::Saved { version: 1, .. }));
-        assert!(matches!(save(path.clone(), &writing("two", 2)), FileEvent::Saved { .. }));
+        assert!(matches!(
+            save(path.clone(), &writing("one", 1), &Machine),
+            FileEvent::Saved { version: 1, .. }
+        ));
+        assert!(matches!(save(path.clone(), &writing("two", 2), &Machine), FileEvent::Saved { .. }));
         assert_eq!(name_in(&path), "two");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
     }
@@ -233,7 +246,7 @@ mod tests {
     fn folder_that_vanished_is_named_and_not_made() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("missing").join("plan.xml");
-        let why = why(save(path.clone(), &writing("x", 3)));
+        let why = why(save(path.clone(), &writing("x", 3), &Machine));
         assert!(why.contains("missing") && why.contains("Save it elsewhere"), "{why}");
         assert!(!path.parent().unwrap().exists());
     }
@@ -241,21 +254,21 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn full_disk_is_told() {
-        let why = why(save("/dev/full".into(), &writing("x", 1)));
-        assert!(why.contains("/dev/full was not saved") && why.contains("space"), "{why}");
+        let why = why(save("/dev/full".into(), &writing("x", 1), &Machine));
+        assert!(why.contains("/dev/full was not saved: the disk is full"), "{why}");
     }
 
     #[test]
     fn a_disk_that_fills_up_while_saving_leaves_the_old_file_whole() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("plan.xml");
-        assert!(matches!(save(path.clone(), &writing("old", 1)), FileEvent::Saved { .. }));
+        assert!(matches!(save(path.clone(), &writing("old", 1), &Machine), FileEvent::Saved { .. }));
         let half = |file: &mut File| -> std::io::Result<()> {
             file.write_all(b"<flightPlan name='new")?;
             Err(ErrorKind::StorageFull.into())
         };
         let why = why(save_by(path.clone(), &writing("new", 2), |path, _| replace(path, half)));
-        assert!(why.contains("plan.xml was not saved") && why.contains("Save it elsewhere"), "{why}");
+        assert!(why.contains("plan.xml was not saved") && why.contains("save it elsewhere"), "{why}");
         assert_eq!(name_in(&path), "old");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
     }
@@ -266,7 +279,7 @@ mod tests {
         let path = folder.path().join("plan.xml");
         std::fs::create_dir(&path).unwrap();
         std::fs::write(path.join("inside"), "old").unwrap();
-        let why = why(save(path.clone(), &writing("new", 2)));
+        let why = why(save(path.clone(), &writing("new", 2), &Machine));
         assert!(why.contains("plan.xml was not saved"), "{why}");
         assert_eq!(std::fs::read_to_string(path.join("inside")).unwrap(), "old");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
@@ -294,7 +307,7 @@ mod tests {
             for version in 0..8 {
                 let path = path.clone();
                 scope.spawn(move || {
-                    let saved = save(path, &writing(&"x".repeat(100_000), version));
+                    let saved = save(path, &writing(&"x".repeat(100_000), version), &Machine);
                     assert!(matches!(saved, FileEvent::Saved { .. }), "{saved:?}");
                 });
             }
@@ -307,7 +320,9 @@ mod tests {
     fn stamp_is_that_of_what_was_written() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("plan.xml");
-        let FileEvent::Saved { stamp, .. } = save(path.clone(), &writing("ours", 1)) else { panic!() };
+        let FileEvent::Saved { stamp, .. } = save(path.clone(), &writing("ours", 1), &Machine) else {
+            panic!()
+        };
         assert!(stamp.is_some() && stamp == Stamp::of(&path));
     }
 
@@ -317,11 +332,15 @@ mod tests {
         let path = folder.path().join("plan.xml");
         let text = "<flightPlan xmlns='urn:legwork:flight-plan:1' aircraft='t'><!-- mine --></flightPlan>";
         let from_text = Writing { original: Some(text.into()), ..writing("new", 1) };
-        let FileEvent::Saved { text: written, stamp, .. } = save(path.clone(), &from_text) else { panic!() };
+        let FileEvent::Saved { text: written, stamp, .. } = save(path.clone(), &from_text, &Machine) else {
+            panic!()
+        };
         assert!(written.contains("<!-- mine -->") && name_in(&path) == "new", "{written}");
         // a recovered plan has no text
         let recovered = Writing { over: Over::As(stamp.unwrap()), ..writing("newer", 2) };
-        let FileEvent::Saved { text: written, .. } = save(path.clone(), &recovered) else { panic!() };
+        let FileEvent::Saved { text: written, .. } = save(path.clone(), &recovered, &Machine) else {
+            panic!()
+        };
         assert!(written.contains("<!-- mine -->") && name_in(&path) == "newer", "{written}");
     }
 
@@ -329,17 +348,22 @@ mod tests {
     fn what_another_program_wrote_is_not_overwritten() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("plan.xml");
-        let FileEvent::Saved { stamp, .. } = save(path.clone(), &writing("ours", 1)) else { panic!() };
+        let FileEvent::Saved { stamp, .. } = save(path.clone(), &writing("ours", 1), &Machine) else {
+            panic!()
+        };
         let next = Writing { over: Over::As(stamp.unwrap()), ..writing("ours again", 2) };
         std::fs::write(&path, "their words").unwrap();
-        assert!(matches!(save(path.clone(), &next), FileEvent::ChangedMeanwhile { document: 1, .. }));
+        assert!(matches!(
+            save(path.clone(), &next, &Machine),
+            FileEvent::ChangedMeanwhile { document: 1, .. }
+        ));
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "their words");
         let new = Writing { over: Over::Nothing, ..next.clone() };
-        assert!(why(save(path.clone(), &new)).contains("is there already"));
+        assert!(why(save(path.clone(), &new, &Machine)).contains("is there already"));
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "their words");
         std::fs::remove_file(&path).unwrap();
-        assert!(matches!(save(path.clone(), &new), FileEvent::Saved { .. }));
+        assert!(matches!(save(path.clone(), &new, &Machine), FileEvent::Saved { .. }));
         std::fs::remove_file(&path).unwrap();
-        assert!(matches!(save(path, &next), FileEvent::Saved { .. }), "nothing is lost");
+        assert!(matches!(save(path, &next, &Machine), FileEvent::Saved { .. }), "nothing is lost");
     }
 }

@@ -23,6 +23,7 @@ mod flown;
 mod flying;
 mod focusing;
 mod following;
+mod full;
 mod gestures;
 mod guarding;
 mod handles;

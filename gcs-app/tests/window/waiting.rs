@@ -285,7 +285,7 @@ fn frames_and_edits_go_on_while_the_disk_is_slow() {
         window.steps(3);
         let thread = std::thread::current().id();
         let slow = Slow { window: thread, gate: gate.clone(), reads: reads.clone() };
-        window.harness.state_mut().read_from(Arc::new(slow));
+        window.harness.state_mut().use_disk(Arc::new(slow));
         drop_file(&mut window, &path);
         window.until("a read", |_| reads.load(Ordering::SeqCst) > 0);
         // none of these frames can wait for the disk: it does not answer before they are over
