@@ -1,12 +1,13 @@
 //! An emergency plan that is being flown: what, why, where to, and the way back to the main plan.
 
+use super::field::List;
 use super::{Scene, answer, ended, field, flight, in_force, other_end, profile, reach};
 use crate::command::Queue;
 use crate::state::{Unanswered, is_safe};
 use crate::theme;
 use crate::units;
 use egui::text::LayoutJob;
-use egui::{Align, Button, Color32, ComboBox, FontId, Frame, Label, Layout, Margin, Panel, TextStyle, Ui};
+use egui::{Align, Button, Color32, FontId, Frame, Label, Layout, Margin, Panel, TextStyle, Ui};
 use flight_exec::{Command, Phase};
 use flight_plan::{Cause, EmergencyPlan, FlightPlan, Id, Section};
 use geometry::LatLon;
@@ -317,16 +318,19 @@ fn way_back(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let Some(leg) = chosen.filter(|leg| main.contains(&leg)).or_else(|| way_back_to(scene)) else { return };
     // a long name leaves the sentence its room
     let most = ui.available_width() * WAY_BACK;
-    let combo = ComboBox::from_id_salt("way back").selected_text("another leg").width(96.0);
-    let shown = combo.show_ui(ui, |ui| {
-        for other in main {
-            if ui.selectable_label(*other == leg, scene.vehicle.name_of(other)).clicked() {
-                ui.data_mut(|d| d.insert_temp(id, other.clone()));
-            }
-        }
-    });
-    let taken = shown.response.rect.width();
-    shown.response.on_hover_text("Return to the main plan at another leg");
+    let names = || main.iter().map(|other| scene.vehicle.name_of(other)).collect();
+    let list = List {
+        salt: "way back list",
+        name: "another leg",
+        shown: "another leg",
+        look: |combo| combo.width(96.0),
+    };
+    let (taken, button) = list.show::<String>(ui, main.iter().position(|other| **other == leg), names);
+    if let Some(other) = taken.and_then(|taken| main.get(taken)) {
+        ui.data_mut(|d| d.insert_temp(id, (*other).clone()));
+    }
+    let taken = button.rect.width();
+    button.on_hover_text("Return to the main plan at another leg");
     let text = format!("Return to the main plan at {}", scene.vehicle.name_of(&leg));
     let back = ui.scope(|ui| {
         ui.set_max_width(most - taken);

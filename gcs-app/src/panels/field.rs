@@ -4,6 +4,7 @@ mod hold;
 mod list;
 
 pub use hold::{HOLD_HEIGHT, held_already, hold_button};
+pub use list::{About, List};
 
 use crate::theme;
 use crate::units::Unit;
@@ -223,7 +224,8 @@ pub fn choice(ui: &mut Ui, name: &str, options: &[&str], now: Option<usize>) -> 
     let button = ui.make_persistent_id(IdSalt::new(("choice", name)));
     let width = (ui.available_width() - 8.0).clamp(40.0, 170.0);
     let combo = egui::ComboBox::from_id_salt(("choice", name)).width(width).truncate().selected_text(shown);
-    let response = combo.show_ui(ui, |ui| list::show(ui, button, options, now));
+    let options: Vec<About<'_>> = options.iter().map(|option| (*option, "")).collect();
+    let response = combo.show_ui(ui, |ui| list::show(ui, button, &options, now));
     let chosen = response.inner.flatten().filter(|chosen| now != Some(*chosen));
     let (name, enabled) = (name.to_owned(), ui.is_enabled());
     response.response.on_hover_text(shown).widget_info(move || {

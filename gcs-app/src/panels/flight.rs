@@ -429,16 +429,18 @@ fn choose_emergency(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let button: HoldButton = if flown.is_some() { field::held_already } else { field::hold_button };
     hold_or_why(ui, (&text, p.warning, EMERGENCY), command, queue, button);
     if plans.len() > 1 {
-        let combo = egui::ComboBox::from_id_salt("alternate").width(0.0).selected_text("");
         // which one is chosen stands in the button before it
-        let shown = combo.show_ui(ui, |ui| {
-            ui.selectable_value(&mut chosen, None, "In force here");
-            for plan in plans {
-                let label = label(scene, plan);
-                ui.selectable_value(&mut chosen, Some(plan.id.clone()), label);
-            }
-        });
-        shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Alternate"));
+        let ids: Vec<Option<Id>> =
+            std::iter::once(None).chain(plans.iter().map(|plan| Some(plan.id.clone()))).collect();
+        let labels =
+            || std::iter::once("In force here".into()).chain(plans.iter().map(|plan| label(scene, plan)));
+        let list =
+            field::List { salt: "alternate", name: "Alternate", shown: "", look: |combo| combo.width(0.0) };
+        let (taken, _) =
+            list.show(ui, ids.iter().position(|id| *id == chosen), || labels().collect::<Vec<String>>());
+        if let Some(id) = taken.and_then(|taken| ids.get(taken)) {
+            chosen.clone_from(id);
+        }
         ui.data_mut(|d| d.insert_temp(id, chosen));
     }
 }

@@ -2,6 +2,7 @@
 //! stay in reach while the operator reads.
 
 use super::bar::PUSH;
+use super::field::List;
 use super::{Scene, answer, problems};
 use crate::command::{FlyCommand, Queue};
 use crate::state::{LOOK_AGAIN, Proposal, log::short_hash};
@@ -265,16 +266,19 @@ fn entry(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue)
     ui.vertical(|ui| {
         ui.label("The leg it is on is gone. Enter at:");
         let current = proposal.entry.as_ref().map_or("choose a leg", |leg| scene.document.label(leg));
-        egui::ComboBox::from_id_salt("entry").selected_text(current).show_ui(ui, |ui| {
-            for leg in entries(scene) {
-                let way = proposal.report.entries.iter().find(|entry| entry.leg == *leg);
-                let name = scene.document.label(leg);
-                let text = format!("{name}{}", in_so_far(way.map(|e| (e.in_m, e.in_s)), scene.units()));
-                if ui.selectable_label(proposal.entry.as_ref() == Some(leg), text).clicked() {
-                    queue.fly(FlyCommand::EnterAt(leg.clone()));
-                }
-            }
-        });
+        let legs: Vec<&Id> = entries(scene).collect();
+        let text = |leg: &&Id| {
+            let way = proposal.report.entries.iter().find(|entry| entry.leg == **leg);
+            let so_far = in_so_far(way.map(|e| (e.in_m, e.in_s)), scene.units());
+            format!("{}{so_far}", scene.document.label(leg))
+        };
+        let now = legs.iter().position(|leg| proposal.entry.as_ref() == Some(*leg));
+        let list = List { salt: "entry", name: current, shown: current, look: |combo| combo };
+        if let Some(leg) =
+            list.show(ui, now, || legs.iter().map(text).collect()).0.and_then(|taken| legs.get(taken))
+        {
+            queue.fly(FlyCommand::EnterAt((*leg).clone()));
+        }
     });
 }
 

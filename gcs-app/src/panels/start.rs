@@ -3,6 +3,7 @@
 mod airfield;
 mod place;
 
+use super::field::List;
 use super::{Scene, field, primary_button};
 use crate::airfields::Ground;
 use crate::command::{DocumentCommand, Queue, Replacement, ViewCommand};
@@ -15,8 +16,8 @@ use crate::units::{Unit, Units};
 use aircraft::Profile;
 use egui::text::LayoutJob;
 use egui::{
-    Align2, Color32, ComboBox, DragValue, Label, Painter, Pos2, Rect, RichText, Role, ScrollArea, Shape,
-    Stroke, TextStyle, Ui, WidgetInfo, vec2,
+    Align2, Color32, DragValue, Label, Painter, Pos2, Rect, RichText, Role, ScrollArea, Shape, Stroke,
+    TextStyle, Ui, WidgetInfo, vec2,
 };
 use flight_plan::template::{Extent, Outline, Survey, Template, USUAL_ACROSS_DEG};
 use geometry::LatLon;
@@ -302,13 +303,14 @@ fn draw_button(ui: &mut Ui, name: &str, drawing: Drawing, guide: &mut Guide) {
 fn aircraft(ui: &mut Ui, guide: &mut Guide) {
     field::row(ui, "Aircraft", |ui| {
         let shown = guide.aircraft.clone();
-        let list = ComboBox::from_id_salt("aircraft").selected_text(&shown).show_ui(ui, |ui| {
-            for name in Profile::names() {
-                ui.selectable_value(&mut guide.aircraft, name.to_owned(), name);
-            }
-        });
+        let names = Profile::names();
+        let now = names.iter().position(|name| *name == shown);
         let name = format!("Aircraft: {shown}");
-        list.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, &name));
+        let list = List { salt: "aircraft", name: &name, shown: &shown, look: |combo| combo };
+        let (taken, _) = list.show(ui, now, || names.clone());
+        if let Some(name) = taken.and_then(|taken| names.get(taken)) {
+            guide.aircraft = (*name).to_owned();
+        }
     });
 }
 

@@ -1,5 +1,6 @@
 //! The preview's timeline: play and pause, what the preview comes to, and a strip with its stages along which the cursor is moved.
 
+use super::field::List;
 use super::{Scene, what_if};
 use crate::command::{PreviewCommand, Queue, ViewCommand};
 use crate::forecast::Forecast;
@@ -83,18 +84,16 @@ fn sum(scene: &Scene<'_>) -> String {
 
 fn speed(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let now = scene.view.speed.0;
-    let combo = egui::ComboBox::from_id_salt("play speed").width(58.0).selected_text(format!("{now:.0}×"));
-    let shown = combo.show_ui(ui, |ui| {
-        for speed in SPEEDS {
-            if ui.selectable_label(now == speed, format!("{speed:.0}×")).clicked() {
-                queue.preview(PreviewCommand::Speed(speed));
-            }
-        }
+    let shown = format!("{now:.0}×");
+    let name = format!("Play speed: {shown}");
+    let list = List { salt: "play speed", name: &name, shown: &shown, look: |combo| combo.width(58.0) };
+    let (taken, button) = list.show(ui, SPEEDS.iter().position(|speed| *speed == now), || {
+        SPEEDS.map(|speed| format!("{speed:.0}×")).to_vec()
     });
-    shown.response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::ComboBox, true, format!("Play speed: {now:.0}×"))
-    });
-    shown.response.on_hover_text("How many times as fast as the flight the cursor runs");
+    if let Some(speed) = taken.and_then(|taken| SPEEDS.get(taken)) {
+        queue.preview(PreviewCommand::Speed(*speed));
+    }
+    button.on_hover_text("How many times as fast as the flight the cursor runs");
 }
 
 /// Height of the strip, screen points.

@@ -34,6 +34,7 @@ mod large;
 mod lasting;
 mod levels;
 mod lines;
+mod listing;
 mod looks;
 mod maps;
 mod naming;

@@ -4,8 +4,9 @@ use super::Canvas;
 use crate::command::{Queue, Selection, ViewCommand};
 use crate::map::sketch::{Handle, Handled};
 use crate::panels::Scene;
+use crate::panels::field::{About, List};
 use aircraft::Profile;
-use egui::{ComboBox, Response, Role, Ui, WidgetInfo};
+use egui::Ui;
 use flight_plan::create::{self, Approach, Drawn, LegChoice, Shape, Way};
 use flight_plan::{
     Altitude, FlightPlan, Id, Leg, LegContext, LegKind, Place, Section, Spot, StageKind, TurnDirection, Value,
@@ -199,29 +200,30 @@ pub fn choose_side(ui: &mut Ui, scene: &Scene<'_>, side: &mut Side, aim: AimOf) 
     let Some(leg) = plan.any_leg(id) else { return };
     let named_by = |side: &Side| aim(scene, side).map_or_else(String::new, |aim| words(&aim, plan));
     let shown = named_by(side);
-    let choice = ComboBox::from_id_salt("side").selected_text(&shown).show_ui(ui, |ui| {
-        for other in Side::of(leg) {
-            let name = named_by(&other);
-            ui.selectable_value(side, other, name);
-        }
+    let sides: Vec<Side> = Side::of(leg).into_iter().collect();
+    let name = format!("Where: {shown}");
+    let list = List { salt: "side", name: &name, shown: &shown, look: |combo| combo };
+    let (taken, _) = list.show(ui, sides.iter().position(|other| other == side), || {
+        sides.iter().map(named_by).collect::<Vec<_>>()
     });
-    named(&choice.response, format!("Where: {shown}"));
+    if let Some(taken) = taken.and_then(|taken| sides.into_iter().nth(taken)) {
+        *side = taken;
+    }
 }
 
 /// Lets a kind of leg be chosen.
 pub fn choose_kind(ui: &mut Ui, choices: impl Iterator<Item = LegChoice>, choice: &mut LegChoice) {
     let shown = choice.name();
-    let list = ComboBox::from_id_salt("kind").height(LIST).selected_text(&shown).show_ui(ui, |ui| {
-        for other in choices {
-            ui.selectable_value(choice, other, other.name()).on_hover_text(other.about());
-        }
-    });
-    named(&list.response, format!("Kind: {shown}"));
-}
-
-/// A name for those who can't see what a list is of.
-fn named(response: &Response, name: String) {
-    response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, &name));
+    let choices: Vec<LegChoice> = choices.collect();
+    let texts: Vec<(String, String)> =
+        choices.iter().map(|other| (other.name().to_string(), other.about().to_string())).collect();
+    let texts: Vec<About<'_>> = texts.iter().map(|(name, about)| (name.as_str(), about.as_str())).collect();
+    let name = format!("Kind: {shown}");
+    let list = List { salt: "kind", name: &name, shown: &shown, look: |combo| combo.height(LIST) };
+    let (taken, _) = list.show_with_help(ui, choices.iter().position(|other| other == choice), &texts);
+    if let Some(taken) = taken.and_then(|taken| choices.get(taken)) {
+        *choice = *taken;
+    }
 }
 
 /// Puts what was drawn into the plan as a leg, and selects it; says why if that can't be.

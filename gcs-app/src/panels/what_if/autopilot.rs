@@ -1,8 +1,9 @@
 //! Whose habits the preview is flown with.
 
 use crate::panels::Scene;
+use crate::panels::field::List;
 use aircraft::Autopilot;
-use egui::{ComboBox, Role, Ui, WidgetInfo};
+use egui::Ui;
 use flight_exec::rehearse::WhatIf;
 
 /// Those that can be chosen.
@@ -23,13 +24,22 @@ pub fn show(ui: &mut Ui, scene: &Scene<'_>, chosen: &mut WhatIf) {
         None => "any: close to the lines".to_owned(),
     };
     let shown = chosen.autopilot.map_or(of_itself.as_str(), |chosen| name(chosen));
-    let list = ComboBox::from_label("Autopilot").selected_text(shown).show_ui(ui, |ui| {
-        ui.selectable_value(&mut chosen.autopilot, None, &of_itself);
-        for known in KNOWN {
-            ui.selectable_value(&mut chosen.autopilot, Some(known), name(known));
-        }
-    });
+    let all: Vec<Option<Autopilot>> = std::iter::once(None).chain(KNOWN.map(Some)).collect();
+    let options =
+        || all.iter().map(|autopilot| autopilot.map_or(of_itself.as_str(), |known| name(known))).collect();
+    let now = all.iter().position(|autopilot| *autopilot == chosen.autopilot);
+    let told = format!("Autopilot: {shown}");
+    let list = List { salt: "autopilot", name: &told, shown, look: |combo| combo };
+    let (taken, button) = ui
+        .horizontal(|ui| {
+            let list = list.show::<&str>(ui, now, options);
+            ui.label("Autopilot");
+            list
+        })
+        .inner;
+    if let Some(autopilot) = taken.and_then(|taken| all.get(taken)) {
+        chosen.autopilot = *autopilot;
+    }
     let about = "Autopilots turn at different places and hold their speeds differently: the path is flown as this one does";
-    let response = list.response.on_hover_text(about);
-    response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, format!("Autopilot: {shown}")));
+    button.on_hover_text(about);
 }
