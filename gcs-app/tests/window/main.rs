@@ -64,6 +64,7 @@ mod store;
 mod table;
 mod tasks;
 mod telling;
+mod telling_whole;
 mod together;
 mod tools;
 mod tree;
