@@ -13,6 +13,7 @@ mod comparing;
 mod connecting;
 mod considering;
 mod creating;
+mod crossing;
 mod dock;
 mod drawing;
 mod emergency;

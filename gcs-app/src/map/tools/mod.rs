@@ -7,6 +7,7 @@
 mod bands;
 mod besides;
 mod corner;
+mod crossing;
 mod draw_leg;
 mod emergency;
 mod group;

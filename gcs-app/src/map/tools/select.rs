@@ -3,6 +3,7 @@
 
 use super::bands;
 use super::corner::{corner_of, remove_corner};
+use super::crossing;
 use super::group::{Group, within};
 use super::handles::{draw, draw_labels, label, value};
 use super::pen::{Mark, way};
@@ -272,6 +273,7 @@ impl Tool for Select {
             labels.extend(value(handle, at, canvas).filter(|_| hot));
         }
         draw_labels(painter, labels, canvas, p);
+        crossing::paint(painter, canvas, self.dragged.as_ref().map(|mark| canvas.view.place(mark.at)), p);
         if let Some(handle) = touch.dragged.and_then(|key| canvas.sketch.handles.get(key)) {
             self.paint_drag(painter, handle, canvas, p);
         }
