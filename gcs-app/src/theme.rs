@@ -110,6 +110,15 @@ impl Scale {
     pub fn new(scale: f32) -> Option<Self> {
         (0.5..=3.0).contains(&scale).then_some(Self(scale))
     }
+    /// That a window has no room for all scales, or for this one, where it has room for `most`; `None`: it has for each.
+    pub fn told_in(self, most: f32) -> Option<String> {
+        let percent = |scale: f32| format!("{:.0} %", scale * 100.0);
+        if self.0 > most {
+            let (chosen, shown) = (percent(self.0), percent(most));
+            return Some(format!("{chosen} does not fit this window: shown at {shown} until it is larger"));
+        }
+        (most < 3.0).then(|| format!("This window has room for {} at most", percent(most)))
+    }
     /// As a number.
     pub fn get(self) -> f32 {
         self.0

@@ -211,6 +211,10 @@ impl App {
     pub fn vehicle(&self) -> &Vehicle {
         self.vehicles.shown()
     }
+    /// Everything is so large from now on, as when it is chosen in the menu.
+    pub fn scale_to(&mut self, scale: theme::Scale) {
+        self.view.scale = scale;
+    }
     /// What the operator looks at.
     pub fn view(&self) -> &ViewState {
         &self.view

@@ -69,7 +69,13 @@ fn menus(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue)
             submenu(ui, "Export", &actions, &[Group::Export], queue);
             recent_menu(ui, scene, queue);
             ui.separator();
-            submenu(ui, "View", &actions, &[Group::View, Group::Size], queue);
+            ui.menu_button("View", |ui| {
+                section(ui, &actions, &[Group::View, Group::Size], queue);
+                let room = scene.view.most_scale.and_then(|most| scene.view.scale.told_in(most));
+                if let Some(room) = room {
+                    ui.label(RichText::new(room).color(theme::of(ui).weak));
+                }
+            });
             submenu(ui, "Panels", &actions, &[Group::Panel], queue);
             submenu(ui, "What if", &actions, &[Group::WhatIf], queue);
             submenu(ui, "Maps", &actions, &[Group::Maps], queue);

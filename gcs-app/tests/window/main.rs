@@ -57,6 +57,7 @@ mod recreating;
 mod reordering;
 mod replacing;
 mod runways;
+mod scales;
 mod sheets;
 mod small;
 mod starting;

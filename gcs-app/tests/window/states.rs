@@ -103,7 +103,9 @@ pub fn placed(widgets: &[Widget]) -> Vec<&Widget> {
 
 /// Only what is scrolled may be cut off.
 fn cut_off(widgets: &[Widget], screen: Rect) -> Vec<String> {
-    let cut = placed(widgets).into_iter().filter(|w| {
+    // less than a point of a row below the fold is not to be read
+    let seen = placed(widgets).into_iter().filter(|w| w.seen.height() >= 1.0);
+    let cut = seen.filter(|w| {
         let sideways = w.rect.left() < w.seen.left() - 1.0 || w.rect.right() > w.seen.right() + 1.0;
         (sideways && !scrolls_sideways(widgets, w.seen)) || !screen.expand(0.5).contains_rect(w.seen)
     });
@@ -183,6 +185,8 @@ fn unexplained(window: &Window, widgets: &[Widget]) -> Vec<String> {
         .collect();
     let buttons =
         placed(widgets).into_iter().filter(|w| w.interactive && w.enabled && w.role == Role::Button);
+    // one of which less than a half is above the fold has its word below
+    let buttons = buttons.filter(|w| 2.0 * w.seen.height() > w.rect.height());
     let wordless = buttons.filter(|w| !words.iter().any(|rect| w.seen.contains(rect.center())));
     let silent =
         wordless.filter(|w| !w.has_tooltip && !is_mark(widgets, w) && !OF_EGUI.contains(&w.name.as_str()));
