@@ -10,6 +10,7 @@ use crate::units;
 use egui::{Align, Color32, Layout, RichText, Ui, UiBuilder};
 use flight_exec::Phase;
 use flight_plan::Problem;
+use usal::contract::GatewayStatus;
 
 /// Draws the bar.
 pub fn show(ui: &mut Ui, scene: &Scene<'_>, fittings: &Fittings, queue: &mut Queue) {
@@ -182,11 +183,18 @@ fn state(ui: &mut Ui, scene: &Scene<'_>) {
     let text = RichText::new(format!("{:?} · {} · {armed}", v.state, v.autopilot_mode));
     let is_old = gateway.is_expired(scene.now_s) || scene.vehicle.autopilot_silence_s(scene.now_s).is_some();
     let text = if is_old { text.color(p.weak).strikethrough() } else { text.color(p.good) };
-    let hover = format!("{}\nAutopilot heard {} ago", v.cause, units::age(v.autopilot_age_s));
-    ui.label(text).on_hover_text(hover);
+    ui.label(text).on_hover_text(told_of(v));
     if let Some(seconds) = v.safe_return_in_s {
         ui.label(RichText::new(format!("⚠ flies home in {}", units::duration(seconds))).color(p.caution));
     }
+}
+
+/// Why it does that, and which autopilot it is.
+fn told_of(v: &GatewayStatus) -> String {
+    let name = v.autopilot.as_ref().map_or("Autopilot", |kind| &kind.name);
+    let version = v.autopilot.as_ref().and_then(|kind| kind.version.as_ref());
+    let version = version.map(|version| format!(" {version}")).unwrap_or_default();
+    format!("{}\n{name}{version}, heard {} ago", v.cause, units::age(v.autopilot_age_s))
 }
 
 /// Where the document stands: edited, proposed, aboard or active, and its hash.
@@ -305,3 +313,20 @@ fn objection(scene: &Scene<'_>) -> Option<String> {
 
 /// What the log calls a proposal.
 pub const PUSH: &str = "Propose plan";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn which_autopilot_it_is_stands_where_its_mode_is_explained() {
+        let status = |autopilot: &str| -> GatewayStatus {
+            let rest = r#""state":"nav","cause":"flying waypoints","armed":true,"autopilot_mode":"AUTO","autopilot_age_s":0.2,
+                "fp_manager_age_s":null,"safe_return_in_s":null,"alarms":[]"#;
+            serde_json::from_str(&format!("{{{rest},\"autopilot\":{autopilot}}}")).unwrap()
+        };
+        let known = status(r#"{"name":"ArduPlane","version":"4.7.0-dev"}"#);
+        assert!(told_of(&known).starts_with("flying waypoints\nArduPlane 4.7.0-dev, heard "));
+        assert!(told_of(&status("null")).contains("\nAutopilot, heard "));
+    }
+}

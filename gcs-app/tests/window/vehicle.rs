@@ -126,7 +126,7 @@ impl Window {
             name: name.into(),
             habits: Some(habits.into()),
             landing_deg: None,
-            version: None,
+            version: Some("4.7.0-dev".into()),
         });
         let value = GatewayStatus { autopilot, ..gateway_status(GatewayState::Stop) };
         self.receive(Telemetry::Gateway(Stamped { time_s: 1.0, validity_s: 2.0, value }.into()));
