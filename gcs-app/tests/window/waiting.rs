@@ -442,13 +442,16 @@ fn the_clock_goes_on_in_a_window_that_nobody_touches() {
     assert!(longest_delay(&window) > Duration::from_secs(60), "nobody sees it");
 }
 
+/// A way to look at the window, and what is done for it.
+type Look = (&'static str, fn(&mut Window));
+
 /// Whoever asks for a frame asks the whole window to be drawn: in one that nobody touches it is the clock alone, at each full minute.
 #[test]
 fn nobody_asks_an_idle_window_for_a_frame() {
     let clock = Duration::from_secs(60 - 1_790_000_000 % 60);
     let mut window = Window::open(super::whatif::FIRE_WATCH);
     window.until_analysed();
-    let looks: [(&str, fn(&mut Window)); 6] = [
+    let looks: [Look; 6] = [
         ("settled", |_| ()),
         ("a leg is selected", |w| w.select_row(("TF To the gap", 0))),
         ("the table", |w| super::fleet::tab(w, "Table")),
