@@ -4,11 +4,17 @@
 use super::Inspection;
 use super::step::Step;
 use crate::expression::{ExpressionError, Type};
-use crate::{Edit, Id, Problem, Thing, Use, Variable, VariableValue};
+use crate::xml::shown;
+use crate::{Edit, Id, Problem, Thing, Use, Value, Variable, VariableValue, unread_number};
+use std::sync::Arc;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
-        stage.for_each_expression(&mut |source, used| one(view, source, used, &stage.id, problems));
+        let numbers =
+            [("altitude", stage.altitude.as_ref().map(|a| &a.metres)), ("speed", stage.speed_mps.as_ref())];
+        stage.for_each_expression(&mut |source, used| {
+            one(view, source, used, (&stage.id, &|| name_of(source, &numbers)), problems);
+        });
     }
 }
 
@@ -16,11 +22,31 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     if step.marks.expressions {
         let leg = &step.leg;
-        leg.for_each_expression(&mut |source, used| one(view, source, used, &leg.id, problems));
+        leg.for_each_expression(&mut |source, used| {
+            one(view, source, used, (&leg.id, &|| name_of(source, &leg.numbers())), problems);
+        });
     }
 }
 
-fn one(view: &Inspection, source: &std::sync::Arc<str>, used: Use, of: &Id, problems: &mut Vec<Problem>) {
+/// The attribute that an expression stands in; `None`: it is of an action.
+fn name_of(source: &Arc<str>, numbers: &[(&'static str, Option<&Value<f64>>)]) -> Option<&'static str> {
+    let is_it = |value: &Value<f64>| matches!(value, Value::Expression(other) if Arc::ptr_eq(source, other));
+    numbers.iter().find(|(_, value)| value.is_some_and(is_it)).map(|(name, _)| *name)
+}
+
+/// `named`: what its attribute is called.
+fn one(
+    view: &Inspection,
+    source: &Arc<str>,
+    used: Use,
+    (of, named): (&Id, &dyn Fn() -> Option<&'static str>),
+    problems: &mut Vec<Problem>,
+) {
+    if let Some(text) = unread_number(source).filter(|_| used == Use::Number) {
+        let name = named().map_or_else(|| "this".into(), |name| format!("`{name}`"));
+        let message = format!("{name} must be a number, not \"{}\": type one", shown(&text));
+        return problems.push(Problem::error("bad-value", message).of(of));
+    }
     let wanted = match used {
         Use::Number => Some(Type::Number),
         Use::Condition => Some(Type::Bool),

@@ -5,7 +5,7 @@ use super::Inspection;
 use super::extent::{self, Region};
 use super::step::Step;
 use crate::uses::Part;
-use crate::{Altitude, DecideBefore, Id, LegKind, Place, Problem, Value, VariableValue, ZoneShape};
+use crate::{DecideBefore, Id, Leg, LegKind, Place, Problem, Value, VariableValue, ZoneShape};
 use geometry::{LatLon, geodesy};
 use std::collections::HashSet;
 
@@ -16,9 +16,12 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for runway in &view.plan.runways {
         position(runway.threshold, &runway.id, problems);
         runway.approach_entry.iter().for_each(|p| position(*p, &runway.id, problems));
-        for x in [runway.elevation_amsl_m, runway.heading_deg, runway.length_m] {
-            number(x, &runway.id, problems);
-        }
+        let numbers = [
+            ("elevation", runway.elevation_amsl_m),
+            ("heading", runway.heading_deg),
+            ("length", runway.length_m),
+        ];
+        numbers.iter().for_each(|(name, x)| number(name, *x, &runway.id, problems));
     }
     for variable in &view.plan.variables {
         match &variable.initial {
@@ -34,8 +37,8 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
         }
     }
     for (_, stage) in view.plan.all_stages() {
-        altitude(stage.altitude.as_ref(), &stage.id, problems);
-        value(stage.speed_mps.as_ref(), &stage.id, problems);
+        value("altitude", stage.altitude.as_ref().map(|a| &a.metres), &stage.id, problems);
+        value("speed", stage.speed_mps.as_ref(), &stage.id, problems);
     }
 }
 
@@ -43,7 +46,10 @@ pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
 pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     let leg = &step.leg;
     leg.for_each_part(&mut |part| match part {
-        Part::Number(x) => value(Some(x), &leg.id, problems),
+        Part::Number(x @ Value::Constant(constant)) if !constant.is_finite() => {
+            number(name_of(leg, x), *constant, &leg.id, problems);
+        }
+        Part::Number(_) => {}
         Part::Place(Place::Position(Value::Constant(p))) => position(*p, &leg.id, problems),
         Part::Corner(p) => position(p, &leg.id, problems),
         Part::Place(Place::Position(computed)) => {
@@ -59,23 +65,27 @@ pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
         decide_before: DecideBefore::Time(x) | DecideBefore::Distance(x), ..
     } = &leg.kind
     {
-        number(*x, &leg.id, problems);
+        number("decideBefore", *x, &leg.id, problems);
     }
 }
 
-fn altitude(altitude: Option<&Altitude>, of: &Id, problems: &mut Vec<Problem>) {
-    value(altitude.map(|a| &a.metres), of, problems);
+/// The attribute of a number of the leg itself; one of an action has none here.
+fn name_of(leg: &Leg, number: &Value<f64>) -> &'static str {
+    let is_it = |value: &Value<f64>| std::ptr::eq(value, number);
+    let mut numbers = leg.numbers().into_iter();
+    numbers.find(|(_, value)| value.is_some_and(is_it)).map_or("action", |(name, _)| name)
 }
 
-fn value(value: Option<&Value<f64>>, of: &Id, problems: &mut Vec<Problem>) {
+fn value(name: &str, value: Option<&Value<f64>>, of: &Id, problems: &mut Vec<Problem>) {
     if let Some(Value::Constant(x)) = value {
-        number(*x, of, problems);
+        number(name, *x, of, problems);
     }
 }
 
-fn number(x: f64, of: &Id, problems: &mut Vec<Problem>) {
+fn number(name: &str, x: f64, of: &Id, problems: &mut Vec<Problem>) {
     if !x.is_finite() {
-        problems.push(Problem::error("bad-value", "give every number of this a finite value").of(of));
+        let message = format!("give `{name}` a number: it has none that can be read");
+        problems.push(Problem::error("bad-value", message).of(of));
     }
 }
 

@@ -237,7 +237,7 @@ impl<'a> Cursor<'a> {
 }
 
 /// A piece of the document for a message: short, without control characters.
-pub(super) fn shown(text: &str) -> String {
+pub(crate) fn shown(text: &str) -> String {
     const LONGEST: usize = 60;
     let clean = |c: char| if c.is_control() { '\u{fffd}' } else { c };
     let mut shown: String = text.chars().take(LONGEST).map(clean).collect();

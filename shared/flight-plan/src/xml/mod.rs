@@ -16,6 +16,7 @@ mod write;
 mod write_legs;
 mod zone;
 
+pub(crate) use cursor::shown;
 pub use cursor::{MAX_ATTRIBUTES, MAX_BYTES, MAX_DEPTH, MAX_ELEMENTS, MAX_PROBLEMS};
 pub use patch::patch;
 pub use read::{Places, Reading, read};

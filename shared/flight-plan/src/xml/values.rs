@@ -2,7 +2,7 @@
 
 use super::cursor::{Element, shown};
 use super::read::Document;
-use crate::{Id, Problem, Value};
+use crate::{Id, Problem, Value, unread};
 use geometry::LatLon;
 use std::sync::Arc;
 
@@ -99,12 +99,12 @@ impl<'a> Document<'a> {
         self.parsed(element, name, "a whole number", |text| text.parse().ok())
     }
 
-    /// A number or `= expression`; what can't be read is NaN.
+    /// A number or `= expression`; of what can't be read the text is kept.
     pub fn value(&mut self, element: &Element<'a>, name: &str) -> Option<Value<f64>> {
         let wanted = "a finite number, or = and an expression";
         let given = (name, element.attributes.take(name)?.as_ref());
         let value = self.parsed_text(element, given, wanted, |text| value(text, number));
-        Some(value.unwrap_or(Value::Constant(f64::NAN)))
+        Some(value.unwrap_or_else(|| unread::kept(given.1)))
     }
 
     pub fn required_value(&mut self, element: &Element<'a>, name: &str) -> Value<f64> {
