@@ -18,8 +18,8 @@ use crate::figures;
 use crate::uses::SlotMut;
 use crate::{
     Altitude, AltitudeReference, EmergencyChoice, EmergencyPlan, Fix, FlightPlan, Holding, HoldingLength, Id,
-    Leg, LegKind, Place, PlanWaypoint, Runway, Stage, StageKind, TurnDirection, Turnaround, Value,
-    VariableValue,
+    Leg, LegKind, Place, PlanWaypoint, Problem, Runway, Stage, StageKind, TurnDirection, Turnaround, Value,
+    VariableValue, check,
 };
 use aircraft::Profile;
 use frame::Frame;
@@ -114,6 +114,23 @@ impl Outline {
         Frame::new(self, profile, terrain).height_m
     }
 
+    /// The same from the first of some runways whose plan has no errors, of which the ground around may leave only some; as it is, where
+    /// there is none.
+    pub fn flyable(
+        self,
+        runways: impl IntoIterator<Item = Runway>,
+        profile: &Profile,
+        terrain: &dyn Terrain,
+    ) -> Self {
+        let from = |runway| Self { runway, ..self.clone() };
+        let flies = |outline: &Self| {
+            let problems = check(&outline.plan(profile, terrain), profile, terrain);
+            !problems.iter().any(Problem::is_error)
+        };
+        let found = std::iter::once(self.clone()).chain(runways.into_iter().map(from)).find(flies);
+        found.unwrap_or(self)
+    }
+
     /// The plan.
     pub fn plan(&self, profile: &Profile, terrain: &dyn Terrain) -> FlightPlan {
         let frame = Frame::new(self, profile, terrain);
@@ -204,5 +221,53 @@ fn stage(id: &str, name: &str, kind: StageKind) -> Stage {
         speed_mps: None,
         turnaround: Turnaround::default(),
         legs: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Flat ground, and a steep hill.
+    struct Hill(LatLon);
+    impl Terrain for Hill {
+        fn elevation_m(&self, at: LatLon) -> Option<f64> {
+            Some(300.0 + (700.0 - 3.0 * at.distance_m(self.0)).max(0.0))
+        }
+    }
+
+    /// The heading was chosen blindly, and the final of what was made went over a hill.
+    #[test]
+    fn a_plan_is_made_from_the_end_of_the_runway_that_it_can_be_flown_from() {
+        let threshold = LatLon::new(36.3, -84.2);
+        let heading_deg = 52.0;
+        let runway = crate::create::runway(
+            &FlightPlan::default(),
+            threshold,
+            threshold.destination(heading_deg, 600.0),
+            300.0,
+        );
+        // below the hold where the final begins
+        let hill =
+            Hill(threshold.destination(heading_deg + 180.0, 2900.0).destination(heading_deg + 90.0, 220.0));
+        let outline = Outline {
+            template: Template::Circuit,
+            aircraft: "trainer".into(),
+            extent: Extent::Around { centre: threshold, radius_m: 800.0 },
+            height_m: 150.0,
+            runway: runway.clone(),
+        };
+        let profile = Profile::by_name("trainer").unwrap();
+        let errors = |outline: &Outline, terrain: &dyn Terrain| {
+            let problems = check(&outline.plan(&profile, terrain), &profile, terrain);
+            problems.into_iter().filter(Problem::is_error).collect::<Vec<_>>()
+        };
+        assert!(!errors(&outline, &hill).is_empty());
+        let other = || [crate::create::other_direction(&FlightPlan::default(), &runway, 300.0)];
+        let flyable = outline.clone().flyable(other(), &profile, &hill);
+        assert_eq!((errors(&flyable, &hill), flyable.runway.id.as_str()), (Vec::new(), "R23"));
+        // where it can be flown as it was asked for, it is that
+        let flat = outline.clone().flyable(other(), &profile, &terrain::Flat(300.0));
+        assert_eq!(flat, outline);
     }
 }
