@@ -337,6 +337,29 @@ fn left_out(zone: &str, entry: &str, then: (f64, f64)) -> Option<(Edit, Vec<Stri
     Some((edit, shown(&after.into_iter().filter(Problem::is_error).collect::<Vec<_>>())))
 }
 
+/// What the message says had to be done by hand.
+#[test]
+fn a_leg_that_goes_into_a_zone_is_led_around_it() {
+    let zone = r#"<keepOut id="z" lat="36.355" lon="-84.195" radius="150"/>"#;
+    let legs = r#"<TF id="to" lat="36.34" lon="-84.195"/><TF id="on" lat="36.37" lon="-84.195"/>"#;
+    let plan = flight_plan::read(rectangle(zone, legs)).plan;
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let (profile, conditions) = (Profile::default(), Conditions::default());
+    let made = |plan: &FlightPlan| {
+        Arc::new(compile(plan.clone(), &profile, flat.as_ref()).unwrap_or_else(|p| panic!("{:?}", shown(&p))))
+    };
+    let program = made(&plan);
+    let mut found = review(&program, &profile, &flat, conditions);
+    let remedied = leave_zones_out(&program, &profile, &flat, conditions, &found, &mut || true);
+    put_remedies(&mut found, remedied);
+    let through = found.iter().find(|p| p.code == "keep-out" && p.subject == Some("on".into())).unwrap();
+    assert!(through.message.starts_with("go around the zone, or move this leg"), "{through}");
+    let fixed = through.fix.as_ref().unwrap().apply(&plan).unwrap();
+    assert!(fixed.all_legs().len() > plan.all_legs().len());
+    let after = review(&made(&fixed), &profile, &flat, conditions);
+    assert_eq!(shown(&after.into_iter().filter(Problem::is_error).collect::<Vec<_>>()), [""; 0]);
+}
+
 /// The ways to the scan, within it and on from it lead around the zone, too.
 #[test]
 fn a_zone_in_a_scanned_area_is_left_out_of_it() {

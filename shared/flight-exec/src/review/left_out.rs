@@ -1,5 +1,5 @@
 //! Leaving a zone out of the area that is scanned over it: a hole around the zone, and legs that lead around it where the way to the
-//! scan or on from it would cross it.
+//! scan or on from it would cross it. Any other leg that goes into a zone on its way to a place is led around it.
 //!
 //! How far the hole has to be from the zone depends on how the aircraft turns there, and the way to the scan on where it begins with the
 //! hole in it. So each candidate is tried: it is offered only if the plan with it, reviewed like any other, has neither this
@@ -27,8 +27,8 @@ const MAX_TRIALS: usize = 12;
 /// Edges that the search for a way around one zone may compare.
 const MAX_EDGES: u64 = 1_000_000;
 
-/// The errors of scans that go into a zone to keep out of, with the edit that leaves the zone out where there is one that
-/// makes the error go away; `found`: what the review said. To be put in their place by [`put_remedies`].
+/// The errors of legs that go into a zone to keep out of, with the edit that leaves the zone out of what they scan, or leads them around
+/// it, where there is one that makes the error go away; `found`: what the review said. To be put in their place by [`put_remedies`].
 ///
 /// `go_on` is asked before each trial, which takes as long as a review; false ends the work.
 pub fn leave_zones_out(
@@ -42,9 +42,15 @@ pub fn leave_zones_out(
     let mut trials = Trials { profile, terrain, conditions, found, left: MAX_TRIALS, go_on };
     let errors = found.iter().filter(|p| p.is_error() && p.code == "keep-out" && p.fix.is_none());
     let remedied = errors.filter_map(|error| {
-        let crossing = Crossing::of(&program.plan, error)?;
-        let edit = ROOM.iter().find_map(|room| trials.leave_out(&program.plan, &crossing, *room))?;
-        let message = format!("leave the zone out of its area, or {}", error.message);
+        let plan = &program.plan;
+        let (what, edit) = if let Some(crossing) = Crossing::of(plan, error) {
+            let left_out = |room: &f64| trials.leave_out(plan, &crossing, *room);
+            ("leave the zone out of its area", ROOM.iter().find_map(left_out)?)
+        } else {
+            let conflict = Conflict::of(plan, error).filter(|conflict| conflict.goes_to_a_place())?;
+            ("go around the zone", trials.lead_around(plan, &conflict)?)
+        };
+        let message = format!("{what}, or {}", error.message);
         Some(Problem { message, ..error.clone().fixed_by(edit) })
     });
     remedied.collect()
@@ -65,39 +71,31 @@ fn key(problem: &Problem) -> Key<'_> {
     (problem.code, problem.subject.as_ref(), problem.zone.as_deref())
 }
 
-/// A scan of an outline that goes into a zone.
-struct Crossing<'a> {
+/// A leg that goes into a zone to keep out of.
+struct Conflict<'a> {
     leg: &'a Leg,
-    scan: &'a Scan,
-    corners: &'a [LatLon],
-    holes: &'a [Vec<LatLon>],
     zone: &'a Zone,
 }
 
-impl<'a> Crossing<'a> {
+impl<'a> Conflict<'a> {
     fn of(plan: &'a FlightPlan, error: &Problem) -> Option<Self> {
         let leg = plan.leg(error.subject.as_ref()?)?.leg;
-        let LegKind::Scan(scan) = &leg.kind else { return None };
-        let Area::Polygon { corners, holes } = &scan.area else { return None };
         let zone = plan.zone(error.zone.as_deref()?).filter(|zone| zone.kind == ZoneKind::KeepOut)?;
-        Some(Self { leg, scan, corners, holes, zone })
+        Some(Self { leg, zone })
     }
 
-    /// The scan with a hole that keeps this distance from the zone, metres; `None`: it would not be inside the area, or touches
-    /// another hole.
-    fn with_hole(&self, apart_m: f64) -> Option<Leg> {
-        let frame = LocalFrame::around(self.corners)?;
-        let hole = around(&frame, &self.zone.shape, apart_m)?.map(|corner| frame.to_geo(corner)).to_vec();
-        let holes: Vec<Vec<LatLon>> = self.holes.iter().cloned().chain([hole]).collect();
-        Polygon::from_geo(&frame, self.corners, &holes).ok()?;
-        let area = Area::Polygon { corners: self.corners.to_vec(), holes };
-        let kind = LegKind::Scan(Scan { area, ..self.scan.clone() });
-        Some(Leg { kind, ..self.leg.clone() })
+    /// Another place on its way changes nothing but the way.
+    fn goes_to_a_place(&self) -> bool {
+        matches!(self.leg.kind, LegKind::Tf(_) | LegKind::Df { .. })
     }
 
     /// The places of a way around the zone, at this distance; none: nothing is in the way.
     fn way_around(&self, (from, to): (LatLon, LatLon), apart_m: f64) -> Option<Vec<LatLon>> {
-        let frame = LocalFrame::around(&[from, to, self.scan_middle()?])?;
+        let middle = match &self.zone.shape {
+            ZoneShape::Circle { centre, .. } => *centre,
+            ZoneShape::Polygon(corners) => *corners.first()?,
+        };
+        let frame = LocalFrame::around(&[from, to, middle])?;
         let ring = around(&frame, &self.zone.shape, apart_m)?;
         let (start, end) = (frame.to_local(from), frame.to_local(to));
         let places = || ring.iter().chain([&start, &end]);
@@ -108,9 +106,35 @@ impl<'a> Crossing<'a> {
         let way = Interior::of(outside).shortest_path(start, end, &mut EdgeBudget::new(MAX_EDGES))?;
         Some(way.into_iter().map(|at| frame.to_geo(at)).collect())
     }
+}
 
-    fn scan_middle(&self) -> Option<LatLon> {
-        LocalFrame::around(self.corners).map(|frame| frame.origin())
+/// A scan of an outline that goes into a zone.
+struct Crossing<'a> {
+    conflict: Conflict<'a>,
+    scan: &'a Scan,
+    corners: &'a [LatLon],
+    holes: &'a [Vec<LatLon>],
+}
+
+impl<'a> Crossing<'a> {
+    fn of(plan: &'a FlightPlan, error: &Problem) -> Option<Self> {
+        let conflict = Conflict::of(plan, error)?;
+        let LegKind::Scan(scan) = &conflict.leg.kind else { return None };
+        let Area::Polygon { corners, holes } = &scan.area else { return None };
+        Some(Self { conflict, scan, corners, holes })
+    }
+
+    /// The scan with a hole that keeps this distance from the zone, metres; `None`: it would not be inside the area, or touches
+    /// another hole.
+    fn with_hole(&self, apart_m: f64) -> Option<Leg> {
+        let frame = LocalFrame::around(self.corners)?;
+        let hole =
+            around(&frame, &self.conflict.zone.shape, apart_m)?.map(|corner| frame.to_geo(corner)).to_vec();
+        let holes: Vec<Vec<LatLon>> = self.holes.iter().cloned().chain([hole]).collect();
+        Polygon::from_geo(&frame, self.corners, &holes).ok()?;
+        let area = Area::Polygon { corners: self.corners.to_vec(), holes };
+        let kind = LegKind::Scan(Scan { area, ..self.scan.clone() });
+        Some(Leg { kind, ..self.conflict.leg.clone() })
     }
 }
 
@@ -169,26 +193,41 @@ impl Trials<'_> {
         let Value::Constant(overshoot_m) = crossing.scan.overshoot_m else { return None };
         let apart_m = self.conditions.margins.zone_m + room * turn_m + overshoot_m.max(0.0);
         let hole = Box::new(crossing.with_hole(apart_m)?);
-        let mut edits = vec![Edit::ReplaceLeg { leg: crossing.leg.id.clone(), with: hole }];
+        let conflict = &crossing.conflict;
+        let mut edits = vec![Edit::ReplaceLeg { leg: conflict.leg.id.clone(), with: hole }];
         let holed = edits.first()?.apply(plan).ok()?;
         let tried = self.fly(&holed)?;
-        if self.is_good(&tried, crossing) {
+        if self.is_good(&tried, conflict) {
             return Some(Edit::All(edits));
         }
-        let detoured = detours(holed, &tried, crossing, AROUND * apart_m, self.profile, &mut edits)?;
+        let detoured = detours(holed, &tried, conflict, AROUND * apart_m, self.profile, &mut edits)?;
         let tried = self.fly(&detoured)?;
-        self.is_good(&tried, crossing).then_some(Edit::All(edits))
+        self.is_good(&tried, conflict).then_some(Edit::All(edits))
     }
 
-    /// No error that the plan did not have before, and the zone is in the way of neither the scan nor what follows it.
-    fn is_good(&self, tried: &Tried, crossing: &Crossing<'_>) -> bool {
+    /// The edit that leads a leg around the zone on its way to its place, and what follows it, too; with as little room to turn as makes
+    /// the error go away.
+    fn lead_around(&mut self, plan: &FlightPlan, conflict: &Conflict<'_>) -> Option<Edit> {
+        let turn_m = self.profile.turn_radius_m(self.profile.cruise_airspeed_mps);
+        let flown = self.fly(plan)?;
+        ROOM.iter().find_map(|room| {
+            let apart_m = self.conditions.margins.zone_m + room * turn_m;
+            let mut edits = Vec::new();
+            let detoured = detours(plan.clone(), &flown, conflict, apart_m, self.profile, &mut edits)?;
+            let tried = self.fly(&detoured)?;
+            self.is_good(&tried, conflict).then_some(Edit::All(edits))
+        })
+    }
+
+    /// No error that the plan did not have before, and the zone is in the way of neither the leg nor what follows it.
+    fn is_good(&self, tried: &Tried, conflict: &Conflict<'_>) -> bool {
         tried.errors.iter().all(|error| {
             let is_known = self.found.iter().any(|known| known.is_error() && key(known) == key(error));
             let is_here = error.subject.as_ref().is_some_and(|of| {
-                let follows = |joint: &Joint| joint.from == crossing.leg.id && joint.to == *of;
-                *of == crossing.leg.id || tried.joints.iter().any(follows)
+                let follows = |joint: &Joint| joint.from == conflict.leg.id && joint.to == *of;
+                *of == conflict.leg.id || tried.joints.iter().any(follows)
             });
-            is_known && !(is_here && error.zone.as_deref() == Some(&crossing.zone.id))
+            is_known && !(is_here && error.zone.as_deref() == Some(&conflict.zone.id))
         })
     }
 
@@ -211,26 +250,26 @@ fn joints(flown: &Flown) -> impl Iterator<Item = Joint> + '_ {
     pairs.map(|(a, b)| Joint { from: a.leg.clone(), to: b.leg.clone(), gap: (a.position, b.position) })
 }
 
-/// The plan with legs that lead around the zone before the scan and behind it, as far as they are needed; what that takes is added to
+/// The plan with legs that lead around the zone before the leg and behind it, as far as they are needed; what that takes is added to
 /// the edits. `None`: nothing is to be led around.
 fn detours(
     mut plan: FlightPlan,
     tried: &Tried,
-    crossing: &Crossing<'_>,
+    conflict: &Conflict<'_>,
     apart_m: f64,
     profile: &Profile,
     edits: &mut Vec<Edit>,
 ) -> Option<FlightPlan> {
-    let scan = &crossing.leg.id;
-    let before = tried.joints.iter().find(|joint| joint.to == *scan);
-    let behind = tried.joints.iter().find(|joint| joint.from == *scan);
+    let of = &conflict.leg.id;
+    let before = tried.joints.iter().find(|joint| joint.to == *of);
+    let behind = tried.joints.iter().find(|joint| joint.from == *of);
     let known = edits.len();
     for joint in before.into_iter().chain(behind) {
-        let mut spot = if joint.to == *scan { Spot::Before(scan.clone()) } else { Spot::After(scan.clone()) };
-        for at in crossing.way_around(joint.gap, apart_m)? {
+        let mut spot = if joint.to == *of { Spot::Before(of.clone()) } else { Spot::After(of.clone()) };
+        for at in conflict.way_around(joint.gap, apart_m)? {
             let place = Drawn::Place(Place::Position(Value::Constant(at)));
             let mut leg = create::leg(&plan, profile, LegChoice::Tf, &place, None, None)?;
-            leg.altitude.clone_from(&crossing.leg.altitude);
+            leg.altitude.clone_from(&conflict.leg.altitude);
             let id = leg.id.clone();
             let edit = Edit::InsertLeg { leg: Box::new(leg), at: spot.clone() };
             plan = edit.apply(&plan).ok()?;
