@@ -70,13 +70,15 @@ pub fn draw_faults(sheet: &Sheet<'_>) {
     draw_failures(sheet);
 }
 
-/// Where something is wrong: the place that is named, or else where that is, or begins, whose problem it is. `None`: nowhere.
+/// Where something is wrong: the place that is named, or else where that is, or begins, whose problem it is. `None`: nowhere, as
+/// what goes through a number that could not be read.
 fn place_of_problem(problem: &Problem, sheet: &Sheet<'_>) -> Option<LatLon> {
     let Sheet { sketch, scene, .. } = *sheet;
-    match &problem.place {
+    let at = match &problem.place {
         Some(spot) => Some(spot.position),
         None => place_or_begin(&selection_of(problem, scene)?, scene.document.plan(), sketch),
-    }
+    };
+    at.filter(|at| at.is_valid())
 }
 
 /// A cross where the path ends too early, and one where the plan is wrong.

@@ -128,20 +128,26 @@ pub fn numbered(
     range_si: RangeInclusive<f64>,
 ) -> (Change<f64>, Response) {
     let typed = Typed::of(ui);
-    let before = unit.from_si(si);
+    let is_known = si.is_finite();
+    // one that is not equal to itself would be a change in every frame
+    let before = if is_known { unit.from_si(si) } else { f64::INFINITY };
     let decimals = unit.decimals.max(1);
     let mut shown = before;
     let drag = DragValue::new(&mut shown)
         .suffix(format!(" {}", unit.symbol))
         .max_decimals(decimals)
-        .speed(unit.from_si(1.0).max(0.05))
+        // what is not known can't be dragged from there
+        .speed(if is_known { unit.from_si(1.0).max(0.05) } else { 0.0 })
         .range(unit.from_si(*range_si.start())..=unit.from_si(*range_si.end()))
         // what is only looked at stays as it is, however wrong
         .clamp_existing_to_range(false)
         .update_while_editing(false)
-        .custom_parser(|text| typed.read(unit, text));
-    let drag = if before.is_finite() { drag } else { drag.custom_formatter(|_, _| UNREADABLE.to_owned()) };
+        .custom_parser(|text| if text.trim() == UNREADABLE { None } else { typed.read(unit, text) });
+    let drag = if is_known { drag } else { drag.custom_formatter(|_, _| UNREADABLE.to_owned()) };
+    let (usual, warning) = (ui.visuals().override_text_color, theme::of(ui).warning);
+    ui.visuals_mut().override_text_color = if is_known { usual } else { Some(warning) };
     let response = ui.add_sized([78.0, 24.0], drag);
+    ui.visuals_mut().override_text_color = usual;
     if ui.data_mut(|d| d.remove_temp::<bool>(focus_asked())).is_some() {
         focus(&response);
     }

@@ -47,18 +47,35 @@ fn what_is_no_number_changes_nothing_and_is_told_at_the_field() {
     assert!(!window.shows("is no number") && altitude_m(&window, "side4") == 120.0);
 }
 
-/// Its field said NaN.
+/// What stood there was lost, each frame was an edit, and so what was typed was, too.
 #[test]
-fn a_number_that_could_not_be_read_is_typed_anew_with_its_unit() {
+fn a_number_that_could_not_be_read_stays_in_its_field_until_another_one_is_typed() {
     let mut window = Window::open(&SQUARE.replacen("\"110\"", "\"11O\"", 1));
     window.until_analysed();
     window.click("TF side4");
     window.steps(2);
-    assert!(altitude_m(&window, "side4").is_nan());
-    assert!(!window.paints("NaN"));
-    window.fill_in(Role::SpinButton, "Altitude", "301 m");
+    let before = window.app().document().version();
+    window.steps(10);
+    assert_eq!(window.app().document().version(), before, "nobody edited it");
+    assert!(!window.app().document().is_dirty());
+    assert!(window.shows("must be a number, not \"11O\""));
+    window.fill_in(Role::TextInput, "Altitude", "301 m");
     window.steps(2);
     assert_eq!(altitude_m(&window, "side4"), 301.0);
+}
+
+/// The same of a number that can be no formula, of which nothing is kept.
+#[test]
+fn a_plain_number_that_could_not_be_read_is_typed_anew() {
+    let mut window = Window::open(&SQUARE.replacen("length=\"", "length=\"about ", 1));
+    window.until_analysed();
+    window.click("Problem: R05: give “length” a number: it has none that can be read");
+    let before = window.app().document().version();
+    window.steps(10);
+    assert_eq!(window.app().document().version(), before, "nobody edited it");
+    window.fill_in(Role::SpinButton, "Length", "600 m");
+    window.steps(2);
+    assert_eq!(window.plan().runways[0].length_m, 600.0);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::formula::{self, Typing};
 use super::inherited::Inherited;
 use super::page::Page;
 use super::{bind, inherited, landing, together};
+use crate::command::ViewCommand;
 use crate::coordinates;
 use crate::panels::field;
 use crate::theme;
@@ -11,7 +12,7 @@ use crate::units::{self, Unit, Units};
 use egui::{RichText, Ui};
 use flight_plan::describe::{self, Change, Kind, Property, Quantity, Range, Sort, choices};
 use flight_plan::words::yes_or_no;
-use flight_plan::{Use, Value};
+use flight_plan::{Use, Value, unread_number};
 
 /// A value in a row of its own.
 pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, property: &'static Property) {
@@ -241,6 +242,10 @@ fn number_or_formula(
 ) -> Option<Typing> {
     let source = value.strip_prefix('=').map(str::trim);
     let name = page.name(property.label);
+    if let Some(text) = source.and_then(unread_number) {
+        unread(ui, page, property, range, &text);
+        return None;
+    }
     // the same here for a number, so that the field that it becomes has the keyboard at once
     let formula = formula::id(ui, &name);
     let below = match source {
@@ -273,6 +278,22 @@ fn number_or_formula(
         bind::number(ui, page, property, number);
     }
     below
+}
+
+/// What stands in the place of a number, in red until one is typed.
+fn unread(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, range: Range, text: &str) {
+    let unit = unit(range.quantity, page.scene.units());
+    let warning = theme::of(ui).warning;
+    let typed = ui.scope(|ui| {
+        ui.visuals_mut().override_text_color = Some(warning);
+        field::text(ui, &page.name(property.label), text)
+    });
+    let Some(typed) = typed.inner else { return };
+    match unit.read(&typed) {
+        Ok(number) => page.set(property, Some(unit.to_si(number).to_string())),
+        Err(_) if typed.trim_start().starts_with('=') => page.set(property, Some(typed)),
+        Err(why) => page.queue.view(ViewCommand::Notice(why)),
+    }
 }
 
 /// What a formula gives at the start.
