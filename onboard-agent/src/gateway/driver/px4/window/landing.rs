@@ -76,6 +76,15 @@ impl Steepest {
     }
 }
 
+/// What leads on to another place lies behind an aircraft that is on that side of it, and flies away from it. One that comes from elsewhere,
+/// and still turns towards it, may have its back to it.
+fn lies_behind(fix: &Fix, place: LatLon, onward: LatLon) -> bool {
+    let frame = LocalFrame::new(fix.position);
+    let to_place = frame.to_local(place);
+    let flies_away = to_place.dot(Vec2::new(fix.east_mps, fix.north_mps)) < 0.0;
+    flies_away && to_place.dot(frame.to_local(onward) - to_place) < 0.0
+}
+
 impl Window {
     /// A landing that is left for something else does not end the list, and is not flown any more. What led to it stands in its place:
     /// if the same landing comes next, PX4 wants to see that it is come to from above.
@@ -107,9 +116,10 @@ impl Window {
         let Some(active) = self.chain.at(first).filter(|w| leads_in && w.action == Action::Fly) else {
             return;
         };
-        let to_place = LocalFrame::new(fix.position).to_local(active.position);
-        let lies_behind = to_place.dot(Vec2::new(fix.east_mps, fix.north_mps)) < 0.0;
-        if lies_behind && (is_close_in(first) || fix.altitude_amsl_m < active.altitude_amsl_m) {
+        let onward = self.chain.at(first + 1).map_or(active.position, |next| next.position);
+        if lies_behind(fix, active.position, onward)
+            && (is_close_in(first) || fix.altitude_amsl_m < active.altitude_amsl_m)
+        {
             self.chain.skip_active();
         }
     }

@@ -326,6 +326,24 @@ fn what_leads_to_a_landing_is_left_behind_when_it_is_passed_too_low_or_close_in(
     }
 }
 
+/// Onto its final it may turn by far, and a hand's breadth lower: it came down a kilometre before the runway.
+#[test]
+fn what_leads_to_a_landing_is_flown_to_by_one_that_still_turns_towards_it() {
+    let mut rig = on_the_steep_way(6);
+    let target = rig.autopilot.target.unwrap();
+    let fix = Fix {
+        position: target.position.destination(180.0, 700.0),
+        altitude_amsl_m: 560.0,
+        altitude_home_m: 60.0,
+        north_mps: -25.0,
+        east_mps: 0.0,
+        down_mps: 0.0,
+    };
+    rig.window.moved(&fix);
+    rig.settle();
+    assert_eq!(rig.autopilot.target, Some(target));
+}
+
 /// High above the runway it is to land at once.
 #[test]
 fn a_landing_that_is_fed_in_place_of_all_else_is_come_to_from_where_the_aircraft_is() {
