@@ -11,7 +11,7 @@ use crate::panels::{
 };
 use crate::recovery::Keeper;
 use crate::theme;
-use egui::{Align2, Area, CentralPanel, Frame, Panel, Rect, RichText, Ui};
+use egui::{Align2, Area, CentralPanel, Frame, LayerId, Order, Panel, Rect, RichText, Ui};
 
 impl App {
     pub(super) fn lay_out(&mut self, ui: &mut Ui, now: Now, queue: &mut Queue) {
@@ -82,6 +82,8 @@ impl App {
                 let keys = (!scene.is_asking(), scene.vehicles.flying().next().is_none());
                 let ask = |ui: &mut Ui| recover::show(ui, found, (floor.height(), scene.utc), keys, queue);
                 floating(ui, "recover", floor, Align2::CENTER_CENTER, ask);
+                // it is asked first, and the card for a new mission comes up with each click on it
+                ui.ctx().move_to_top(LayerId::new(Order::Middle, egui::Id::unique("recover")));
             }
             notice(ui, floor, &scene, queue);
             toasts::show(ui, tool_chip::above(ui.ctx(), floor), &scene, queue);

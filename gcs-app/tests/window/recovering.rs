@@ -184,3 +184,18 @@ fn the_question_can_wait_for_the_menu_or_the_next_window() {
     next.click("Recover the changes");
     assert_eq!(next.plan(), lost);
 }
+
+/// In a small window its card lay below that for a new mission once that was clicked, and its button with it.
+#[test]
+fn the_question_stays_above_the_card_for_a_new_mission() {
+    let folder = tempfile::tempdir().unwrap();
+    let lost = edit_and_kill(folder.path());
+    let mut window = Window::open_with("", egui::vec2(960.0, 600.0), None);
+    window.keep_copies(folder.path());
+    window.click("Among the example's hills");
+    let corridor = window.centre("Corridor");
+    window.click_at(corridor);
+    let button = window.harness.get_by_label("Recover the changes").rect();
+    window.click_at(button.left_center() + egui::vec2(6.0, 0.0));
+    assert!(window.plan() == lost && !window.shows("ended without saving"));
+}
