@@ -2,6 +2,7 @@
 
 mod folds;
 mod gathered;
+mod lines;
 mod remedies;
 
 use super::{Panel, PanelId, Place, Scene};
@@ -13,6 +14,7 @@ use egui::{FontId, Rect, Response, RichText, ScrollArea, Sense, Shape, TextForma
 use flight_plan::{Id, Problem, Verdict};
 use folds::{Alike, Unfolded};
 use gathered::Gathered;
+use lines::{BETWEEN, Lines, lines};
 use remedies::Remedies;
 
 /// The panel.
@@ -97,7 +99,8 @@ impl Panel for Problems {
         verdict(ui, scene, self.listed.verdict);
         self.remedies.follow(ui);
         let pointed = ScrollArea::vertical().id_salt("problems").auto_shrink(false);
-        let pointed = pointed.show(ui, |ui| self.rows(ui, scene, &problems, is_news, queue)).inner;
+        let lines = lines(self.listed.order.len(), ui.available_height());
+        let pointed = pointed.show(ui, |ui| self.rows(ui, scene, &problems, (is_news, lines), queue)).inner;
         if scene.view.pointed != pointed {
             queue.view(ViewCommand::PointOut(pointed));
         }
@@ -112,12 +115,11 @@ impl Problems {
         ui: &mut Ui,
         scene: &Scene<'_>,
         problems: &[&Problem],
-        mut is_news: bool,
+        (mut is_news, lines): (bool, Lines),
         queue: &mut Queue,
     ) -> Option<Id> {
         let mut pointed = None;
-        let at_once = if self.listed.order.len() > FEW { 1 } else { ROWS };
-        if at_once < ROWS {
+        if lines.is_beside {
             ui.spacing_mut().item_spacing.y = BETWEEN;
         }
         let near = ui.clip_rect().expand(BEYOND);
@@ -127,7 +129,7 @@ impl Problems {
             let rect = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), *height));
             let rect = if near.intersects(rect) {
                 let shown = ui.scope(|ui| {
-                    let how = (&mut self.open, &mut self.remedies, at_once);
+                    let how = (&mut self.open, &mut self.remedies, lines);
                     let response = row(ui, scene, (number, problem, &one.calls), how, queue);
                     if response.hovered() {
                         pointed.clone_from(&problem.subject);
@@ -167,12 +169,6 @@ impl Problems {
 
 /// Most problems that are listed: who has more mends the first ones first.
 pub const MOST: usize = 300;
-
-/// Of its headline, until it is opened; where there are more problems than a few, all of these are to be seen at once.
-const ROWS: usize = 2;
-const FEW: usize = 3;
-/// Between them then, screen points.
-const BETWEEN: f32 = 2.0;
 
 /// Rows so far out of view are drawn, too, for those who go on by keyboard or screen reader; screen points.
 const BEYOND: f32 = 600.0;
@@ -234,7 +230,7 @@ fn row(
     ui: &mut Ui,
     scene: &Scene<'_>,
     (number, problem, calls): (usize, &Problem, &[Id]),
-    (open, remedies, rows): (&mut Option<String>, &mut Remedies, usize),
+    (open, remedies, lines): (&mut Option<String>, &mut Remedies, Lines),
     queue: &mut Queue,
 ) -> Response {
     let p = theme::of(ui);
@@ -245,20 +241,28 @@ fn row(
     let whole = UiBuilder::new().id_salt(("problem", number)).sense(Sense::click());
     let shown = ui.scope_builder(whole, |ui| {
         let background = ui.painter().add(Shape::Noop);
-        // one below the other they take the room of the next problem
-        let is_beside = rows < ROWS && Remedies::is_one(problem) && open.as_deref() != Some(&message);
-        ui.horizontal_top(|ui| {
-            let room = if is_beside { FIX } else { 0.0 };
-            inside(ui, problem, (&headline, &message), (open, rows), room);
-            if is_beside {
-                remedies.show(ui, scene, problem, &message, queue);
-            }
-        });
-        if !is_beside && problem.fix.is_some() {
+        let is_open = open.as_deref() == Some(&message);
+        let is_beside = lines.is_beside && Remedies::is_one(problem) && !is_open;
+        let below = |ui: &mut Ui, remedies: &mut Remedies, queue: &mut Queue| {
             ui.horizontal(|ui| {
                 ui.add_space(20.0);
                 remedies.show(ui, scene, problem, &message, queue);
             });
+        };
+        // above a long text, which would push them out of sight
+        let is_above = is_open && problem.fix.is_some();
+        if is_above {
+            below(ui, remedies, queue);
+        }
+        ui.horizontal_top(|ui| {
+            let room = if is_beside { FIX } else { 0.0 };
+            inside(ui, problem, (&headline, &message), (open, lines.most), room);
+            if is_beside {
+                remedies.show(ui, scene, problem, &message, queue);
+            }
+        });
+        if !is_beside && !is_above && problem.fix.is_some() {
+            below(ui, remedies, queue);
         }
         let rect = ui.min_rect().with_max_x(ui.max_rect().right()).expand2(vec2(0.0, 1.0));
         if is_selected || ui.response().hovered() {
@@ -372,7 +376,7 @@ fn unbroken(text: &str) -> String {
 
 /// Width of the mark behind a headline, and of the remedy that stands beside it, screen points.
 const MORE: f32 = 20.0;
-const FIX: f32 = 34.0;
+const FIX: f32 = 42.0;
 
 /// Opens and closes what else there is to know.
 fn more(ui: &mut Ui, is_open: bool, message: &str) -> bool {

@@ -186,6 +186,16 @@ fn a_remedy_that_comes_under_the_pointer_is_pressed_when_there_was_time_to_read_
     assert_eq!(wrong(&window), 0);
 }
 
+/// It lay kilometres from where it was, and nothing said so.
+#[test]
+fn of_a_fix_that_was_missing_it_is_said_that_its_place_is_a_guess() {
+    let mut window = opened(&SQUARE.replacen(r#"side3" fix="C"/"#, r#"side3" fix="NOWHERE"/"#, 1));
+    let fix = window.harness.get_all_by_label("Fix").next().unwrap().rect().center();
+    window.click_at(fix);
+    assert!(window.plan().fix(&"NOWHERE".into()).is_some());
+    assert!(window.shows("NOWHERE was put at 36.") && window.shows("which is a guess"));
+}
+
 /// While a change is reviewed nobody knows that the error is gone: what the last review found, of what is still there.
 #[test]
 fn what_was_wrong_stays_in_grey_until_the_change_is_reviewed() {

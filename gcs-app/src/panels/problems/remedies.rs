@@ -2,10 +2,10 @@
 //! unread.
 
 use super::super::Scene;
-use crate::command::Queue;
-use crate::theme;
+use crate::command::{Queue, ViewCommand};
+use crate::{theme, units};
 use egui::{Button, Pos2, RectAlign, Response, RichText, Tooltip, Ui};
-use flight_plan::{Edit, FlightPlan, Problem, diff};
+use flight_plan::{Edit, FlightPlan, Problem, Thing, diff};
 
 /// So many changes of a remedy are told before it is made.
 const MOST_CHANGES: usize = 8;
@@ -99,6 +99,7 @@ impl Remedies {
         let again = button.double_clicked() || button.triple_clicked();
         if button.clicked() && is_read && is_known && !again {
             queue.edit(fix.clone());
+            guessed(fix).into_iter().for_each(|text| queue.view(ViewCommand::Toast(text)));
         }
     }
 
@@ -120,6 +121,22 @@ impl Remedies {
             self.under = Some(Under { at, what: (message.to_owned(), number), came_s });
             ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(READ_S));
         }
+    }
+}
+
+/// What a remedy can't know: where a fix lies that nothing but its name is there of.
+fn guessed(remedy: &Edit) -> Option<String> {
+    match remedy {
+        Edit::All(edits) => edits.iter().find_map(guessed),
+        Edit::Add(thing) => match thing.as_ref() {
+            Thing::Fix(fix) => Some(format!(
+                "{} was put at {}, which is a guess: move it to its place",
+                fix.id,
+                units::position(fix.position)
+            )),
+            _ => None,
+        },
+        _ => None,
     }
 }
 
