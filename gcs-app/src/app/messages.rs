@@ -58,6 +58,18 @@ impl App {
             self.noted.clone_from(&self.view.notice);
             self.noted.iter().for_each(|text| self.toasts.note(now_s, Level::Caution, text));
         }
+        self.lapse(ctx, now_s);
+    }
+
+    /// Why a gesture did nothing is not true for ever: that goes by itself.
+    fn lapse(&mut self, ctx: &egui::Context, now_s: f64) {
+        let Some((text, until_s)) = &self.refusal else { return };
+        let is_shown = self.view.notice.as_ref() == Some(text);
+        if is_shown && now_s < *until_s {
+            return ctx.request_repaint_after(Duration::from_secs_f64(until_s - now_s));
+        }
+        self.refusal = None;
+        self.view.notice.take_if(|_| is_shown);
     }
 
     /// Watches altitude, ground and way, a few times a second.

@@ -82,6 +82,8 @@ pub struct App {
     toasts: Toasts,
     /// The notice that was put into the log last.
     noted: Option<String>,
+    /// Why a gesture did nothing, and until when that is said, seconds of the window's clock.
+    refusal: Option<(String, f64)>,
     /// The documents that are being written, or asked where to, by their numbers.
     saving: BTreeSet<u64>,
     /// Plans that are about to be proposed.
@@ -171,6 +173,7 @@ impl App {
             files: Files::new(wake),
             toasts: Toasts::default(),
             noted: None,
+            refusal: None,
             saving: BTreeSet::new(),
             pushes: Vec::new(),
             recent: remembered.recent,

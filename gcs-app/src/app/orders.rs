@@ -13,6 +13,9 @@ use crate::state::{LOOK_AHEAD, Level, Proposal, START, Vehicle, VehicleName};
 use flight_exec::Command as PlanCommand;
 use flight_plan::{FlightPlan, Id};
 
+/// So long is said why a gesture did nothing, seconds.
+const REFUSAL_S: f64 = 20.0;
+
 impl App {
     /// Carries out a command; one to a vehicle goes to `shown`, the one that was drawn when it was given.
     pub(super) fn carry_out(&mut self, command: Command, shown: Option<&VehicleName>, now_s: f64) {
@@ -248,7 +251,10 @@ impl App {
             ViewCommand::Maps(open) => self.view.maps = open,
             ViewCommand::Edge(edge) => self.view.edge = edge,
             ViewCommand::ResetLayout => self.dock.reset(&self.panels),
-            ViewCommand::Notice(text) => self.view.notice = Some(text),
+            ViewCommand::Notice(text) => {
+                self.refusal = Some((text.clone(), now_s + REFUSAL_S));
+                self.view.notice = Some(text);
+            }
             ViewCommand::Toast(text) => self.toasts.add(now_s, Level::Info, text),
             ViewCommand::DismissNotice => self.view.notice = None,
             ViewCommand::NameFile(name) => {

@@ -39,8 +39,8 @@ pub fn show(ui: &mut Ui, tools: &mut Toolbox, columns: &[Rect], scene: &Scene<'_
         }
         false => whole(ui, tools, status, columns, (scene, queue)),
     });
-    let takes_places = tools.takes_places();
-    ui.data_mut(|data| data.insert_temp(places_id(), takes_places));
+    let takes_clicks = tools.takes_clicks();
+    ui.data_mut(|data| data.insert_temp(clicks_id(), takes_clicks));
     ui.data_mut(|data| match shown {
         Some(shown) => _ = data.insert_temp(said_id(), shown),
         None => data.remove::<Shown>(said_id()),
@@ -186,13 +186,13 @@ fn said_id() -> Id {
     Id::unique("what the tool in use says")
 }
 
-fn places_id() -> Id {
-    Id::unique("the tool in use takes places")
+fn clicks_id() -> Id {
+    Id::unique("the tool in use takes clicks")
 }
 
-/// A click on the map is a place for the tool in use: what comes and goes by itself gives way to the pointer.
-pub fn takes_places(ctx: &Context) -> bool {
-    ctx.data(|data| data.get_temp(places_id())).unwrap_or(false)
+/// A click on the map is for the tool in use: what comes and goes by itself gives way to the pointer.
+pub fn takes_clicks(ctx: &Context) -> bool {
+    ctx.data(|data| data.get_temp(clicks_id())).unwrap_or(false)
 }
 
 /// What is left of the map below what the tool in use says at its upper edge.

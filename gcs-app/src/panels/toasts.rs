@@ -66,7 +66,7 @@ fn above_chips(ui: &Ui, room: Rect) -> Rect {
 /// Somebody draws there: they come again when the pointer has gone.
 fn is_in_the_way(ui: &Ui, id: Id) -> bool {
     let lies = AreaState::load(ui.ctx(), id).map(|area| area.rect());
-    let pointer = ui.ctx().pointer_hover_pos().filter(|_| tool_chip::takes_places(ui.ctx()));
+    let pointer = ui.ctx().pointer_hover_pos().filter(|_| tool_chip::takes_clicks(ui.ctx()));
     lies.zip(pointer).is_some_and(|(lies, pointer)| lies.contains(pointer))
 }
 

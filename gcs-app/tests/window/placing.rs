@@ -108,6 +108,18 @@ fn a_call_says_of_what_it_is_and_is_dragged_by_its_mark() {
     assert_eq!(flown(&window).map(|at| at.distance_m(before) < 1.0), Some(true), "one step");
 }
 
+/// It stood over the map for minutes.
+#[test]
+fn why_a_click_did_nothing_is_not_said_for_ever() {
+    let mut window = window();
+    window.press(Key::E);
+    let map = window.centre("Map");
+    window.click_at(map + vec2(200.0, -200.0));
+    assert!(window.shows("Click a runway"));
+    window.steps(60 * 21);
+    assert!(!window.shows("Click a runway"));
+}
+
 #[test]
 fn an_emergency_plan_is_drawn_from_the_runway_outwards() {
     let mut window = window();
@@ -124,6 +136,7 @@ fn an_emergency_plan_is_drawn_from_the_runway_outwards() {
     window.press(Key::Escape);
     window.press(Key::E);
     window.click_at(threshold);
+    assert!(!window.shows("Click a runway"), "one was clicked");
     let far = map + vec2(-150.0, 150.0);
     window.click_at(map + vec2(-60.0, 120.0));
     window.click_at(far);

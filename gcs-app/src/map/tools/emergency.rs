@@ -196,6 +196,8 @@ impl Tool for DrawEmergency {
             Some(runway) => {
                 self.is_at_end = is_nearer_to_end(pointer.at, runway, canvas);
                 self.begin(runway, canvas);
+                // what was asked for is done
+                queue.view(ViewCommand::DismissNotice);
             }
             None => queue.view(ViewCommand::Notice("Click a runway: the emergency plan leads there.".into())),
         }

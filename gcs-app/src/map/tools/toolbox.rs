@@ -113,6 +113,11 @@ impl Toolbox {
         self.in_use().is_some_and(|tool| tool.typed_from().is_some())
     }
 
+    /// A click on the map is for the tool in use: it begins something with it, or goes on.
+    pub fn takes_clicks(&self) -> bool {
+        self.current > 0 || self.takes_places()
+    }
+
     /// The tool in use has begun something that is not ended.
     pub fn is_drawing(&self) -> bool {
         self.in_use().is_some_and(|tool| tool.wants(Key::Escape))
