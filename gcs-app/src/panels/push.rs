@@ -293,18 +293,22 @@ pub fn entries<'a>(scene: &Scene<'a>) -> impl Iterator<Item = &'a Id> {
     legs.filter(|context| context.section == flight_plan::Section::Main).map(|context| &context.leg.id)
 }
 
-/// What was looked at long ago is committed by who insists on it. Nothing moves below a pointer that is on its way to it.
+/// What was looked at long ago, and is not looked at again by itself, is committed by who insists on it. Nothing moves below a pointer
+/// that is on its way to it.
 fn buttons(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) {
     let p = theme::of(ui);
     let is_old = is_old(scene, proposal);
-    let commit = if is_old { Button::new("Commit") } else { super::primary_button("Commit", p) };
+    let is_stale = is_old && !looks_again(scene, proposal);
+    let button =
+        |text, is_next: bool| if is_next { super::primary_button(text, p) } else { Button::new(text) };
+    let commit = button("Commit", !is_stale);
     if ui.add_enabled(is_ready(proposal), commit).clicked() {
         queue.fly(FlyCommand::Commit);
     }
     if ui.button("Keep as draft").clicked() {
         queue.fly(FlyCommand::DropProposal);
     }
-    if is_old && ui.add(super::primary_button("Push again", p)).clicked() {
+    if is_old && ui.add(button("Push again", is_stale)).clicked() {
         queue.fly(FlyCommand::Propose);
     }
 }

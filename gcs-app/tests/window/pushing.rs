@@ -61,7 +61,8 @@ fn a_proposal_says_how_old_it_is_and_whose_path_is_on_the_map() {
     let fill = |window: &Window, button| window.fill_around(window.harness.get_by_label(button).rect());
     assert_eq!(
         [fill(&window, "Push again"), fill(&window, "Commit")].map(|fill| fill == Some(accent)),
-        [true, false]
+        [false, true],
+        "it is looked at again by itself: what is left to do is to commit it"
     );
     let again = |(_, call): &(_, Call)| matches!(call, Call::Propose(_));
     let (ticket, _) = std::iter::from_fn(|| window.asked()).find(again).unwrap();
