@@ -49,7 +49,7 @@ pub const SCENARIOS: &[Scenario] = &[
     Scenario {
         name: "iced",
         happens: "ice, or an engine with a part of its power: too little for altitude or speed, until that is told",
-        expected: "alarm: it is slow, sinks, or is off its altitude; and a landing",
+        expected: "alarm: it is slow, sinks, is off its altitude, or does not get past a waypoint; and a landing",
         plan: of_field,
         simulator: &[],
         fly: |rig| Box::pin(iced(rig)),
@@ -109,7 +109,7 @@ async fn engine_lost(rig: &mut Rig, alarms: &[&str]) -> anyhow::Result<()> {
 async fn iced(rig: &mut Rig) -> anyhow::Result<()> {
     on_leg(rig, "sweep").await?;
     rig.disturb("fault ice")?;
-    let told = ["slow", "sinks", "off-altitude"];
+    let told = ["slow", "sinks", "off-altitude", "no-further"];
     rig.until("an alarm", 120.0, |_, seen| told.iter().any(|id| seen.alarmed(id))).await?;
     rig.disturb("clear ice")?;
     // where it is taken for an engine that failed, it glides to wherever it gets

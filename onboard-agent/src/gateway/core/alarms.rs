@@ -55,6 +55,8 @@ pub struct AlarmInputs {
     pub beside_path: Option<Beside>,
     /// It ought to fly, and does not move; `None`: that is not known.
     pub stands_still: Option<bool>,
+    /// It circles at a waypoint, and comes no nearer to its altitude.
+    pub no_further: bool,
     /// It flies, and is not armed.
     pub disarmed: bool,
     /// It was ended by force, and is armed.
@@ -218,6 +220,7 @@ impl Alarms {
                 false => beside.metres > OFF_PATH_M.0 && !beside.returns,
             }),
             Watch::StandsStill => inputs.stands_still.unwrap_or(raised),
+            Watch::NoFurther => inputs.no_further,
             Watch::Disarmed => inputs.disarmed,
             Watch::FliesOn => inputs.flies_on,
             Watch::ListReplaced => inputs.list_replaced,

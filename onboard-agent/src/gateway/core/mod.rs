@@ -17,6 +17,7 @@ mod forced_end;
 mod io;
 mod launch;
 mod met;
+mod no_further;
 mod observe;
 mod off_path;
 mod pilot;
@@ -88,6 +89,8 @@ pub struct Gateway {
     hands_off: bool,
     /// What is flown between waypoints.
     way: Way,
+    /// The waypoint that it waits at for its altitude.
+    at: Option<no_further::At>,
     /// Of the last step.
     now: Time,
 }
@@ -122,6 +125,7 @@ impl Gateway {
             list_lost: false,
             hands_off: false,
             way: Way::default(),
+            at: None,
             now: Time::ZERO,
         }
     }
@@ -246,6 +250,7 @@ impl Gateway {
             off_altitude: self.is_off_altitude(now),
             beside_path: self.beside_path(now),
             stands_still: self.stands_still(now),
+            no_further: self.gets_no_further(now),
             disarmed: is_flying(self.state) && self.telemetry.flies_disarmed(now),
             flies_on: self.telemetry.armed && self.state == GatewayState::Terminate,
             list_replaced: self.list_lost && self.state != GatewayState::Manual,

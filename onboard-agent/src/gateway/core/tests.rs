@@ -10,6 +10,7 @@ mod let_loose;
 pub mod losses;
 mod met;
 mod moments;
+mod no_further;
 mod random;
 mod refused;
 mod replaced;

@@ -36,6 +36,8 @@ pub enum Watch {
     OffPath,
     /// It ought to fly and does not move.
     StandsStill,
+    /// It does not get past a waypoint.
+    NoFurther,
     /// It flies, and its engine may not run.
     Disarmed,
     /// It does not end its flight.
@@ -73,7 +75,7 @@ struct Words {
 }
 
 /// All of them, in the order in which they are looked at.
-pub const WATCHES: [Watch; 26] = [
+pub const WATCHES: [Watch; 27] = [
     Watch::GpsLost,
     Watch::EngineOut,
     Watch::EngineSuspected,
@@ -89,6 +91,7 @@ pub const WATCHES: [Watch; 26] = [
     Watch::OffAltitude,
     Watch::OffPath,
     Watch::StandsStill,
+    Watch::NoFurther,
     Watch::Disarmed,
     Watch::FliesOn,
     Watch::ListReplaced,
@@ -238,6 +241,15 @@ const WORDS: [Words; WATCHES.len()] = [
         advice: "It is armed and ought to fly, but does not move: it may be down. Disarm it before anybody goes near.",
         cause: None,
         patience: Duration::from_secs(10),
+    },
+    Words {
+        watch: Watch::NoFurther,
+        id: "no-further",
+        severity: Severity::Warning,
+        source: "autopilot",
+        advice: "The aircraft circles at a waypoint and does not come to its altitude, so it gets no further. Look at engine and ice; go to a leg that is lower, or bring it home.",
+        cause: None,
+        patience: Duration::from_secs(0),
     },
     Words {
         watch: Watch::Disarmed,
