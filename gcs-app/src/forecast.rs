@@ -185,7 +185,12 @@ impl Forecast {
     }
     /// Where the path is after the last passage of a leg, and which way it goes there.
     pub fn end_of(&self, leg: &Id) -> Option<Approach> {
-        let passage = self.passages.iter().rfind(|passage| passage.leg == *leg)?;
+        // of a call, what it has made: that is called by it and a dot
+        let is_its = |flown: &Id| {
+            let rest = flown.as_str().strip_prefix(leg.as_str());
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        let passage = self.passages.iter().rfind(|passage| is_its(&passage.leg))?;
         self.towards(passage.end)
     }
     /// Where the path is at a time, and which way it goes there.

@@ -191,11 +191,12 @@ fn before<'a>(context: &LegContext<'a>) -> Option<&'a Leg> {
     before.falls_through().then_some(before.as_ref())
 }
 
-/// That, if it is not left at its place: it covers an area, or goes around a place.
+/// That, if it is not left at its place: it covers an area, goes around a place, is flown from either end, or is a procedure's.
 fn wide_before(context: &LegContext<'_>) -> Option<Id> {
     let is_wide = |leg: &&Leg| {
         let is_hold = matches!(leg.kind, LegKind::Hf(_) | LegKind::Ha(_) | LegKind::Hm { .. });
-        is_hold || area(leg).is_some() || super::round(leg).is_some()
+        let is_other = is_corridor(leg) || matches!(leg.kind, LegKind::Call(_));
+        is_hold || is_other || area(leg).is_some() || super::round(leg).is_some()
     };
     before(context).filter(is_wide).map(|leg| leg.id.clone())
 }
@@ -417,6 +418,32 @@ mod tests {
         let (points, scanned) = (points.to_vec(), passage("s", 1));
         sketch.begin_ways(&Forecast { points, passages: vec![scanned], ..Forecast::default() });
         assert!(sketch.ways.iter().all(|way| way.lines[0].from == LatLon::new(46.02, 9.0)));
+    }
+
+    /// It was drawn from the last point of the line, and from where the call names its place, wherever the flight ended.
+    #[test]
+    fn a_way_behind_a_corridor_or_a_call_begins_where_the_flight_leaves_that() {
+        let corridor = r#"<corridor id="c" width="400" spacing="400"><route><point lat="46" lon="9"/><point lat="46.04" lon="9"/></route></corridor>"#;
+        let call = r#"<call id="c" procedure="look" lat="46.0" lon="9.0"/>"#;
+        let procedures = r#"<procedures><procedure id="look" reference="46.0 9.0"><TF id="up" lat="46.01" lon="9"/></procedure></procedures>"#;
+        for (leg, flown) in [(corridor, "c"), (call, "c.up")] {
+            let plan = format!(
+                r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer">{procedures}<mainPlan><stage id="m" type="mission">{leg}
+              <intersection id="f" default="on"><branch id="on" next="x"/><branch id="no" next="home"/></intersection>
+              <TF id="x" lat="46.1" lon="9.1"/><TF id="home" lat="46.2" lon="9.1"/></stage></mainPlan></flightPlan>"#
+            );
+            let reading = flight_plan::read(plan);
+            assert!(!reading.has_errors(), "{:?}", reading.problems);
+            let mut sketch =
+                Sketch::new(&reading.plan, &Variables::initial(&reading.plan), &Sketch::default());
+            let left = LatLon::new(46.001, 9.002);
+            let points = [(LatLon::new(46.04, 9.0), 0.0), (left, 1.0)].map(|(at, s)| at_time(at, s)).to_vec();
+            sketch.begin_ways(&Forecast { points, passages: vec![passage(flown, 1)], ..Forecast::default() });
+            assert!(
+                !sketch.ways.is_empty() && sketch.ways.iter().all(|way| way.lines[0].from == left),
+                "{leg}"
+            );
+        }
     }
 
     /// It was drawn from the middle of the orbit, and to it.
