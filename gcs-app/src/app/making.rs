@@ -3,13 +3,17 @@
 use super::{App, even};
 use crate::airfields::Ground;
 use crate::command::Selection;
+use crate::guide::Guide;
 use crate::runways;
 use aircraft::Profile;
 use flight_plan::create::WayHome;
 use flight_plan::template::Outline;
-use flight_plan::{Altitude, AltitudeReference, Edit, FlightPlan, Id, Place, Thing, Value, create};
+use flight_plan::{Altitude, AltitudeReference, Edit, FlightPlan, Id, Place, Runway, Thing, Value, create};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
+
+/// So many directions of a runway are tried around its threshold, where nobody has said one.
+const HEADINGS: u32 = 12;
 
 impl App {
     /// A step that can be undone, like any other.
@@ -23,9 +27,34 @@ impl App {
             self.tell_ground(ground);
         }
         outline.runway.elevation_amsl_m = ground.amsl_m().round();
+        let asked = outline.runway.id.clone();
+        let others = self.other_runways(&outline.runway);
+        let outline = outline.flyable(others, &profile, self.layers.ground().as_ref());
+        if outline.runway.id != asked {
+            let runway = &outline.runway.id;
+            let why = format!(
+                "The ground around leaves no way to {asked}: the plan takes off and lands on {runway}"
+            );
+            self.view.notice = Some(why);
+        }
         self.document.replace(outline.plan(&profile, self.layers.ground().as_ref()));
         self.view.guide.is_made = true;
         self.map.fit();
+    }
+
+    /// What else a runway may be: its other direction, and where nobody said in which it lies, any other around its threshold.
+    fn other_runways(&self, runway: &Runway) -> Vec<Runway> {
+        let none = FlightPlan::default();
+        let is_blind =
+            runway.heading_deg == Guide::default().heading_deg && self.view.guide.landing().is_none();
+        let turned = (1..if is_blind { HEADINGS } else { 1 }).map(|turn| {
+            let heading_deg = runway.heading_deg + 360.0 * f64::from(turn) / f64::from(HEADINGS);
+            let end = runway.threshold.destination(heading_deg, runway.length_m);
+            Runway { priority: 1, ..create::runway(&none, runway.threshold, end, runway.elevation_amsl_m) }
+        });
+        let far_end = runway.from_other_end().threshold;
+        let other = create::other_direction(&none, runway, self.ground(far_end).amsl_m());
+        std::iter::once(Runway { priority: 1, ..other }).chain(turned).collect()
     }
 
     fn ground(&self, at: LatLon) -> Ground {
