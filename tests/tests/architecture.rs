@@ -57,7 +57,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "stdio",
         ],
     ),
-    ("system-tests", &["geometry", "usal", "autopilot-link", "sim"]),
+    // flights are held against their preview
+    (
+        "system-tests",
+        &["geometry", "terrain", "aircraft", "flight-plan", "flight-exec", "usal", "autopilot-link", "sim"],
+    ),
     ("pictures", &[]),
     (
         "fuzz-targets",
