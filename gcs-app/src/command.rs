@@ -12,6 +12,7 @@ use crate::state::VehicleName;
 use crate::units::Units;
 use flight_exec::Command as PlanCommand;
 use flight_exec::rehearse::WhatIf;
+use flight_plan::describe::Subject;
 use flight_plan::template::Outline;
 use flight_plan::{Cause, Edit, Id, Place};
 use geometry::LatLon;
@@ -335,6 +336,25 @@ impl Selection {
     /// It can be selected together with others: it, or what is in it, has a place of its own.
     pub fn is_in_sets(&self) -> bool {
         matches!(self, Self::Leg(_) | Self::Stage(_) | Self::Fix(_) | Self::Zone(_) | Self::Runway(_))
+    }
+
+    /// It has a name and no place: it is selected alone.
+    pub fn is_named(&self) -> bool {
+        matches!(self, Self::Emergency(_) | Self::Procedure(_) | Self::Variable(_))
+    }
+
+    /// What it is in the plan.
+    pub fn subject(&self) -> Subject {
+        match self.clone() {
+            Self::Leg(id) => Subject::Leg(id),
+            Self::Stage(id) => Subject::Stage(id),
+            Self::Emergency(id) => Subject::EmergencyPlan(id),
+            Self::Fix(id) => Subject::Fix(id),
+            Self::Runway(id) => Subject::Runway(id),
+            Self::Variable(id) => Subject::Variable(id),
+            Self::Zone(id) => Subject::Zone(id),
+            Self::Procedure(id) => Subject::Procedure(id),
+        }
     }
 
     /// The identifier it stands for.

@@ -28,6 +28,7 @@ const TABLE: &[Alias] = &[
     alias(&["home", "home position", "launch point", "airstrip"], &["tool-runway"], &["RWY"]),
     alias(&["geofence", "fence", "no-fly zone", "exclusion", "inclusion"], &["tool-zone"], &["IN", "OUT"]),
     alias(&["polygon", "shape"], &["tool-area", "tool-zone"], &[]),
+    alias(&["inner polygon", "cutout", "leave out", "gap"], &["tool-hole"], &[]),
     alias(&["waypoint", "WP", "mission item", "add point"], &["tool-track"], &["IF", "TF", "DF", "RF", "CF"]),
     alias(&["survey grid", "survey", "lawnmower", "photogrammetry", "mapping", "transect"], &["tool-area"], &["SCAN"]),
     alias(&["corridor scan", "polyline", "route"], &["tool-line"], &["CORR", "TRACK"]),

@@ -93,6 +93,15 @@ impl Coverage {
         self.share_of(|ending| ending.reach == reach)
     }
 
+    /// The alarms that end so, the one that does on most of the path first.
+    pub fn causes(&self, reach: Reach) -> Vec<Cause> {
+        let share = |cause: Cause| self.share_of(|ending| ending.reach == reach && ending.cause == cause);
+        let mut shares: Vec<(Cause, f64)> = Cause::ALL.iter().map(|cause| (*cause, share(*cause))).collect();
+        shares.retain(|(_, share)| *share > 0.0);
+        shares.sort_by(|(_, one), (_, other)| other.total_cmp(one));
+        shares.into_iter().map(|(cause, _)| cause).collect()
+    }
+
     /// What of that share is nothing but an engine failure near the runway, 0..=1, and the kinds of stages there, in the order of a flight.
     pub fn near_runway(&self, reach: Reach) -> (f64, Vec<StageKind>) {
         let is_near = |ending: &Ending| ending.reach == reach && ending.is_engine_near_runway();

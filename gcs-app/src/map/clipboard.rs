@@ -12,6 +12,7 @@ use crate::panels::start;
 use egui::{Context, Event, Ui, ViewportCommand};
 use flight_plan::clipboard::{self, Pasted};
 use flight_plan::create::{self, Drawn, LegChoice};
+use flight_plan::describe::Subject;
 use flight_plan::{FlightPlan, Id, Place, Thing, Value};
 use geometry::LatLon;
 use interchange::{Feature, Format};
@@ -104,6 +105,10 @@ pub fn carry_out(clip: Clip, ui: &Ui, canvas: &Canvas<'_>, queue: &mut Queue) {
         Clip::Copy => drop(copy(ui.ctx(), canvas)),
         Clip::Cut => cut(ui.ctx(), canvas, queue),
         Clip::Paste => ui.send_viewport_cmd(ViewportCommand::RequestPaste),
+        Clip::Duplicate if named(canvas).is_some() => {
+            let plan = canvas.scene.document.plan();
+            named(canvas).into_iter().for_each(|what| put(clipboard::duplicate_named(plan, &what), queue));
+        }
         Clip::Duplicate => {
             let set = canvas.scene.selected_set();
             put(clipboard::duplicate(canvas.scene.document.plan(), &set), queue);
@@ -111,7 +116,7 @@ pub fn carry_out(clip: Clip, ui: &Ui, canvas: &Canvas<'_>, queue: &mut Queue) {
     }
 }
 
-/// What is selected to the clipboard, of a stage its legs; of a fix or runway alone the place. `None`: there is nothing to be copied.
+/// What is selected to the clipboard, of a stage its legs; of a fix or runway alone the place; of what has no place all that it needs. `None`: there is nothing to be copied.
 fn copy(ctx: &Context, canvas: &Canvas<'_>) -> Option<()> {
     let (plan, scene) = (canvas.scene.document.plan(), canvas.scene);
     let place = match &scene.view.selection {
@@ -127,8 +132,15 @@ fn copy(ctx: &Context, canvas: &Canvas<'_>) -> Option<()> {
         }
         _ => scene.selected_set(),
     };
-    ctx.copy_text(place.or_else(|| clipboard::copy(plan, &set))?);
+    let named = named(canvas).and_then(|what| clipboard::copy_named(plan, &what));
+    ctx.copy_text(place.or(named).or_else(|| clipboard::copy(plan, &set))?);
     Some(())
+}
+
+/// The emergency plan, procedure or variable that is selected.
+fn named(canvas: &Canvas<'_>) -> Option<Subject> {
+    let selected = canvas.scene.view.selection.as_ref().filter(|what| what.is_named())?;
+    Some(selected.subject())
 }
 
 /// All of it, so that it can be pasted again: of a fix or runway more than its place. The clipboard holds no stages: they stay, without
@@ -137,6 +149,10 @@ fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
     let plan = canvas.scene.document.plan();
     if canvas.scene.selected_branch().is_some() {
         return queue.view(ViewCommand::Notice(NO_BRANCH.into()));
+    }
+    if let Some(what) = canvas.scene.view.selection.as_ref().filter(|what| what.is_named()) {
+        copy(ctx, canvas);
+        return queue.edit(create::remove(plan, what.id()));
     }
     let mut set = canvas.scene.selected_set();
     set.retain(|id| plan.stage(id).is_none());
@@ -237,11 +253,16 @@ fn put(pasted: Result<Pasted, String>, queue: &mut Queue) {
 
 /// What was pasted or added, as something to be selected.
 pub fn selections(pasted: &Pasted) -> Vec<Selection> {
-    let things = pasted.things.iter().filter_map(|thing| match thing {
-        Thing::Fix(fix) => Some(Selection::Fix(fix.id.clone())),
-        Thing::Zone(zone) => Some(Selection::Zone(zone.id.clone())),
-        Thing::Runway(runway) => Some(Selection::Runway(runway.id.clone())),
-        Thing::Variable(_) | Thing::Procedure(_) | Thing::EmergencyPlan(_) => None,
+    let things = pasted.things.iter().map(|thing| match thing {
+        Thing::Fix(fix) => Selection::Fix(fix.id.clone()),
+        Thing::Zone(zone) => Selection::Zone(zone.id.clone()),
+        Thing::Runway(runway) => Selection::Runway(runway.id.clone()),
+        Thing::Variable(variable) => Selection::Variable(variable.name.clone()),
+        Thing::Procedure(procedure) => Selection::Procedure(procedure.id.clone()),
+        Thing::EmergencyPlan(emergency) => Selection::Emergency(emergency.id.clone()),
     });
-    pasted.legs.iter().cloned().map(Selection::Leg).chain(things).collect()
+    let all: Vec<Selection> = pasted.legs.iter().cloned().map(Selection::Leg).chain(things).collect();
+    // what is no part of sets is selected alone
+    let alone = all.iter().find(|what| what.is_named()).cloned();
+    alone.map_or(all, |alone| vec![alone])
 }

@@ -4,8 +4,9 @@ use super::polyline::Style;
 use crate::forecast::{Coverage, Point};
 use crate::panels::what_if::reach_name;
 use crate::theme::{self, Palette};
-use egui::{Painter, Pos2, RichText, Sense, Shape, Stroke, Ui, vec2};
+use egui::{Label, Painter, Pos2, RichText, Sense, Shape, Stroke, Ui, vec2};
 use flight_exec::rehearse::Reach;
+use flight_plan::Cause;
 
 /// All of them, the best first.
 const REACHES: [Reach; 3] = [Reach::Good, Reach::Tight, Reach::Out];
@@ -54,12 +55,12 @@ pub fn legend(ui: &mut Ui, coverage: &Coverage) {
             let (rect, _) = ui.allocate_exact_size(vec2(34.0, 12.0), Sense::hover());
             let ends = [rect.left_center(), rect.right_center()];
             line(ui.painter(), &ends, look(Some(reach), p));
-            ui.label(RichText::new(words(coverage, reach)).size(11.5).color(p.text));
+            ui.add(Label::new(RichText::new(words(coverage, reach)).size(11.5).color(p.text)).wrap());
         });
     }
 }
 
-/// `not reached: 10 %, all of it on departure and approach`: there no problem is told of it, for nothing helps.
+/// `not reached: 10 % (engine failure), all of it on departure and approach`: there no problem is told of it, for nothing helps.
 fn words(coverage: &Coverage, reach: Reach) -> String {
     if !coverage.is_complete() {
         return reach_name(reach).into();
@@ -69,7 +70,12 @@ fn words(coverage: &Coverage, reach: Reach) -> String {
     let percent = REACHES.iter().zip(percent).find(|(of, _)| **of == reach).map_or(0, |(_, percent)| percent);
     let (near, kinds) = coverage.near_runway(reach);
     let of_all = format!("{}: {percent} %", reach_name(reach));
-    if reach == Reach::Good || kinds.is_empty() {
+    let causes: Vec<String> = coverage.causes(reach).into_iter().map(in_text).collect();
+    if reach == Reach::Good || causes.is_empty() {
+        return of_all;
+    }
+    let of_all = format!("{of_all} ({})", in_a_row(&causes));
+    if kinds.is_empty() {
         return of_all;
     }
     let names: Vec<String> = kinds.into_iter().map(|kind| kind.name().to_lowercase()).collect();
@@ -97,6 +103,13 @@ fn percents(shares: [f64; 3]) -> [u32; 3] {
 /// What a sum of shares may be off, percent.
 const EXACT: f64 = 1e-9;
 
+/// What an alarm is called inside of a sentence: `engine failure`, `GPS lost`.
+fn in_text(cause: Cause) -> String {
+    let name = cause.name();
+    let is_word = name.chars().nth(1).is_some_and(char::is_lowercase);
+    if is_word { name.to_lowercase() } else { name.to_owned() }
+}
+
 /// `departure, arrival and approach`.
 fn in_a_row(names: &[String]) -> String {
     match names {
@@ -110,7 +123,7 @@ mod tests {
     use super::*;
     use crate::forecast::Ending;
     use crate::forecast::Forecast;
-    use flight_plan::{Cause, StageKind};
+    use flight_plan::StageKind;
 
     fn point(time_s: f64) -> Point {
         Point {
@@ -152,12 +165,17 @@ mod tests {
         let (mission, leaves, comes) = (StageKind::Mission, StageKind::Departure, StageKind::Approach);
         assert_eq!(said([good(mission), None, good(comes), good(leaves)]), "not reached: 0 %");
         let all = said([good(mission), out(leaves), out(comes), good(mission)]);
-        assert_eq!(all, "not reached: 50 %, all of it on departure and approach");
+        assert_eq!(all, "not reached: 50 % (engine failure), all of it on departure and approach");
         let some = said([out(mission), out(leaves), out(comes), out(StageKind::Arrival)]);
-        assert_eq!(some, "not reached: 100 %, 25 % of it not on departure, arrival and approach");
-        assert_eq!(said([out(mission); 4]), "not reached: 100 %");
+        assert_eq!(
+            some,
+            "not reached: 100 % (engine failure), 25 % of it not on departure, arrival and approach"
+        );
+        assert_eq!(said([out(mission); 4]), "not reached: 100 % (engine failure)");
         let link = Some(Ending { reach: Reach::Out, cause: Cause::Link, stage: leaves });
-        assert_eq!(said([link; 4]), "not reached: 100 %", "that is no engine failure");
+        assert_eq!(said([link; 4]), "not reached: 100 % (link lost)", "that is no engine failure");
+        let gps = Some(Ending { reach: Reach::Out, cause: Cause::Gps, stage: leaves });
+        assert_eq!(said([gps, link, gps, gps]), "not reached: 100 % (GPS lost and link lost)");
     }
 
     #[test]
@@ -168,7 +186,7 @@ mod tests {
             assert_eq!(words(&coverage, Reach::Out), "not reached");
             coverage.push(out(StageKind::Mission));
         }
-        assert_eq!(words(&coverage, Reach::Out), "not reached: 100 %");
+        assert_eq!(words(&coverage, Reach::Out), "not reached: 100 % (engine failure)");
     }
 
     #[test]

@@ -169,9 +169,9 @@ impl Sketch {
 
     fn add_flown(&mut self, call: &Id, leg: &Leg, reader: &Reader<'_>) {
         self.called.extend(ways::places(leg, reader));
-        let rim = round(leg).and_then(|rim| circle(call, rim, ways::area(leg).is_some(), reader));
+        let rim = round(leg).and_then(|rim| circle(call, rim, leg.area().is_some(), reader));
         self.circles.extend(rim);
-        let covered = ways::area(leg).and_then(|area| rings(area, reader));
+        let covered = leg.area().and_then(|area| rings(area, reader));
         self.polygons.extend(covered.map(|rings| (call.clone(), rings)));
         leg.body().iter().for_each(|inner| self.add_flown(call, inner, reader));
     }
@@ -267,7 +267,7 @@ impl Sketch {
     }
 
     fn add_circle(&mut self, leg: &Leg, rim: Rim<'_>, reader: &Reader<'_>) {
-        let Some(circle) = circle(&leg.id, rim, ways::area(leg).is_some(), reader) else { return };
+        let Some(circle) = circle(&leg.id, rim, leg.area().is_some(), reader) else { return };
         let Circle { centre: at, radius_m, .. } = circle;
         self.note_radius(rim, reader);
         // circles around the same place share one handle: the first one's

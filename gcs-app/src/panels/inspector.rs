@@ -18,13 +18,13 @@ mod together;
 mod value;
 
 use super::field;
-use super::{Panel, PanelId, Place, Scene};
-use crate::command::{BranchId, Queue};
+use super::{Panel, PanelId, Place, Scene, group_title};
+use crate::command::{BranchId, Queue, Selection};
 use crate::theme;
 use crate::units;
 use egui::{RichText, ScrollArea, Ui};
+use flight_plan::Edit;
 use flight_plan::describe::{Draft, Subject};
-use flight_plan::{Edit, Id};
 use page::Page;
 pub use raise::focus as focus_raise;
 
@@ -64,30 +64,37 @@ fn selected(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     let set = scene.selected_set();
     if set.len() > 1 && (set.len() > legs.len() || set.len() > together::MOST) {
         together::mixed(ui, scene, &set, queue);
-        if !legs.is_empty() && set.len() <= together::MOST {
-            ui.separator();
-            common(ui, scene, &legs, queue);
+        if set.len() <= together::MOST {
+            together::sorts(scene).into_iter().for_each(|sort| common(ui, scene, &sort, queue));
         }
         return;
     }
     if legs.len() > 1 {
         together::head(ui, scene, &legs, queue);
-        common(ui, scene, &legs, queue);
+        let subjects: Vec<Subject> = legs.iter().cloned().map(Subject::Leg).collect();
+        several(ui, scene, "leg", &subjects, queue);
         together::foot(ui, plan, &legs, queue);
         return;
     }
-    let subject = page::subject(scene.view.selection.as_ref());
+    let subject = scene.view.selection.as_ref().map_or(Subject::Plan, Selection::subject);
     match Draft::of(plan, &subject) {
         Some(draft) => ui.push_id(&subject, |ui| part(ui, scene, draft, queue)).inner,
         None => drop(ui.label("It is no longer in the plan.")),
     }
 }
 
+/// What holds for each of one sort, below what they are.
+fn common(ui: &mut Ui, scene: &Scene<'_>, sort: &together::Sort, queue: &mut Queue) {
+    ui.separator();
+    group_title(ui, &sort.counted());
+    several(ui, scene, sort.name, &sort.subjects, queue);
+}
+
 /// What holds for each of them.
-fn common(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], queue: &mut Queue) {
-    let draft = |leg: &Id| Draft::of(scene.document.plan(), &Subject::Leg(leg.clone()));
-    let drafts: Vec<Draft> = legs.iter().filter_map(draft).collect();
-    ui.push_id("several legs", |ui| form(ui, scene, &drafts, queue));
+fn several(ui: &mut Ui, scene: &Scene<'_>, sort: &str, subjects: &[Subject], queue: &mut Queue) {
+    let plan = scene.document.plan();
+    let drafts: Vec<Draft> = subjects.iter().filter_map(|subject| Draft::of(plan, subject)).collect();
+    ui.push_id(("several", sort), |ui| form(ui, scene, &drafts, queue));
 }
 
 fn part(ui: &mut Ui, scene: &Scene<'_>, draft: Draft, queue: &mut Queue) {

@@ -4,7 +4,7 @@ use super::{SQUARE, Window};
 use egui::{Key, Pos2, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_plan::create::{LegChoice, Shape};
-use flight_plan::{Id, LegKind, Pattern, Place, ZoneKind, ZoneShape};
+use flight_plan::{Area, Id, LegKind, Pattern, Place, ZoneKind, ZoneShape};
 
 fn window() -> Window {
     let mut window = Window::open(SQUARE);
@@ -109,6 +109,70 @@ fn a_double_click_ends_a_line() {
         panic!("no corridor")
     };
     assert_eq!(route.len(), 3, "{route:?}");
+}
+
+/// Corners from the first one of [`AREA`], screen points.
+fn square(from: Vec2, side: f32) -> [Vec2; 4] {
+    [vec2(0.0, 0.0), vec2(side, 0.0), vec2(side, side), vec2(0.0, side)].map(|corner| from + corner)
+}
+
+fn holes(window: &Window, scan: &str) -> Vec<usize> {
+    match window.plan().leg(&Id::new(scan)).and_then(|context| context.leg.area().cloned()) {
+        Some(Area::Polygon { holes, .. }) => holes.iter().map(Vec::len).collect(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_hole_is_cut_into_an_area_dragged_and_filled_again() {
+    let mut window = window();
+    let at = free(&window);
+    window.press(Key::A);
+    for offset in figure(Shape::Area) {
+        window.click_at(at + *offset * 1.4);
+    }
+    window.press(Key::Enter);
+    let scan = window.selected();
+    window.press(Key::Escape);
+    window.press(Key::H);
+    window.click_at(at - vec2(200.0, 0.0));
+    assert!(window.shows("Begin the hole inside of an area"), "there is none");
+    for corner in square(vec2(60.0, 40.0), 40.0) {
+        window.click_at(at + corner);
+    }
+    // over the edge of the area: it is red, is said, and does not end
+    let red = gcs_app::theme::palette(true).warning;
+    window.harness.hover_at(at + vec2(-50.0, 60.0));
+    window.steps(2);
+    assert!(window.lines_within("Map", red) > 0 && window.shows("A hole crosses another outline"));
+    window.click_at(at + vec2(-50.0, 60.0));
+    window.press(Key::Enter);
+    assert!(holes(&window, &scan).is_empty());
+    window.press(Key::Backspace);
+    window.click_at(at + square(vec2(60.0, 40.0), 40.0)[0]);
+    assert_eq!(
+        (window.selected(), holes(&window, &scan)),
+        (scan.clone(), vec![4]),
+        "the first one closes it"
+    );
+    window.until_analysed();
+    assert!(!window.errors().iter().any(|error| error.contains("polygon")), "{:?}", window.errors());
+    window.press(Key::Escape);
+    let corner = |number: usize| format!("Corner {number} of hole 1 of {scan}");
+    let from = window.centre(&corner(1));
+    window.drag(from, vec2(10.0, 10.0));
+    let to = from + vec2(10.0, 10.0);
+    assert!(window.centre(&corner(1)).distance(to) < 1.5, "it is dragged as any corner");
+    for left in [vec![3], vec![]] {
+        window.click(&corner(1));
+        window.press(Key::Delete);
+        assert_eq!(holes(&window, &scan), left, "a hole with two corners is none");
+    }
+    for _ in 0..4 {
+        window.press_ctrl(Key::Z);
+    }
+    assert!(holes(&window, &scan).is_empty(), "each was a step");
+    assert!(window.plan().leg(&Id::new(&scan)).is_some());
 }
 
 #[test]

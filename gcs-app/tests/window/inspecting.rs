@@ -1,6 +1,7 @@
 //! The inspector shows and changes everything that the language has.
 
 mod fields;
+mod sorts;
 mod writing;
 
 use super::table::Unknown;

@@ -318,3 +318,29 @@ fn a_clipboard_too_large_for_a_field_is_refused_in_words() {
     window.paste(&"x".repeat(50 << 20));
     assert!(window.shows("Nothing was pasted: the clipboard holds 51200 kB"));
 }
+
+/// It has no place where the pointer could put it: it leads to its runway from wherever it is needed.
+#[test]
+fn an_emergency_plan_is_copied_doubled_and_cut() {
+    let mut window = window();
+    let before = window.plan();
+    let ids = |window: &Window| -> Vec<String> {
+        window.plan().emergency_plans.iter().map(|plan| plan.id.to_string()).collect()
+    };
+    let of = ids(&window);
+    assert_eq!(of.len(), 1);
+    window.click("ALT return");
+    let text = taken(&mut window, Event::Copy);
+    assert!(text.contains("<emergencyPlan"), "{text}");
+    window.paste(&text);
+    assert_eq!((ids(&window).len(), window.plan().runways.len()), (2, before.runways.len()));
+    assert_eq!(window.selected(), ids(&window)[1], "what was pasted is selected");
+    window.press_ctrl(egui::Key::D);
+    assert_eq!(ids(&window).len(), 3);
+    let text = taken(&mut window, Event::Cut);
+    assert!(text.contains("<emergencyPlan") && ids(&window).len() == 2);
+    window.click("Undo");
+    window.click("Undo");
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step each");
+}

@@ -1,6 +1,11 @@
-//! Legs, fixes, zones and runways on the clipboard: a small document of their own, so that another window takes it, and an editor.
+//! Legs, fixes, zones, runways and what has a name on the clipboard: a small document of their own, so that another window takes it, and an editor.
+
+mod named;
+
+pub use named::copy_named;
 
 use crate::create::{every_leg, legs_in};
+use crate::describe::Subject;
 use crate::edit::lists;
 use crate::transform::{self, Motion};
 use crate::{
@@ -8,6 +13,7 @@ use crate::{
     StageKind, Thing, Turnaround, Zone, read, write,
 };
 use geometry::{LatLon, LocalFrame};
+use named::Alone;
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -21,7 +27,7 @@ pub const MAX_LEGS: usize = 1000;
 pub struct Pasted {
     /// Their identifiers there; legs inside loops are not among them.
     pub legs: Vec<Id>,
-    /// Fixes, zones and runways that come with them.
+    /// Fixes, zones, runways, emergency plans, procedures and variables that were copied, too.
     pub things: Vec<Thing>,
     /// Puts them there, with the variables and procedures that they need.
     pub edit: Edit,
@@ -44,7 +50,20 @@ pub fn copy(plan: &FlightPlan, set: &[Id]) -> Option<String> {
     {
         return None;
     }
-    let stage = Stage {
+    let copy = FlightPlan {
+        name: "Copied legs".into(),
+        aircraft: plan.aircraft.clone(),
+        stages: vec![copied_stage(legs)],
+        zones,
+        runways,
+        ..FlightPlan::default()
+    };
+    Some(with_needs(plan, copy, &chosen))
+}
+
+/// The stage that legs are copied in.
+fn copied_stage(legs: Vec<Arc<Leg>>) -> Stage {
+    Stage {
         id: Id::new("copied"),
         name: "Copied legs".into(),
         kind: StageKind::Mission,
@@ -54,18 +73,15 @@ pub fn copy(plan: &FlightPlan, set: &[Id]) -> Option<String> {
         speed_mps: None,
         turnaround: Turnaround::default(),
         legs,
-    };
-    let mut copy = FlightPlan {
-        name: "Copied legs".into(),
-        aircraft: plan.aircraft.clone(),
-        stages: vec![stage],
-        zones,
-        runways,
-        ..FlightPlan::default()
-    };
+    }
+}
+
+/// The document with the fixes, variables and procedures that it uses, and the fixes that were chosen.
+fn with_needs(plan: &FlightPlan, mut copy: FlightPlan, chosen: &dyn Fn(&Id) -> bool) -> String {
     // a procedure may call others
     loop {
-        let names = words(&write(&copy));
+        let text = write(&copy);
+        let names: HashSet<&str> = words(&text).collect();
         let used = plan.procedures.iter().filter(|p| names.contains(p.id.as_str()));
         let procedures: Vec<_> = used.cloned().collect();
         if procedures == copy.procedures {
@@ -73,18 +89,18 @@ pub fn copy(plan: &FlightPlan, set: &[Id]) -> Option<String> {
             copy.fixes = plan.fixes.iter().filter(goes_along).cloned().collect();
             let used = plan.variables.iter().filter(|variable| names.contains(variable.name.as_str()));
             copy.variables = used.cloned().collect();
-            return Some(write(&copy));
+            return write(&copy);
         }
         copy.procedures = procedures;
     }
 }
 
 /// Everything in a text that may be an identifier, and the names in its expressions.
-fn words(text: &str) -> HashSet<String> {
+fn words(text: &str) -> impl Iterator<Item = &str> {
     let is_id = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let ids = text.split(move |c| !is_id(c));
-    ids.chain(text.split(move |c| !is_name(c))).map(str::to_owned).collect()
+    ids.chain(text.split(move |c| !is_name(c)))
 }
 
 /// Legs of a document, to be put into a plan, with the zones and runways, and the fixes that none of the legs uses; around a place,
@@ -98,7 +114,8 @@ pub fn paste(plan: &FlightPlan, text: &str, at: &Spot, around: Option<LatLon>) -
         from.stages.iter().flat_map(|stage| &stage.legs).map(|leg| leg.as_ref().clone()).collect();
     let count = from.all_legs().len();
     let motion = around.and_then(|to| Some(Motion::shift(middle(&from)?, to)));
-    let (with_things, things) = things(&from, plan, motion)?;
+    let alone = Alone::of(&from);
+    let (with_things, things) = things(&from, &alone, plan, motion)?;
     if legs.is_empty() && things.is_empty() {
         return Err("There are no legs in what was copied: copy some legs.".into());
     }
@@ -110,7 +127,7 @@ pub fn paste(plan: &FlightPlan, text: &str, at: &Spot, around: Option<LatLon>) -
     }
     lists::rename(&mut legs, lists::ids(&with_things));
     let ids: Vec<Id> = legs.iter().map(|leg| leg.id.clone()).collect();
-    let mut edits = needed(&from, plan);
+    let mut edits = needed(&from, &alone, plan);
     edits.extend(things.iter().map(|thing| Edit::Add(Box::new(thing.clone()))));
     let mut spot = at.clone();
     for leg in legs {
@@ -123,14 +140,16 @@ pub fn paste(plan: &FlightPlan, text: &str, at: &Spot, around: Option<LatLon>) -
 /// The fixes of a document that nothing else in it names.
 fn fixes_alone(from: &FlightPlan) -> Vec<&Fix> {
     let others = FlightPlan { fixes: Vec::new(), ..from.clone() };
-    let names = words(&write(&others));
+    let text = write(&others);
+    let names: HashSet<&str> = words(&text).collect();
     from.fixes.iter().filter(|fix| !names.contains(fix.id.as_str())).collect()
 }
 
-/// The zones and runways of a document, and the fixes that no leg of it uses, under new names where theirs are taken; and the plan
+/// The zones, runways and emergency plans of a document, and what nothing in it uses, under new names where theirs are taken; and the plan
 /// with them.
 fn things(
     from: &FlightPlan,
+    alone: &Alone<'_>,
     plan: &FlightPlan,
     motion: Option<Motion>,
 ) -> Result<(FlightPlan, Vec<Thing>), String> {
@@ -138,10 +157,11 @@ fn things(
     let motion = motion.unwrap_or(Motion::shift(here, here));
     let (mut with, mut things) = (plan.clone(), Vec::new());
     let fixes = fixes_alone(from);
-    let count = fixes.len() + from.zones.len() + from.runways.len();
+    let named = from.emergency_plans.len() + alone.procedures.len() + alone.variables.len();
+    let count = fixes.len() + from.zones.len() + from.runways.len() + named;
     if count > MAX_LEGS {
         return Err(format!(
-            "What was copied has {count} fixes, zones and runways; {MAX_LEGS} can be pasted at once."
+            "What was copied has {count} things beside legs; {MAX_LEGS} can be pasted at once."
         ));
     }
     for fix in fixes {
@@ -156,12 +176,14 @@ fn things(
         with.zones.push(zone.clone());
         things.push(Thing::Zone(zone));
     }
-    for runway in &from.runways {
+    for runway in from.runways.iter().filter(|runway| !named::is_landed_on(from, &runway.id)) {
         let mut runway = Runway { id: with.unique_id(runway.id.as_str()), ..runway.clone() };
         motion.runway(&mut runway);
         with.runways.push(runway.clone());
         things.push(Thing::Runway(runway));
     }
+    things.extend(named::emergencies(from, &mut with));
+    things.extend(named::alone(alone, &mut with));
     Ok((with, things))
 }
 
@@ -176,6 +198,15 @@ pub fn duplicate(plan: &FlightPlan, set: &[Id]) -> Result<Pasted, String> {
         every_leg(plan).into_iter().map(|leg| leg.id.clone()).filter(|id| set.contains(id)).collect();
     let last = outermost(plan, &legs).last().map_or_else(|| Id::new(""), |leg| (*leg).clone());
     paste(plan, &text, &Spot::After(last), None)
+}
+
+/// A copy of an emergency plan, a procedure or a variable.
+///
+/// # Errors
+/// A sentence that says why that can't be.
+pub fn duplicate_named(plan: &FlightPlan, what: &Subject) -> Result<Pasted, String> {
+    let text = copy_named(plan, what).ok_or("It is no longer in the plan: choose something else.")?;
+    paste(plan, &text, &Spot::EndOf(Id::new("")), None)
 }
 
 /// Of these legs, those that are not in a loop that is one of them, too; in the order given.
@@ -205,10 +236,11 @@ fn document(text: &str) -> Result<FlightPlan, String> {
 
 /// The middle of everything that is pasted.
 fn middle(from: &FlightPlan) -> Option<LatLon> {
-    let legs = from.all_legs().into_iter().map(|context| context.leg.id.clone());
+    let legs = named::main_legs(from).into_iter();
     let things =
         fixes_alone(from).into_iter().map(|fix| &fix.id).chain(from.zones.iter().map(|zone| &zone.id));
-    let things = things.chain(from.runways.iter().map(|runway| &runway.id)).cloned();
+    let moved = from.runways.iter().filter(|runway| !named::is_landed_on(from, &runway.id));
+    let things = things.chain(moved.map(|runway| &runway.id)).cloned();
     let places = transform::places_of(from, &legs.chain(things).collect::<Vec<Id>>());
     LocalFrame::around(&places).map(|frame| frame.origin())
 }
@@ -227,9 +259,11 @@ fn settle(leg: &mut Leg, from: &FlightPlan, plan: &FlightPlan, motion: Option<Mo
 }
 
 /// The variables and procedures that the plan does not have.
-fn needed(from: &FlightPlan, plan: &FlightPlan) -> Vec<Edit> {
-    let variables = from.variables.iter().filter(|variable| plan.variable(&variable.name).is_none());
-    let procedures = from.procedures.iter().filter(|procedure| plan.procedure(&procedure.id).is_none());
+fn needed(from: &FlightPlan, alone: &Alone<'_>, plan: &FlightPlan) -> Vec<Edit> {
+    let is_needed = |name: &Id| !alone.has_variable(name) && plan.variable(name).is_none();
+    let variables = from.variables.iter().filter(|variable| is_needed(&variable.name));
+    let is_needed = |id: &Id| !alone.has_procedure(id) && plan.procedure(id).is_none();
+    let procedures = from.procedures.iter().filter(|procedure| is_needed(&procedure.id));
     let variables = variables.map(|variable| Thing::Variable(variable.clone()));
     let things = variables.chain(procedures.map(|procedure| Thing::Procedure(procedure.clone())));
     things.map(|thing| Edit::Add(Box::new(thing))).collect()

@@ -2,7 +2,7 @@
 
 use crate::{
     Altitude, Area, Branch, DecideBefore, EmergencyPlan, FlightPlan, Id, IterativeForm, Leg, LegKind,
-    Pattern, Place, ScanStyle, Stage, StageKind, TurnDirection, Value,
+    Pattern, Place, Scan, ScanStyle, Stage, StageKind, TurnDirection, Value,
 };
 use std::sync::Arc;
 
@@ -112,6 +112,14 @@ impl Leg {
     /// Where it goes, holds, or what it is about; `None` for control legs and polygons.
     pub fn place(&self) -> Option<&Place> {
         self.kind.place()
+    }
+
+    /// What it covers or goes around, if that is an area.
+    pub fn area(&self) -> Option<&Area> {
+        match &self.kind {
+            LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => Some(area),
+            _ => None,
+        }
     }
 
     /// What it is called in the document.

@@ -3,7 +3,7 @@
 use super::calls::Calls;
 use super::{Line, Reader};
 use crate::forecast::{Forecast, Point};
-use flight_plan::{Area, Id, Leg, LegContext, LegKind, Pattern, Scan, Section};
+use flight_plan::{Area, Id, Leg, LegContext, LegKind, Pattern, Section};
 use geometry::{LatLon, LocalFrame};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -196,7 +196,7 @@ fn wide_before(context: &LegContext<'_>) -> Option<Id> {
     let is_wide = |leg: &&Leg| {
         let is_hold = matches!(leg.kind, LegKind::Hf(_) | LegKind::Ha(_) | LegKind::Hm { .. });
         let is_other = is_corridor(leg) || matches!(leg.kind, LegKind::Call(_));
-        is_hold || is_other || area(leg).is_some() || super::round(leg).is_some()
+        is_hold || is_other || leg.area().is_some() || super::round(leg).is_some()
     };
     before(context).filter(is_wide).map(|leg| leg.id.clone())
 }
@@ -322,7 +322,7 @@ impl Trace<'_, '_> {
             return vec![round.towards(self.at)];
         }
         let far = |corner: &LatLon| corner.distance_m(self.at);
-        match area(leg) {
+        match leg.area() {
             Some(Area::Polygon { corners, .. }) => {
                 corners.iter().copied().min_by(|a, b| far(a).total_cmp(&far(b))).into_iter().collect()
             }
@@ -350,21 +350,13 @@ pub(super) fn places(leg: &Leg, reader: &Reader<'_>) -> Vec<LatLon> {
     if let LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. }) = &leg.kind {
         return route.iter().filter_map(|place| reader.place(place)).collect();
     }
-    let place = match area(leg) {
+    let place = match leg.area() {
         None => reader.place_of(leg),
         Some(Area::Circle { centre, .. }) => reader.place(centre),
         Some(Area::Polygon { corners, .. }) => middle(corners),
         Some(Area::Expression(source)) => reader.polygon(source).and_then(|ring| middle(&ring)),
     };
     place.into_iter().collect()
-}
-
-/// What a leg covers, if it is an area.
-pub(super) fn area(leg: &Leg) -> Option<&Area> {
-    match &leg.kind {
-        LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => Some(area),
-        _ => None,
-    }
 }
 
 /// It is begun at the end that is nearer to where the path comes from.

@@ -40,9 +40,20 @@ pub fn remove_corner(plan: &FlightPlan, sketch: &Sketch, corner: &Handled, queue
     };
     let (have, least, what) = points_of(plan, leg, *hole);
     if have <= least {
+        if let Some(filled) = hole.and_then(|hole| filled(plan, leg, hole)) {
+            return queue.edit(filled);
+        }
         return queue.view(too_few(what, least));
     }
     queue.edit(Edit::RemoveCorner { leg: leg.clone(), hole: *hole, corner: *corner });
+}
+
+/// A hole that has too few corners left is none.
+fn filled(plan: &FlightPlan, leg: &Id, hole: usize) -> Option<Edit> {
+    let mut area = plan.any_leg(leg)?.area()?.clone();
+    let Area::Polygon { holes, .. } = &mut area else { return None };
+    (hole < holes.len()).then(|| holes.remove(hole))?;
+    Some(Edit::SetArea { leg: leg.clone(), area })
 }
 
 fn too_few(what: &str, least: usize) -> ViewCommand {

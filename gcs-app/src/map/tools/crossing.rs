@@ -7,8 +7,8 @@ use crate::map::text;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Stroke, vec2};
 use flight_plan::{Id, ZoneShape};
-use geometry::polygon::PolygonError;
-use geometry::{LatLon, LocalFrame, Polygon};
+use geometry::polygon::{PolygonError, is_in_ring};
+use geometry::{LatLon, LocalFrame, Polygon, Vec2};
 
 /// Outlines with more corners are left to the check of the plan, so that no frame takes long.
 const MOST: usize = 1000;
@@ -23,7 +23,8 @@ pub fn paint(painter: &Painter, canvas: &Canvas<'_>, dragged: Option<Pos2>, p: &
             polyline::draw(painter, &parts, Stroke::new(2.4, p.warning), Style::Solid, p.halo);
         }
         let at = dragged.unwrap_or_else(|| canvas.view.place(at)) + vec2(12.0, 26.0);
-        text::haloed(painter, at, Align2::LEFT_TOP, why, 12.0, p.warning, p);
+        let words = format!("{why}: drag it back");
+        text::haloed(painter, at, Align2::LEFT_TOP, &words, 12.0, p.warning, p);
     }
 }
 
@@ -43,8 +44,15 @@ fn selected(canvas: &Canvas<'_>) -> Vec<Vec<Vec<LatLon>>> {
     zones.chain(covered).chain(areas).collect()
 }
 
-/// What is wrong with an outline, in words, and where.
-fn fault(rings: &[Vec<LatLon>]) -> Option<(&'static str, LatLon)> {
+/// A place is inside of a ring.
+pub fn is_inside(ring: &[LatLon], at: LatLon) -> bool {
+    let Some(frame) = LocalFrame::around(ring) else { return false };
+    let flat: Vec<Vec2> = ring.iter().map(|corner| frame.to_local(*corner)).collect();
+    is_in_ring(&flat, frame.to_local(at))
+}
+
+/// What is wrong with an outline and its holes, in words, and where.
+pub fn fault(rings: &[Vec<LatLon>]) -> Option<(&'static str, LatLon)> {
     let (outer, holes) = rings.split_first()?;
     if rings.iter().map(Vec::len).sum::<usize>() > MOST {
         return None;
@@ -60,10 +68,10 @@ fn fault(rings: &[Vec<LatLon>]) -> Option<(&'static str, LatLon)> {
     Some((why, *rings.get(ring)?.get(corner)?))
 }
 
-const CROSSES: &str = "The outline crosses itself: drag a corner back";
-const HOLE_CROSSES: &str = "A hole crosses another outline: drag a corner back";
-const HOLE_OUTSIDE: &str = "A hole is outside of the area: drag it back";
-const HOLE_INSIDE: &str = "A hole is inside of another one: drag it back";
+const CROSSES: &str = "The outline crosses itself";
+const HOLE_CROSSES: &str = "A hole crosses another outline";
+const HOLE_OUTSIDE: &str = "A hole is outside of the area";
+const HOLE_INSIDE: &str = "A hole is inside of another one";
 
 #[cfg(test)]
 mod tests {

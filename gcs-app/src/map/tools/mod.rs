@@ -13,6 +13,7 @@ mod emergency;
 mod group;
 mod guided;
 mod handles;
+mod hole;
 mod measure;
 pub mod new_leg;
 pub(super) mod pen;
@@ -53,6 +54,7 @@ fn all() -> Vec<Box<dyn Tool>> {
         Box::new(draw_leg::DrawLeg::new(&draw_leg::AREA)),
         Box::new(draw_leg::DrawLeg::new(&draw_leg::LINE)),
         Box::new(draw_leg::DrawLeg::new(&draw_leg::CIRCLE)),
+        Box::new(hole::CutHole::default()),
         Box::new(thing::PlaceFix::default()),
         Box::new(thing::DrawZone::default()),
         Box::new(thing::DrawRunway::default()),

@@ -112,14 +112,18 @@ impl Pen {
         self.fault = (self.figure == Figure::Ring && crosses_itself(&ring)).then_some(CROSSES);
     }
 
+    /// An outline would end with this place: it is the first one again.
+    pub fn closes(&self, mark: &Mark, canvas: &Canvas<'_>) -> bool {
+        let is_first = |first: &Mark| canvas.view.place(first.at).distance(canvas.view.place(mark.at)) < NEAR;
+        self.figure == Figure::Ring && self.len() >= 3 && self.marks.first().is_some_and(is_first)
+    }
+
     /// Takes a place; gives the figure when it is whole.
     pub fn put(&mut self, mark: Mark, canvas: &Canvas<'_>) -> Option<Vec<Mark>> {
-        let at = canvas.view.place(mark.at);
         if !mark.at.is_valid() {
             return None;
         }
-        let first = self.marks.first().map(|first| canvas.view.place(first.at));
-        if self.figure == Figure::Ring && first.is_some_and(|f| self.len() >= 3 && f.distance(at) < NEAR) {
+        if self.closes(&mark, canvas) {
             return self.finish();
         }
         self.marks.push(mark);

@@ -39,6 +39,7 @@ fn row(ui: &mut Ui, page: &mut Page<'_, '_>, row: &'static Row) {
     match row {
         Row::Property(property) => value::row(ui, page, property),
         Row::OneOf(one) if level::is_level(one) => level::row(ui, page, one),
+        Row::OneOf(one) if page.is_own_way(one) => {}
         Row::OneOf(one) => one_of(ui, page, one),
         Row::Children(children) if !page.is_several() => list::show(ui, page, children),
         Row::Children(_) => {}

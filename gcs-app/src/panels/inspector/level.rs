@@ -9,7 +9,7 @@ use crate::panels::table::typed;
 use crate::panels::{binding, field};
 use crate::theme;
 use egui::{Id, Pos2, RichText, Ui};
-use flight_plan::describe::{Change, OneOf, Property, Row, Subject};
+use flight_plan::describe::{Change, OneOf, Property, Row};
 use flight_plan::{Altitude, AltitudeReference, Edit, Element, Value};
 
 /// It is an altitude and its reference, or nothing.
@@ -26,7 +26,7 @@ pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, one: &'static OneOf) {
     let said = |element| (metres.value(element), reference.value(element));
     let first = said(page.element());
     if page.is_several() && page.elements().any(|element| said(element) != first) {
-        return mixed(ui, page, one);
+        return mixed(ui, page, one, [metres, reference]);
     }
     let from = ui.cursor().min;
     match way {
@@ -145,8 +145,8 @@ fn drop_absent(ui: &Ui, page: &mut Page<'_, '_>, from: Pos2) {
     page.queue.edit(Edit::SetAltitude { of: of.clone(), altitude });
 }
 
-/// Legs that differ: what is typed is for all of them.
-fn mixed(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf) {
+/// Parts that differ: what is typed is for all of them.
+fn mixed(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, of: [&Property; 2]) {
     let name = page.name(&format!("{}: mixed", one.label));
     let typed = field::row_with_help(ui, one.label, one.help, |ui| {
         let width = ui.available_width() - MARGIN - REMOVE_WIDTH;
@@ -157,14 +157,24 @@ fn mixed(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf) {
     let Some(text) = typed else { return };
     match typed::altitude(text.trim(), AltitudeReference::Amsl, page.scene.units().altitude()) {
         Ok(altitude) => {
-            let legs = page.drafts().iter().filter_map(|draft| match draft.subject() {
-                Subject::Leg(leg) => Some(leg),
-                _ => None,
-            });
-            page.queue.edit(typed::set_altitudes(legs, &altitude));
+            let changes = said(one, of, altitude.as_ref());
+            let edit = page.edit_each(|_, _| Some(changes.clone()));
+            page.send_edit(edit);
         }
         Err(why) => page.queue.view(ViewCommand::Notice(why)),
     }
+}
+
+/// What makes a part say an altitude, or none.
+fn said(one: &OneOf, [metres, reference]: [&Property; 2], altitude: Option<&Altitude>) -> Vec<Change> {
+    let Some(altitude) = altitude else { return vec![Change::Choose(*one, 1)] };
+    let number = match &altitude.metres {
+        Value::Constant(metres) => metres.to_string(),
+        Value::Expression(formula) => format!("= {formula}"),
+    };
+    let above = AltitudeReference::NAMES.iter().find(|(_, reference)| *reference == altitude.reference);
+    let above = above.map(|(name, _)| (*name).to_owned());
+    vec![Change::Choose(*one, 0), Change::Set(*metres, Some(number)), Change::Set(*reference, above)]
 }
 
 fn remove(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf) {

@@ -2,7 +2,7 @@
 
 use super::super::{Scene, field};
 use crate::command::{DocumentCommand, Queue, Selection, ViewCommand};
-use flight_plan::describe::{Change, Draft, Kind, Property, Quantity, Row, Subject};
+use flight_plan::describe::{Change, Draft, Kind, OneOf, Property, Quantity, Row, Subject};
 use flight_plan::{Edit, Element, FlightPlan, Id, create};
 
 /// A part of the plan, down to one of its elements.
@@ -68,6 +68,23 @@ impl<'a, 's> Page<'a, 's> {
     /// All that is changed together.
     pub fn drafts(&self) -> &'a [Draft] {
         self.drafts
+    }
+
+    /// Each of several has its own, and is itself by that: the place and the name of a thing, where it is no leg.
+    pub fn is_own(&self, property: &Property) -> bool {
+        let says_which =
+            property.attribute == "name" || matches!(property.kind, Kind::LatLon(_) | Kind::Position);
+        self.is_several_things() && says_which
+    }
+
+    /// The same of ways in which a place is said.
+    pub fn is_own_way(&self, one: &OneOf) -> bool {
+        let says_where = |row: &Row| matches!(row, Row::Property(property) if self.is_own(property));
+        self.is_several_things() && one.ways.iter().any(|way| way.rows.iter().any(says_where))
+    }
+
+    fn is_several_things(&self) -> bool {
+        self.is_several() && !matches!(self.first.subject(), Subject::Leg(_))
     }
 
     /// The change can be made.
@@ -193,20 +210,5 @@ impl<'a, 's> Page<'a, 's> {
             field::Change::Set(edit) => self.queue.edit(edit),
             field::Change::Ended => self.queue.document(DocumentCommand::EndGesture),
         }
-    }
-}
-
-/// What a selection is in the plan.
-pub fn subject(selection: Option<&Selection>) -> Subject {
-    match selection {
-        None => Subject::Plan,
-        Some(Selection::Leg(id)) => Subject::Leg(id.clone()),
-        Some(Selection::Stage(id)) => Subject::Stage(id.clone()),
-        Some(Selection::Emergency(id)) => Subject::EmergencyPlan(id.clone()),
-        Some(Selection::Fix(id)) => Subject::Fix(id.clone()),
-        Some(Selection::Runway(id)) => Subject::Runway(id.clone()),
-        Some(Selection::Variable(id)) => Subject::Variable(id.clone()),
-        Some(Selection::Zone(id)) => Subject::Zone(id.clone()),
-        Some(Selection::Procedure(id)) => Subject::Procedure(id.clone()),
     }
 }

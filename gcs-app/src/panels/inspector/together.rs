@@ -2,13 +2,13 @@
 
 use super::page::Page;
 use super::{raise, value};
-use crate::command::{Queue, ViewCommand};
+use crate::command::{Queue, Selection, ViewCommand};
 use crate::document::Document;
 use crate::panels::{Scene, field};
 use crate::theme;
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{PopupCloseBehavior, RichText, Ui};
-use flight_plan::describe::{Kind, Property, Range, add as add_to};
+use flight_plan::describe::{Draft, Kind, Property, Range, Subject, add as add_to};
 use flight_plan::{FlightPlan, Id, Stage, create};
 
 /// Of more than so many together the properties are not shown.
@@ -56,6 +56,48 @@ pub fn mixed(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue) {
     if ui.button("Delete them").clicked() {
         queue.edit(create::delete_set(plan, set));
     }
+}
+
+/// Several parts of one sort: what holds for each of them is changed together.
+pub(super) struct Sort {
+    /// What one is called.
+    pub name: &'static str,
+    pub subjects: Vec<Subject>,
+}
+
+impl Sort {
+    /// `2 stages`.
+    pub fn counted(&self) -> String {
+        let many = match (self.subjects.len(), self.name) {
+            (1, _) => "",
+            (_, "fix") => "es",
+            _ => "s",
+        };
+        format!("{} {}{many}", self.subjects.len(), self.name)
+    }
+}
+
+/// The sorts that are selected. A thing that is the only one of its sort is changed when it alone is selected; legs come with stages.
+pub(super) fn sorts(scene: &Scene<'_>) -> Vec<Sort> {
+    let plan = scene.document.plan();
+    let selected: Vec<Subject> =
+        scene.view.selection.iter().chain(&scene.view.also).map(Selection::subject).collect();
+    let legs = scene.selected_legs().into_iter().map(Subject::Leg).collect::<Vec<_>>();
+    let of =
+        |is_it: fn(&Subject) -> bool| selected.iter().filter(|subject| is_it(subject)).cloned().collect();
+    let things: [(&'static str, Vec<Subject>); 4] = [
+        ("stage", of(|subject| matches!(subject, Subject::Stage(_)))),
+        ("fix", of(|subject| matches!(subject, Subject::Fix(_)))),
+        ("zone", of(|subject| matches!(subject, Subject::Zone(_)))),
+        ("runway", of(|subject| matches!(subject, Subject::Runway(_)))),
+    ];
+    let things = things.into_iter().map(|(name, subjects)| {
+        let there: Vec<Subject> = subjects.into_iter().filter(|s| Draft::of(plan, s).is_some()).collect();
+        (name, there)
+    });
+    let several = things.filter(|(_, subjects)| subjects.len() > 1);
+    let legs = Some(("leg", legs)).filter(|(_, legs)| !legs.is_empty());
+    several.chain(legs).map(|(name, subjects)| Sort { name, subjects }).collect()
 }
 
 /// `2 stages and 5 legs`.

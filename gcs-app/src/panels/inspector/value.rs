@@ -17,7 +17,7 @@ use flight_plan::{Use, Value, unread_number};
 /// A value in a row of its own.
 pub fn row(ui: &mut Ui, page: &mut Page<'_, '_>, property: &'static Property) {
     if page.is_several() {
-        if property.kind == Kind::Identifier {
+        if property.kind == Kind::Identifier || page.is_own(property) {
             return;
         }
         let first = property.value(page.element());

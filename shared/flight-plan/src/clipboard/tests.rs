@@ -146,3 +146,83 @@ proptest! {
         }
     }
 }
+
+/// What the plan has after a text was pasted into it, and what was pasted.
+fn with(plan: &FlightPlan, text: &str) -> (FlightPlan, Pasted) {
+    let pasted = paste(plan, text, &spot(plan), Some(LatLon::new(46.2, 8.3))).unwrap();
+    (pasted.edit.apply(plan).unwrap(), pasted)
+}
+
+#[test]
+fn an_emergency_plan_is_copied_with_its_runway_and_stays_where_it_leads() {
+    let plan = made(Template::Survey);
+    let of = plan.emergency_plans[0].clone();
+    let text = copy_named(&plan, &Subject::EmergencyPlan(of.id.clone())).unwrap();
+    let places_of = |plan: &FlightPlan, of: &crate::EmergencyPlan| -> Vec<LatLon> {
+        of.stages.iter().flat_map(|stage| &stage.legs).flat_map(|leg| places(plan, leg)).collect()
+    };
+    // into its own plan: a second one to the same runway
+    let (after, pasted) = with(&plan, &text);
+    let [was, new] = after.emergency_plans.as_slice() else { panic!("{:?}", after.emergency_plans) };
+    assert_eq!((was, after.runways.len(), pasted.legs.len()), (&of, plan.runways.len(), 0));
+    assert_eq!(new.runway, of.runway);
+    assert_ne!((&new.id, &new.name), (&of.id, &of.name));
+    assert_eq!(places_of(&after, new), places_of(&plan, &of), "the pointer does not move it");
+    assert_eq!(lists::ids(&after).len(), lists::ids(&plan).len() + lists::ids(&plan_of(new)).len());
+    // into a plan whose runway of that name is another one
+    let mut other = made(Template::Patrol);
+    other.emergency_plans.clear();
+    other.runways.iter_mut().for_each(|runway| runway.elevation_amsl_m += 20.0);
+    let (after, _) = with(&other, &text);
+    let new = &after.emergency_plans[0];
+    let runway = after.runway(&new.runway).unwrap();
+    assert_eq!(Some(runway.threshold), plan.runway(&of.runway).map(|runway| runway.threshold));
+    assert_eq!(runway.elevation_amsl_m, plan.runway(&of.runway).unwrap().elevation_amsl_m);
+    assert!(new.stages.iter().filter_map(|stage| stage.runway.as_ref()).all(|id| *id == new.runway));
+    let problems = check(&after, &Profile::default(), &Flat(200.0));
+    assert!(!problems.iter().any(|p| p.code.starts_with("unknown")), "{problems:?}");
+}
+
+fn plan_of(emergency: &crate::EmergencyPlan) -> FlightPlan {
+    FlightPlan { emergency_plans: vec![emergency.clone()], ..FlightPlan::default() }
+}
+
+/// Two procedures, one of which calls the other and reads a variable.
+fn with_procedures() -> FlightPlan {
+    read(
+        r#"<flightPlan version="1" id="p" aircraft="trainer">
+          <variables><variable name="high" type="number" initial="120"/></variables>
+          <procedures>
+            <procedure id="look" name="A look" anchor="46 8"><TF id="up" lat="46" lon="8.01" altitude="= high"/><call id="again" procedure="turn"/></procedure>
+            <procedure id="turn" anchor="46 8"><TF id="round" lat="46.01" lon="8"/></procedure>
+          </procedures>
+          <mainPlan><stage id="s" type="mission"><TF id="a" lat="46" lon="8"/></stage></mainPlan>
+        </flightPlan>"#,
+    )
+    .plan
+}
+
+#[test]
+fn a_procedure_is_copied_with_what_it_calls_and_a_variable_alone() {
+    let plan = with_procedures();
+    let names =
+        |plan: &FlightPlan| -> Vec<String> { plan.procedures.iter().map(|p| p.id.to_string()).collect() };
+    let text = copy_named(&plan, &Subject::Procedure("look".into())).unwrap();
+    let mut other = with_procedures();
+    (other.procedures, other.variables) = Default::default();
+    let (after, pasted) = with(&other, &text);
+    assert_eq!((names(&after), after.variables.len()), (vec!["turn".into(), "look".into()], 1));
+    assert_eq!(pasted.things.len(), 1, "what it needs was not meant: {:?}", pasted.things);
+    let (after, _) = with(&plan, &text);
+    assert_eq!(names(&after), ["look", "turn", "look2"]);
+    assert_eq!((after.procedures[2].name.as_str(), after.variables.len()), ("A look 2", 1));
+    let variable = copy_named(&plan, &Subject::Variable("high".into())).unwrap();
+    let (after, _) = with(&plan, &variable);
+    let named: Vec<&str> = after.variables.iter().map(|variable| variable.name.as_str()).collect();
+    assert_eq!(named, ["high", "high_2"]);
+    assert_eq!(after.variables[1].initial, plan.variables[0].initial);
+    for gone in [Subject::Variable("low".into()), Subject::EmergencyPlan("look".into()), Subject::Plan] {
+        assert_eq!(copy_named(&plan, &gone), None, "{gone:?}");
+        assert!(duplicate_named(&plan, &gone).is_err());
+    }
+}

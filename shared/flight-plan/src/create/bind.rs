@@ -5,7 +5,7 @@ use crate::describe::{self, Quantity, Row};
 use crate::edit::lists;
 use crate::edit::shape::{area_mut, place_mut};
 use crate::{
-    Area, Edit, FlightPlan, Id, Leg, LegKind, Pattern, Place, Scan, Thing, Value, Variable, VariableValue,
+    Area, Edit, FlightPlan, Id, Leg, LegKind, Pattern, Place, Thing, Value, Variable, VariableValue,
 };
 use geometry::LatLon;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ pub fn variable_of_leg(plan: &FlightPlan, leg: &Id) -> Option<(Id, Edit)> {
 
 /// The corners of a leg's area, where a variable can say them: it can say no holes.
 pub(super) fn own_polygon(leg: &Leg) -> Option<&Vec<LatLon>> {
-    match area(leg)? {
+    match leg.area()? {
         Area::Polygon { corners, holes } => Some(corners).filter(|_| holes.is_empty()),
         _ => None,
     }
@@ -66,7 +66,7 @@ pub fn unbind(plan: &FlightPlan, leg: &Id) -> Option<Edit> {
 
 /// The variable that a leg's place or area consists of.
 pub fn bound_to(leg: &Leg) -> Option<Id> {
-    let source = match (area(leg), leg.place()) {
+    let source = match (leg.area(), leg.place()) {
         (Some(Area::Expression(source)), _) | (_, Some(Place::Position(Value::Expression(source)))) => source,
         _ => return None,
     };
@@ -176,13 +176,6 @@ fn bound(leg: &Leg, name: &Id, initial: &VariableValue) -> Option<Edit> {
         _ => return None,
     }
     Some(Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(leg) })
-}
-
-fn area(leg: &Leg) -> Option<&Area> {
-    match &leg.kind {
-        LegKind::Scan(Scan { area, .. }) | LegKind::Pattern(Pattern::Contour { area, .. }) => Some(area),
-        _ => None,
-    }
 }
 
 fn add(name: &Id, initial: VariableValue) -> Edit {
