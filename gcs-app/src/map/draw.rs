@@ -83,6 +83,7 @@ fn draw_plan(sheet: &Sheet<'_>, path: &mut path::Layer, aircraft: &mut aircraft:
     plan::draw_emergencies(sheet, &kin);
     footprints::draw(sheet);
     plan::draw_ways(sheet, &kin);
+    plan::draw_procedure(sheet);
     path.draw(sheet);
     left_out::draw(sheet);
     aircraft.draw_trail(sheet);

@@ -5,6 +5,7 @@ use super::names::{self, Ground, Name, Rank};
 use super::polyline::Style;
 use super::sheet::Sheet;
 use super::sketch::{Circle, Line};
+use super::text;
 use crate::command::Selection;
 use crate::panels::Scene;
 use egui::{Pos2, Shape, Stroke, vec2};
@@ -105,6 +106,28 @@ pub fn draw_emergencies(sheet: &Sheet<'_>, kin: &Kin) {
             sheet.ask(Name { rank, spots, text, size: 12.0, colour, ground: Ground::Halo });
         }
     }
+}
+
+/// The procedure that is open, where it is defined, and the point that calls put at their anchor.
+pub fn draw_procedure(sheet: &Sheet<'_>) {
+    let Sheet { sketch, scene, p, .. } = *sheet;
+    let Some(inside) = sketch.open_procedure(scene.view.selection.as_ref()) else { return };
+    let stroke = Stroke::new(2.0, p.accent);
+    sheet.line(inside.line.iter().copied(), stroke, Style::Dashed);
+    for ring in &inside.rings {
+        sheet.line(ring.iter().chain(ring.first()).copied(), stroke, Style::Dashed);
+    }
+    let points_per_metre = sheet.view.points_per_metre();
+    for circle in &inside.circles {
+        draw_circle(sheet, circle, ((circle.radius_m * points_per_metre) as f32, true));
+    }
+    let Some(at) = inside.reference.or(inside.line.first().copied()).map(|at| sheet.place(at)) else {
+        return;
+    };
+    text::disc(sheet.painter, at, 4.0, p.halo, stroke);
+    let text = format!("§ {}, as it is defined", scene.document.plan().label(&inside.procedure));
+    let (rank, spots) = (Rank::Selected, names::corners_above(at, vec2(8.0, 8.0)));
+    sheet.ask(Name { rank, spots, text, size: 12.0, colour: p.text, ground: Ground::Halo });
 }
 
 /// Runways: their true length and direction, with the threshold and the name.

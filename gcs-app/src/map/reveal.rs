@@ -87,7 +87,10 @@ pub fn place_of(selection: &Selection, plan: &FlightPlan, sketch: &Sketch) -> Op
             let middle = || LocalFrame::around(&area()?.1).map(|frame| frame.origin());
             sketch.variables.iter().find(|v| v.name == *id).map(|v| v.at).or_else(middle)
         }
-        Selection::Procedure(_) => None,
+        Selection::Procedure(_) => {
+            let inside = sketch.open_procedure(Some(selection))?;
+            inside.line.first().copied().or(inside.reference)
+        }
     }
 }
 

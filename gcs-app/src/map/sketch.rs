@@ -5,6 +5,7 @@ mod area;
 mod axes;
 mod calls;
 mod handle;
+mod inside;
 pub mod numbers;
 pub mod photos;
 mod placed;
@@ -16,6 +17,7 @@ mod ways;
 pub use area::{AreaPart, set as set_area};
 use calls::Calls;
 pub use handle::{Handle, Handled};
+pub use inside::Inside;
 pub use placed::Placed;
 pub use radius::{bound_radius, radius_edit};
 use reader::Reader;
@@ -81,6 +83,8 @@ pub struct Sketch {
     pub areas: Vec<(Id, Vec<LatLon>)>,
     /// Ways on from forks.
     pub ways: Vec<Way>,
+    /// Procedures where they are defined.
+    pub procedures: Vec<Inside>,
     /// What procedures lead over, where they are called.
     called: Vec<LatLon>,
     /// Pictures along legs.
@@ -128,6 +132,7 @@ impl Sketch {
         sketch.add_variables();
         sketch.ways = ways::of(&arrivals, &reader);
         sketch.add_called(&reader);
+        plan.procedures.iter().for_each(|procedure| sketch.add_inside(procedure, &reader));
         sketch.placed = Placed::of(&sketch, former);
         sketch
     }
@@ -158,7 +163,7 @@ impl Sketch {
         }
     }
 
-    /// What procedures fly where they are called: nothing of it can be dragged.
+    /// What procedures fly where they are called: nothing of it can be dragged there.
     fn add_called(&mut self, reader: &Reader<'_>) {
         let mut calls = Calls::of(reader.plan);
         for context in reader.plan.all_legs() {
@@ -333,7 +338,11 @@ impl Sketch {
         match plan.zone(of).map(|zone| &zone.shape) {
             Some(ZoneShape::Circle { centre, .. }) => Some(*centre),
             Some(ZoneShape::Polygon(_)) => None,
-            None => self.circles.iter().find(|circle| circle.leg == *of).map(|circle| circle.centre),
+            None => {
+                let inside = self.procedures.iter().flat_map(|inside| &inside.circles);
+                let mut circles = self.circles.iter().chain(inside);
+                circles.find(|circle| circle.leg == *of).map(|circle| circle.centre)
+            }
         }
     }
 
@@ -345,7 +354,9 @@ impl Sketch {
             .flat_map(|c| [0.0, 90.0, 180.0, 270.0].map(|b| c.centre.destination(b, c.radius_m)));
         let drawn = self.main.iter().flatten().chain(&self.called).copied();
         let areas = self.areas.iter().flat_map(|(_, corners)| corners).copied();
-        self.handles.iter().map(|h| h.at).chain(drawn).chain(rims).chain(areas).collect()
+        let there = self.is_there(None);
+        let handles = self.handles.iter().enumerate().filter(|(key, _)| there(*key));
+        handles.map(|(_, handle)| handle.at).chain(drawn).chain(rims).chain(areas).collect()
     }
 }
 

@@ -108,6 +108,49 @@ fn a_call_says_of_what_it_is_and_is_dragged_by_its_mark() {
     assert_eq!(flown(&window).map(|at| at.distance_m(before) < 1.0), Some(true), "one step");
 }
 
+/// A procedure is changed where it is defined, and wherever it is called.
+#[test]
+fn the_legs_of_a_procedure_are_dragged_while_it_is_open() {
+    let procedure = r#"<procedures><procedure id="look" name="Pylon look" reference="36.3205 -84.1650"><TF id="up" lat="36.3205" lon="-84.1650"/>
+        <orbit id="round" radius="150" turns="1"><centre lat="36.3230" lon="-84.1600"/></orbit></procedure></procedures>"#;
+    let calls =
+        r#"<call id="one" procedure="look"/><call id="two" procedure="look" lat="36.3150" lon="-84.1750"/>"#;
+    let plan = SQUARE.replace("<mainPlan", &format!("{procedure}<mainPlan"));
+    let mut window = Window::open(&plan.replace(r#"<TF id="side3" fix="C"/>"#, calls));
+    window.until_analysed();
+    let before = window.plan();
+    assert_eq!(window.errors(), Vec::<String>::new());
+    let offers = |window: &Window| window.harness.query_by_label("Waypoint up").is_some();
+    assert!(!offers(&window) && !window.paints("as it is defined"));
+    let flown = |window: &Window, leg: &str| {
+        let forecast = &window.app().analysis().forecast;
+        let passage = forecast.passages.iter().find(|passage| passage.leg.as_str() == leg).unwrap();
+        forecast.points[passage.end - 1].position
+    };
+    let were = ["one.up", "two.up"].map(|leg| flown(&window, leg));
+    window.select_row(("PROC Pylon look", 0));
+    window.steps(3);
+    assert!(offers(&window) && window.paints("Pylon look, as it is defined"));
+    let mark = window.centre("Waypoint up");
+    window.drag(mark, vec2(30.0, 25.0));
+    assert!(window.centre("Waypoint up").distance(mark + vec2(30.0, 25.0)) < 3.0);
+    window.until_analysed();
+    for (leg, was) in ["one.up", "two.up"].into_iter().zip(were) {
+        assert!(flown(&window, leg).distance_m(was) > 20.0, "{leg}: it follows in each call");
+    }
+    window.click("Centre of round");
+    let rim = window.centre("Radius of round");
+    window.drag(rim, vec2(20.0, 0.0));
+    let (_, round) =
+        window.plan().procedure_leg(&"round".into()).map(|(p, leg)| (p.id.clone(), leg.clone())).unwrap();
+    assert!(matches!(round.kind, LegKind::Orbit { radius_m: Value::Constant(metres), .. } if metres > 151.0));
+    window.click("Undo");
+    window.click("Undo");
+    assert_eq!(window.plan(), before, "one step each");
+    window.press(Key::Escape);
+    assert!(!offers(&window), "it is closed with the selection");
+}
+
 /// It stood over the map for minutes.
 #[test]
 fn why_a_click_did_nothing_is_not_said_for_ever() {

@@ -55,7 +55,7 @@ pub fn edit(plan: &FlightPlan, leg: &Id, number: &str, value: f64) -> Option<Edi
         "heading" | "course" | "bearing" | "overshoot" | "innerRadius" => value,
         _ => value.max(1.0),
     };
-    let numbers = plan.leg(leg)?.leg.numbers();
+    let numbers = plan.any_leg(leg)?.numbers();
     let (_, now) = numbers.into_iter().find(|(name, _)| *name == number)?;
     let Some(Value::Expression(source)) = now else {
         let value = Some(Value::Constant(value));
@@ -70,7 +70,7 @@ pub fn edit(plan: &FlightPlan, leg: &Id, number: &str, value: f64) -> Option<Edi
 
 /// The edit of a click on a mark that stands for a choice; `None`: it is none.
 pub fn choice(plan: &FlightPlan, what: &Handled) -> Option<Edit> {
-    let mut leg = plan.leg(what.leg()?)?.leg.clone();
+    let mut leg = plan.any_leg(what.leg()?)?.clone();
     match (what, &mut leg.kind) {
         (Handled::Entry { entry, .. }, LegKind::Scan(scan)) => {
             // once more: again the nearest
@@ -87,7 +87,7 @@ pub fn choice(plan: &FlightPlan, what: &Handled) -> Option<Edit> {
 
 /// The edit that moves the centre of an arc.
 pub fn move_arc_centre(plan: &FlightPlan, leg: &Id, to: LatLon) -> Option<Edit> {
-    let mut leg = plan.leg(leg)?.leg.clone();
+    let mut leg = plan.any_leg(leg)?.clone();
     let LegKind::Rf { centre, .. } = &mut leg.kind else { return None };
     *centre = to;
     Some(Edit::ReplaceLeg { leg: leg.id.clone(), with: Box::new(leg) })

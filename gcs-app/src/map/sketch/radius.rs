@@ -17,7 +17,7 @@ pub fn radius_edit(plan: &FlightPlan, leg: &Id, radius_m: f64) -> Option<Edit> {
     if plan.zone(leg).is_some() {
         return Some(Edit::SetRadius { leg: leg.clone(), radius_m: radius_m.max(1.0).round() });
     }
-    let Value::Expression(source) = radius_of(plan.leg(leg)?.leg)? else {
+    let Value::Expression(source) = radius_of(plan.any_leg(leg)?)? else {
         return Some(Edit::SetRadius { leg: leg.clone(), radius_m: radius_m.max(1.0).round() });
     };
     let (name, added) = bound_radius(&source)?;

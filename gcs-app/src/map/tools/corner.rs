@@ -65,7 +65,7 @@ fn points_of(plan: &FlightPlan, of: &Id, hole: Option<usize>) -> (usize, usize, 
     if let Some(ZoneShape::Polygon(corners)) = plan.zone(of).map(|zone| &zone.shape) {
         return (corners.len(), 3, "A zone");
     }
-    match plan.leg(of).map(|context| &context.leg.kind) {
+    match plan.any_leg(of).map(|leg| &leg.kind) {
         Some(LegKind::Pattern(Pattern::TrackLine { route, .. } | Pattern::Corridor { route, .. })) => {
             (route.len(), 2, "A line")
         }

@@ -318,7 +318,7 @@ impl Select {
             return Mark::at(canvas.view.geo(to));
         }
         let plan = canvas.scene.document.plan();
-        let bound = handle.what.leg().and_then(|leg| create::bound_to(plan.leg(leg)?.leg));
+        let bound = handle.what.leg().and_then(|leg| create::bound_to(plan.any_leg(leg)?));
         let own_variable = match &handle.what {
             Handled::Variable(name) => Some(name.clone()),
             _ => None,
@@ -377,7 +377,7 @@ fn landing(plan: &FlightPlan, grabbed: Option<&Handle>, mark: &Mark) -> Option<E
         return None;
     }
     let lands = create::put_at(plan, leg, &mark.place)?;
-    let back = create::bound_to(plan.leg(leg)?.leg)
+    let back = create::bound_to(plan.any_leg(leg)?)
         .map(|name| Edit::SetVariable { name, value: VariableValue::Position(*was) });
     Some(Edit::All(back.into_iter().chain([lands]).collect()))
 }
