@@ -5,8 +5,8 @@ use super::sheet::Sheet;
 use super::tools::{self, Canvas};
 use super::view::View;
 use super::{
-    MapState, aircraft, chips, clipboard, footprints, foreseen, furniture, graticule, held, kin, left_out,
-    marks, path, plan, variables, zones,
+    MapState, acts, aircraft, chips, clipboard, footprints, foreseen, furniture, graticule, held, kin,
+    left_out, marks, path, plan, variables, zones,
 };
 use crate::command::Queue;
 use crate::panels::{Scene, start};
@@ -86,6 +86,7 @@ fn draw_plan(sheet: &Sheet<'_>, path: &mut path::Layer, aircraft: &mut aircraft:
     plan::draw_procedure(sheet);
     path.draw(sheet);
     left_out::draw(sheet);
+    acts::draw(sheet, &kin);
     aircraft.draw_trail(sheet);
     foreseen::draw(sheet);
     aircraft::draw_ahead(sheet);

@@ -120,7 +120,8 @@ fn cross(sheet: &Sheet<'_>, at: Pos2) {
     }
 }
 
-fn shortened(text: &str) -> String {
+/// The beginning of a text that is too long to stand beside a mark.
+pub fn shortened(text: &str) -> String {
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{}…", text.get(..end).unwrap_or_default()),
         None => text.to_owned(),

@@ -1,6 +1,7 @@
 //! The map: basemap, terrain, the plan, the path that will be flown, the aircraft; and the tools to
 //! change the plan by hand.
 
+mod acts;
 pub mod aircraft;
 pub mod basemap;
 pub mod chips;

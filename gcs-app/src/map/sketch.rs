@@ -1,6 +1,7 @@
 //! A plan's places, before anything is flown: what can be dragged, areas, and the lines of emergency
 //! plans. Broken drafts give what can be made of them.
 
+mod acts;
 mod area;
 mod axes;
 mod calls;
@@ -14,6 +15,7 @@ mod reader;
 mod ruler;
 mod ways;
 
+pub use acts::Acting;
 pub use area::{AreaPart, set as set_area};
 use calls::Calls;
 pub use handle::{Handle, Handled};
@@ -91,6 +93,8 @@ pub struct Sketch {
     pub photos: Vec<photos::Photos>,
     /// Where legs end a series of pictures.
     pub photo_ends: HashMap<Id, Vec<photos::Spot>>,
+    /// What else is done on the way.
+    pub acts: Vec<Acting>,
     /// Handles and lines on the map.
     pub placed: Placed,
 }
@@ -145,6 +149,7 @@ impl Sketch {
     fn add_leg(&mut self, leg: &Leg, reader: &Reader<'_>) {
         self.handles.extend(numbers::handles(leg, reader));
         self.photos.extend(photos::of(leg, reader));
+        self.acts.extend(acts::of(leg, reader));
         let ends = photos::ends(leg, reader);
         if !ends.is_empty() {
             self.photo_ends.insert(leg.id.clone(), ends);

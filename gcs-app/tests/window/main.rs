@@ -2,6 +2,7 @@
 //! the link that the test plays.
 #![cfg(test)]
 
+mod acting;
 mod alone;
 mod announcing;
 mod arranging;

@@ -37,7 +37,7 @@ pub enum Spot {
 }
 
 impl Spot {
-    fn of(trigger: &Trigger, reader: &Reader<'_>) -> Option<Self> {
+    pub(super) fn of(trigger: &Trigger, reader: &Reader<'_>) -> Option<Self> {
         let number = |value| reader.number(value).filter(|number| number.is_finite() && *number >= 0.0);
         Some(match trigger {
             Trigger::Start => Self::Metres(0.0),
