@@ -173,6 +173,17 @@ impl Forecast {
         let after = self.points.partition_point(|p| p.time_s < time_s);
         self.points.get(after).or(self.points.last())
     }
+    /// Where it is at a time: between two points on the way from one to the other.
+    pub fn position_at(&self, time_s: f64) -> Option<LatLon> {
+        let next = self.at(time_s)?;
+        let after = self.points.partition_point(|point| point.time_s < time_s);
+        let before = after.checked_sub(1).and_then(|before| self.points.get(before));
+        let share = |before: &Point| (time_s - before.time_s) / (next.time_s - before.time_s);
+        let between = before.filter(|before| before.time_s < next.time_s && time_s < next.time_s);
+        Some(
+            between.map_or(next.position, |before| before.position.interpolate(next.position, share(before))),
+        )
+    }
     /// The points from a time to another.
     pub fn between(&self, from_s: f64, to_s: f64) -> &[Point] {
         let before = |time_s: f64| self.points.partition_point(|point| point.time_s < time_s);
@@ -210,11 +221,6 @@ impl Forecast {
         let from = at(index)?;
         let before = index.checked_sub(1).and_then(at).filter(|before| before.distance_m(from) > 0.5);
         Some(Approach { from, course_deg: before.map(|before| before.inverse(from).bearing_end_deg) })
-    }
-    /// The point of the path that is nearest on the screen to a place, as its index; `far` measures.
-    pub fn nearest_index(&self, far: impl Fn(&Point) -> f32, reach: f32) -> Option<usize> {
-        let all = self.points.iter().map(far).enumerate();
-        all.min_by(|(_, a), (_, b)| a.total_cmp(b)).filter(|(_, far)| *far < reach).map(|(index, _)| index)
     }
     /// Points of the passages of a leg, part by part.
     pub fn passages_of<'a>(&'a self, leg: &'a Id) -> impl Iterator<Item = &'a [Point]> {
@@ -295,6 +301,16 @@ mod tests {
         assert_eq!(at("a", 2, Some(270.0)), None, "the path goes nowhere that way");
         assert_eq!(f.passages_of(&"a".into()).map(<[Point]>::len).collect::<Vec<_>>(), [3, 2]);
         assert_eq!(Forecast::default().at(1.0), None);
+    }
+
+    #[test]
+    fn between_two_points_it_is_on_the_way() {
+        let f = forecast();
+        for (time_s, lon_deg) in [(-1.0, 0.0), (0.0, 0.0), (3.0, 1.5e-3), (4.0, 2e-3), (99.0, 4e-3)] {
+            let at = f.position_at(time_s).unwrap();
+            assert!(at.distance_m(LatLon::new(0.0, lon_deg)) < 0.01, "{time_s}: {at:?}");
+        }
+        assert_eq!(Forecast::default().position_at(1.0), None);
     }
 
     #[test]

@@ -119,6 +119,14 @@ impl Places {
         blocks.filter(move |index| self.at.get(*index).is_some_and(|at| area.has(*at)))
     }
 
+    /// The numbers of those from which the straight way to the next one may go through an area.
+    pub fn ways_within(&self, area: Area) -> impl Iterator<Item = usize> {
+        let blocks = self.blocks(area).flatten();
+        blocks.filter(move |index| {
+            self.at.get(*index..index + 2).is_some_and(|ends| Area::around(ends).overlaps(&area))
+        })
+    }
+
     /// The blocks that reach into an area.
     pub(super) fn blocks(&self, area: Area) -> impl Iterator<Item = Range<usize>> {
         let all = self.areas.iter().enumerate();

@@ -6,7 +6,7 @@ use super::polyline::{self, Style};
 use super::sheet::Sheet;
 use super::view::{Mercator, View};
 use crate::command::{PreviewCommand, Queue, Selection};
-use crate::forecast::{Coverage, Line, Passage, Point};
+use crate::forecast::{Coverage, Line, Passage};
 use crate::jobs::{Taken, Task};
 use crate::map::coverage;
 use crate::panels::{Scene, decision};
@@ -327,8 +327,8 @@ pub fn draw_decision(sheet: &Sheet<'_>) {
 /// The preview's cursor.
 pub fn draw_cursor(sheet: &Sheet<'_>) {
     let Sheet { painter, view, scene, p, .. } = *sheet;
-    let Some(point) = scene.view.cursor_s.and_then(|t| scene.forecast().at(t)) else { return };
-    let at = view.place(point.position);
+    let Some(position) = scene.view.cursor_s.and_then(|t| scene.forecast().position_at(t)) else { return };
+    let at = view.place(position);
     painter.circle_stroke(at, 7.0, Stroke::new(4.0, p.halo));
     painter.circle_stroke(at, 7.0, Stroke::new(2.0, p.text));
     for d in [vec2(0.0, 1.0), vec2(0.0, -1.0), vec2(1.0, 0.0), vec2(-1.0, 0.0)] {
@@ -346,31 +346,45 @@ pub fn move_cursor(response: &egui::Response, view: &View, scene: &Scene<'_>, qu
 
 /// When the path comes to where the pointer is, seconds from its start; `None`: it is not there.
 pub fn time_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Option<f64> {
-    let near = points_near(at, view, scene).min_by(|(_, a), (_, b)| a.total_cmp(b));
-    near.map(|(point, _)| point.time_s)
+    let near = ways_near(at, view, scene).min_by(|a, b| a.far.total_cmp(&b.far));
+    near.map(|near| near.time_s)
 }
 
 /// The pointer reaches so far, screen points.
 const REACH: f32 = 9.0;
 
-/// The points of the path under the pointer, each with its distance from there, screen points.
-fn points_near<'a>(at: Pos2, view: &'a View, scene: &Scene<'a>) -> impl Iterator<Item = (&'a Point, f32)> {
+/// Where the path comes near to the pointer on the way from one of its points to the next.
+struct Near {
+    passage: usize,
+    /// When it is nearest, seconds from the start.
+    time_s: f64,
+    /// How far that is, screen points.
+    far: f32,
+}
+
+/// The ways between points of the path that are under the pointer: on a near map its points lie far apart.
+fn ways_near<'a>(at: Pos2, view: &'a View, scene: &Scene<'a>) -> impl Iterator<Item = Near> {
     let (forecast, places) = (scene.forecast(), scene.forecast().places());
     let around = Rect::from_center_size(at, Vec2::splat(2.0 * REACH));
-    let near = places.within(view.area(around)).filter_map(move |index| {
-        Some((forecast.points.get(index)?, view.screen(*places.at.get(index)?).distance(at)))
+    let near = places.ways_within(view.area(around)).filter_map(move |index| {
+        let (from, to) = (forecast.points.get(index)?, forecast.points.get(index + 1)?);
+        let [begin, end] =
+            [places.at.get(index)?, places.at.get(index + 1)?].map(|place| view.screen(*place));
+        let share = polyline::share_of_foot(at, begin, end);
+        let time_s = egui::lerp(from.time_s..=to.time_s, f64::from(share));
+        Some(Near { passage: from.passage, time_s, far: begin.lerp(end, share).distance(at) })
     });
-    near.filter(|(_, far)| *far < REACH)
+    near.filter(|near| near.far < REACH)
 }
 
 /// The legs whose path is under the pointer, the nearest first.
 pub fn legs_near(at: Pos2, view: &View, scene: &Scene<'_>) -> Vec<Id> {
     let forecast = scene.forecast();
     let mut near: Vec<(f32, usize)> = Vec::new();
-    for (point, far) in points_near(at, view, scene) {
+    for Near { passage: of, far, .. } in ways_near(at, view, scene) {
         match near.last_mut() {
-            Some((least, passage)) if *passage == point.passage => *least = least.min(far),
-            _ => near.push((far, point.passage)),
+            Some((least, passage)) if *passage == of => *least = least.min(far),
+            _ => near.push((far, of)),
         }
     }
     // where one leg follows another, the nearer is meant

@@ -73,6 +73,12 @@ pub fn middle(line: &[Pos2]) -> Option<Pos2> {
     line.last().copied()
 }
 
+/// How far along a straight line its place that is nearest to another one is, 0..1.
+pub fn share_of_foot(at: Pos2, from: Pos2, to: Pos2) -> f32 {
+    let (way, off) = (to - from, at - from);
+    (off.dot(way) / way.length_sq().max(1.0)).clamp(0.0, 1.0)
+}
+
 /// How a line is drawn; the style says as much as the colour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Style {

@@ -19,7 +19,7 @@ fn window() -> Window {
 }
 
 /// Turns the wheel by some notches, and waits until the map stands still.
-fn wheel(window: &mut Window, at: Pos2, notches: f32) {
+pub fn wheel(window: &mut Window, at: Pos2, notches: f32) {
     window.harness.hover_at(at);
     window.steps(1);
     window.harness.event(Event::MouseWheel {

@@ -1,11 +1,14 @@
 //! What can be done with what is under the pointer.
 
+use super::maps::wheel;
 use super::pasting::{legs, window};
 use super::{SQUARE, Window};
 use egui::{Key, vec2};
 use egui_kittest::kittest::Queryable;
 use flight_plan::create::LegChoice;
 use flight_plan::{Cause, Id, Place, Value};
+use gcs_app::forecast::Point;
+use geometry::LatLon;
 
 #[test]
 fn a_right_click_puts_a_leg_where_the_pointer_is() {
@@ -215,4 +218,44 @@ fn a_click_on_the_runway_means_the_take_off_as_a_stage() {
     let runway = window.harness.get_by_label("Runway R05").rect().center();
     window.click_at(runway);
     assert!(!window.shows("It is no longer in the plan") && !window.shows("Leg Take-off"));
+}
+
+/// On a near map the points of the path lie farther apart than the pointer reaches.
+#[test]
+fn a_click_between_two_points_of_the_path_means_it_on_the_nearest_map_too() {
+    let far = window();
+    let forecast = &far.app().analysis().forecast;
+    let leg = Id::new("side3");
+    let part = forecast.passages_of(&leg).next().unwrap();
+    let apart_m = |ends: &&[Point]| ends[0].position.distance_m(ends[1].position);
+    let ends = part.windows(2).max_by(|a, b| apart_m(a).total_cmp(&apart_m(b))).unwrap();
+    let middle = ends[0].position.interpolate(ends[1].position, 0.5);
+    // beside the path, with the place in the middle between them
+    let [left, right] = [90.0, -90.0]
+        .map(|turn_deg| middle.destination(ends[0].position.bearing_deg(ends[1].position) + turn_deg, 40.0));
+    let fix = |id, at: LatLon| format!(r#"<fix id="{id}" lat="{:.9}" lon="{:.9}"/>"#, at.lat_deg, at.lon_deg);
+    let fixes = format!("<fixes>{}{}", fix("left", left), fix("right", right));
+    let plan = SQUARE.replace("<fixes>", &fixes);
+    let ends_px = |window: &Window| ["Fix left", "Fix right"].map(|fix| window.centre(fix));
+    let on_path = |window: &Window| ends_px(window)[0].lerp(ends_px(window)[1], 0.5);
+    let near = || {
+        let mut window = Window::open(&plan);
+        window.until_analysed();
+        // 80 m are 331 points at zoom level 19
+        while ends_px(&window)[0].distance(ends_px(&window)[1]) < 331.0 {
+            let at = on_path(&window);
+            wheel(&mut window, at, 2.0);
+        }
+        window
+    };
+    let mut window = near();
+    window.click_at(on_path(&window));
+    assert_eq!(window.selected(), "side3");
+    let mut window = near();
+    window.right_click_at(on_path(&window));
+    window.click("What happens here");
+    window.click(Cause::Engine.name());
+    let cursor_s = window.app().view().cursor_s.unwrap();
+    let time_s = (ends[0].time_s + ends[1].time_s) / 2.0;
+    assert!((cursor_s - time_s).abs() < 0.1, "{cursor_s}, not {time_s}");
 }

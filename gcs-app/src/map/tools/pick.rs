@@ -4,6 +4,7 @@ use super::{Canvas, Grip};
 use crate::chart::zones as chart;
 use crate::command::Selection;
 use crate::map::path;
+use crate::map::polyline;
 use crate::map::sketch::{Handle, Handled};
 use egui::Pos2;
 use flight_plan::{FlightPlan, Id, Runway};
@@ -162,9 +163,7 @@ fn is_near(at: Pos2, from: Pos2, to: Pos2) -> bool {
 
 /// The place on a line that is nearest.
 fn foot(at: Pos2, from: Pos2, to: Pos2) -> Pos2 {
-    let (way, off) = (to - from, at - from);
-    let share = (off.dot(way) / way.length_sq().max(1.0)).clamp(0.0, 1.0);
-    from + way * share
+    from.lerp(to, polyline::share_of_foot(at, from, to))
 }
 
 /// The straight leg whose line is under the pointer, and where on it; none that is too short to be told from its ends.
