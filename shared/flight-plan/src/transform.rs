@@ -2,7 +2,7 @@
 
 use crate::figures;
 use crate::uses::SlotMut;
-use crate::{Edit, FlightPlan, Id, Leg, Part, Place, Runway, Thing, Value, Zone, ZoneShape};
+use crate::{Edit, FlightPlan, Id, Leg, Part, Place, Runway, Thing, Value, VariableValue, Zone, ZoneShape};
 use geometry::LatLon;
 use geometry::geodesy::normalise_360;
 use std::collections::HashSet;
@@ -44,6 +44,17 @@ impl Motion {
         figures::place(
             self.to.destination(way.bearing_start_deg + self.turn_deg, way.distance_m * self.scale),
         )
+    }
+
+    /// A variable of the set: a place or an area; anything else is as it was.
+    pub fn value(&self, value: &VariableValue) -> VariableValue {
+        match value {
+            VariableValue::Position(at) => VariableValue::Position(self.place(*at)),
+            VariableValue::Polygon(corners) => {
+                VariableValue::Polygon(corners.iter().map(|at| self.place(*at)).collect())
+            }
+            other => other.clone(),
+        }
     }
 
     /// A leg of the set; a place that is a fix is where `fix` says, `None` keeps it.
@@ -110,12 +121,29 @@ impl Motion {
             self.zone(&mut zone);
             (zone.id.clone(), Thing::Zone(zone))
         });
-        let runways = plan.runways.iter().filter(|runway| set.contains(&runway.id)).map(|runway| {
-            let mut runway = runway.clone();
-            self.runway(&mut runway);
-            (runway.id.clone(), Thing::Runway(runway))
-        });
+        let runways = self.runways(plan, set).into_iter();
+        let runways = runways.map(|runway| (runway.id.clone(), Thing::Runway(runway)));
         zones.chain(runways).map(|(id, thing)| Edit::Replace { id, with: Box::new(thing) }).collect()
+    }
+
+    /// The runways of a set; what is the other direction of one of them stays that.
+    fn runways(&self, plan: &FlightPlan, set: &[Id]) -> Vec<Runway> {
+        let mut moved: Vec<Runway> = Vec::new();
+        for runway in plan.runways.iter().filter(|runway| set.contains(&runway.id)) {
+            if moved.iter().any(|known| known.id == runway.id) {
+                continue;
+            }
+            let mut there = runway.clone();
+            self.runway(&mut there);
+            let along = Self { pivot: runway.threshold, to: there.threshold, scale: 1.0, ..*self };
+            moved.push(there);
+            moved.extend(plan.opposite(runway).map(|other| {
+                let mut other = other.clone();
+                along.runway(&mut other);
+                other
+            }));
+        }
+        moved
     }
 
     /// A zone of the set.

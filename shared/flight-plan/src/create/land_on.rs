@@ -55,7 +55,7 @@ fn called(plan: &FlightPlan, emergency: &EmergencyPlan, from: &Runway, to: &Runw
 }
 
 /// The legs of the approach before a landing, if it ends on this runway's line, and those before it that are on that line.
-fn leading_down<'p>(plan: &FlightPlan, before: &'p [Stage], runway: &Runway) -> Vec<&'p Arc<Leg>> {
+pub(super) fn leading_down<'p>(plan: &FlightPlan, before: &'p [Stage], runway: &Runway) -> Vec<&'p Arc<Leg>> {
     let is_on_line = |leg: &Leg| {
         let places = transform::places(plan, leg);
         !places.is_empty() && places.iter().all(|at| before_threshold_m(runway, *at).is_some())
@@ -68,15 +68,19 @@ fn leading_down<'p>(plan: &FlightPlan, before: &'p [Stage], runway: &Runway) -> 
         .collect()
 }
 
-/// Legs go as the runway does, and are as high above the one as they were above the other.
-fn moved(plan: &FlightPlan, legs: &[&Arc<Leg>], from: &Runway, to: &Runway) -> Option<Edit> {
-    let motion = Motion {
+/// From the one runway to the other.
+pub(super) fn motion(from: &Runway, to: &Runway) -> Motion {
+    Motion {
         turn_deg: normalise_180(to.heading_deg - from.heading_deg),
         ..Motion::shift(from.threshold, to.threshold)
-    };
+    }
+}
+
+/// Legs go as the runway does, and are as high above the one as they were above the other.
+fn moved(plan: &FlightPlan, legs: &[&Arc<Leg>], from: &Runway, to: &Runway) -> Option<Edit> {
     let all = legs.iter().flat_map(|leg| legs_in(std::slice::from_ref(*leg)));
     let ids: Vec<Id> = all.map(|leg| leg.id.clone()).collect();
-    let there = motion.edit(plan, &ids);
+    let there = motion(from, to).edit(plan, &ids);
     let plan = there.apply(plan).ok()?;
     let up_m = to.elevation_amsl_m - from.elevation_amsl_m;
     // a loop goes nowhere itself; to replace it would put its old body back

@@ -11,6 +11,7 @@ mod descent;
 mod gather;
 mod kind;
 mod land_on;
+mod lay_runway;
 mod leave;
 mod leg;
 mod rearrange;
@@ -30,6 +31,7 @@ pub use branch::{Way, begin_way, delete_leg, insert};
 pub use course::{Approach, arc_centre};
 pub use kind::{LegChoice, Shape};
 pub use land_on::land_on;
+pub use lay_runway::{lay_runway, leading_to, with_approaches};
 pub use leg::{Drawn, call, convert, leg};
 pub use rearrange::{
     StageSpot, are_neighbours, into_branch, relocate, relocate_stage, relocate_thing, shift_legs, shift_thing,
