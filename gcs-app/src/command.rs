@@ -157,7 +157,7 @@ pub enum ViewCommand {
     Select(Option<Selection>),
     /// Point out something (a leg, a stage) without selecting it, or nothing any more.
     PointOut(Option<Id>),
-    /// Add a leg, stage, fix, zone or runway to what is selected, or take it out.
+    /// Add a leg, stage, fix, zone, runway or variable to what is selected, or take it out.
     Toggle(Selection),
     /// Select all of these together; what can't be selected with others is left out.
     SelectTogether(Vec<Selection>),
@@ -335,7 +335,15 @@ pub enum Selection {
 impl Selection {
     /// It can be selected together with others: it, or what is in it, has a place of its own.
     pub fn is_in_sets(&self) -> bool {
-        matches!(self, Self::Leg(_) | Self::Stage(_) | Self::Fix(_) | Self::Zone(_) | Self::Runway(_))
+        matches!(
+            self,
+            Self::Leg(_)
+                | Self::Stage(_)
+                | Self::Fix(_)
+                | Self::Zone(_)
+                | Self::Runway(_)
+                | Self::Variable(_)
+        )
     }
 
     /// It has a name and no place: it is selected alone.

@@ -310,8 +310,9 @@ fn raise_all(scene: &Scene<'_>) -> Asked {
 /// What is selected, or all legs of a stage, to the clipboard.
 fn clip(scene: &Scene<'_>, clip: Clip) -> Asked {
     let is_stage = matches!(scene.view.selection, Some(Selection::Stage(_)));
-    let is_named = scene.view.selection.as_ref().is_some_and(Selection::is_named);
-    if scene.selected_set().is_empty() && !is_named && !(clip == Clip::Copy && is_stage) {
+    let is_named =
+        scene.view.also.is_empty() && scene.view.selection.as_ref().is_some_and(Selection::is_named);
+    if scene.selected_things().is_empty() && !is_named && !(clip == Clip::Copy && is_stage) {
         return Err("Select legs or something else of the plan, or several stages, first");
     }
     view(ViewCommand::Clip(clip))

@@ -110,7 +110,7 @@ pub fn carry_out(clip: Clip, ui: &Ui, canvas: &Canvas<'_>, queue: &mut Queue) {
             named(canvas).into_iter().for_each(|what| put(clipboard::duplicate_named(plan, &what), queue));
         }
         Clip::Duplicate => {
-            let set = canvas.scene.selected_set();
+            let set = canvas.scene.selected_things();
             put(clipboard::duplicate(canvas.scene.document.plan(), &set), queue);
         }
     }
@@ -130,17 +130,22 @@ fn copy(ctx: &Context, canvas: &Canvas<'_>) -> Option<()> {
         Some(Selection::Stage(id)) if scene.view.also.is_empty() => {
             plan.stage(id)?.legs.iter().map(|leg| leg.id.clone()).collect()
         }
-        _ => scene.selected_set(),
+        _ => scene.selected_things(),
     };
     let named = named(canvas).and_then(|what| clipboard::copy_named(plan, &what));
     ctx.copy_text(place.or(named).or_else(|| clipboard::copy(plan, &set))?);
     Some(())
 }
 
-/// The emergency plan, procedure or variable that is selected.
+/// The emergency plan, procedure or variable that is selected alone.
+fn alone<'a>(canvas: &Canvas<'a>) -> Option<&'a Selection> {
+    let view = canvas.scene.view;
+    view.selection.as_ref().filter(|what| what.is_named() && view.also.is_empty())
+}
+
+/// The same as what it is in the plan.
 fn named(canvas: &Canvas<'_>) -> Option<Subject> {
-    let selected = canvas.scene.view.selection.as_ref().filter(|what| what.is_named())?;
-    Some(selected.subject())
+    alone(canvas).map(Selection::subject)
 }
 
 /// All of it, so that it can be pasted again: of a fix or runway more than its place. The clipboard holds no stages: they stay, without
@@ -150,11 +155,11 @@ fn cut(ctx: &Context, canvas: &Canvas<'_>, queue: &mut Queue) {
     if canvas.scene.selected_branch().is_some() {
         return queue.view(ViewCommand::Notice(NO_BRANCH.into()));
     }
-    if let Some(what) = canvas.scene.view.selection.as_ref().filter(|what| what.is_named()) {
+    if let Some(what) = alone(canvas) {
         copy(ctx, canvas);
         return queue.edit(create::remove(plan, what.id()));
     }
-    let mut set = canvas.scene.selected_set();
+    let mut set = canvas.scene.selected_things();
     set.retain(|id| plan.stage(id).is_none());
     if let Some(text) = clipboard::copy(plan, &set) {
         ctx.copy_text(text);

@@ -3,7 +3,7 @@
 
 use super::sketch::Handled;
 use crate::panels::Scene;
-use flight_plan::create::bound_to;
+use flight_plan::create::{self, bound_to};
 use flight_plan::{FlightPlan, Id, Leg, LegContext, Place, Stage};
 use std::collections::HashSet;
 
@@ -20,6 +20,7 @@ pub fn of_handle(scene: &Scene<'_>, what: &Handled) -> Option<String> {
             let bound = contexts.filter(|context| bound_to(context.leg).as_ref() == Some(name));
             (bound.map(|context| context.leg.id.clone()).collect(), true)
         }
+        Handled::Runway(runway, _) => (create::with_approaches(plan, std::slice::from_ref(runway)), false),
         Handled::Between { leg, .. } => (vec![leg.clone()], false),
         other => (other.leg().cloned().into_iter().collect(), false),
     };
@@ -29,6 +30,13 @@ pub fn of_handle(scene: &Scene<'_>, what: &Handled) -> Option<String> {
 /// Why some legs can't be moved now, if one of them can't.
 pub fn of_legs(scene: &Scene<'_>, legs: &[Id]) -> Option<String> {
     refuse(scene, legs, false)
+}
+
+/// Why what is selected can't be moved as one now.
+pub fn of_selected(scene: &Scene<'_>) -> Option<String> {
+    let set = create::with_approaches(scene.document.plan(), &scene.selected_things());
+    let variables = scene.selected_variables().into_iter().map(Handled::Variable);
+    of_legs(scene, &set).or_else(|| variables.into_iter().find_map(|variable| of_handle(scene, &variable)))
 }
 
 fn refuse(scene: &Scene<'_>, legs: &[Id], is_shared: bool) -> Option<String> {

@@ -13,16 +13,18 @@ mod placed;
 mod radius;
 mod reader;
 mod ruler;
+mod runway;
 mod ways;
 
 pub use acts::Acting;
-pub use area::{AreaPart, set as set_area};
+pub use area::AreaPart;
 use calls::Calls;
 pub use handle::{Handle, Handled};
 pub use inside::Inside;
 pub use placed::Placed;
 pub use radius::{bound_radius, radius_edit};
 use reader::Reader;
+pub use runway::RunwayEnd;
 pub use ways::Way;
 
 use super::view::Mercator;
@@ -45,6 +47,12 @@ pub struct Circle {
     pub radius_m: f64,
     /// It is an area to be scanned, not an orbit.
     pub is_area: bool,
+}
+
+impl Circle {
+    fn rim(&self) -> [LatLon; 4] {
+        [0.0, 90.0, 180.0, 270.0].map(|bearing| self.centre.destination(bearing, self.radius_m))
+    }
 }
 
 /// The straight line of a leg.
@@ -136,6 +144,7 @@ impl Sketch {
         sketch.add_variables();
         sketch.ways = ways::of(&arrivals, &reader);
         sketch.add_called(&reader);
+        sketch.handles.extend(runway::handles(&plan.runways));
         plan.procedures.iter().for_each(|procedure| sketch.add_inside(procedure, &reader));
         sketch.placed = Placed::of(&sketch, former);
         sketch
@@ -351,16 +360,34 @@ impl Sketch {
         }
     }
 
+    /// Four places around the circle that a leg covers.
+    pub fn rim(&self, leg: &Id) -> Option<[LatLon; 4]> {
+        self.circles.iter().find(|circle| circle.leg == *leg && circle.is_area).map(Circle::rim)
+    }
+
+    /// The outline of the area that a leg covers.
+    pub fn outline(&self, leg: &Id) -> Option<&[LatLon]> {
+        let (_, rings) = self.polygons.iter().find(|(of, _)| of == leg)?;
+        rings.first().map(Vec::as_slice)
+    }
+
+    /// What a variable is now, if that is a place or an area.
+    pub fn value(&self, variable: &Id) -> Option<VariableValue> {
+        let place = || self.variables.iter().find(|placed| placed.name == *variable);
+        let area = self.area(variable).map(|corners| VariableValue::Polygon(corners.to_vec()));
+        area.or_else(|| Some(VariableValue::Position(place()?.at)))
+    }
+
     /// Every place, to fit the map to.
     pub fn places(&self) -> Vec<LatLon> {
-        let rims = self
-            .circles
-            .iter()
-            .flat_map(|c| [0.0, 90.0, 180.0, 270.0].map(|b| c.centre.destination(b, c.radius_m)));
+        let rims = self.circles.iter().flat_map(Circle::rim);
         let drawn = self.main.iter().flatten().chain(&self.called).copied();
         let areas = self.areas.iter().flat_map(|(_, corners)| corners).copied();
         let there = self.is_there(None);
-        let handles = self.handles.iter().enumerate().filter(|(key, _)| there(*key));
+        // a runway that nothing uses may be anywhere
+        let is_drawn =
+            |(key, handle): &(usize, &Handle)| there(*key) && !matches!(handle.what, Handled::Runway(..));
+        let handles = self.handles.iter().enumerate().filter(is_drawn);
         handles.map(|(_, handle)| handle.at).chain(drawn).chain(rims).chain(areas).collect()
     }
 }

@@ -261,7 +261,7 @@ impl ViewState {
         self.branch = None;
         self.also.clear();
     }
-    /// Adds a leg, stage, fix, zone or runway to what is selected, or takes it out.
+    /// Adds a leg, stage, fix, zone, runway or variable to what is selected, or takes it out.
     pub fn toggle(&mut self, what: Selection) {
         self.branch = None;
         match &self.selection {
@@ -426,7 +426,7 @@ impl<'a> Scene<'a> {
         }
     }
     /// All legs, stages, fixes, zones and runways that are selected and still in the plan, with the legs of those stages.
-    pub fn selected_set(&self) -> Vec<Id> {
+    pub fn selected_things(&self) -> Vec<Id> {
         let plan = self.document.plan();
         let all = self.view.selection.iter().chain(&self.view.also);
         let things = all.filter(|what| match what {
@@ -437,6 +437,17 @@ impl<'a> Scene<'a> {
             _ => false,
         });
         self.selected_legs().into_iter().chain(things.map(|what| what.id().clone())).collect()
+    }
+    /// All variables that are selected and still in the plan.
+    pub fn selected_variables(&self) -> Vec<Id> {
+        let plan = self.document.plan();
+        let all = self.view.selection.iter().chain(&self.view.also);
+        let variables = all.filter(|what| matches!(what, Selection::Variable(_))).map(Selection::id);
+        variables.filter(|name| plan.variable(name).is_some()).cloned().collect()
+    }
+    /// All that is selected and still in the plan: things and variables.
+    pub fn selected_set(&self) -> Vec<Id> {
+        [self.selected_things(), self.selected_variables()].concat()
     }
 }
 

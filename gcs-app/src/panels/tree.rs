@@ -436,4 +436,4 @@ fn chosen(ui: &Ui, row: &Row, has_others: bool) -> ViewCommand {
 }
 
 /// Why a row is not selected besides what is.
-const NOT_TOGETHER: &str = "This can't be selected together with others: legs, stages, fixes, zones and runways can. Click it without Ctrl to select it alone";
+const NOT_TOGETHER: &str = "This can't be selected together with others: legs, stages, fixes, zones, runways and variables can. Click it without Ctrl to select it alone";

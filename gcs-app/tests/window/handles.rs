@@ -207,7 +207,7 @@ fn every_pattern_that_turns_is_turned_the_other_way_by_a_click() {
 }
 
 /// Drags with Shift.
-fn sweep(window: &mut Window, from: Pos2, to: Pos2) {
+pub fn sweep(window: &mut Window, from: Pos2, to: Pos2) {
     let button = |pos, pressed| Event::PointerButton {
         pos,
         button: PointerButton::Primary,

@@ -25,6 +25,7 @@ mod flown;
 mod flying;
 mod focusing;
 mod following;
+mod framing;
 mod full;
 mod gestures;
 mod guarding;

@@ -80,6 +80,6 @@ impl Sketch {
 }
 
 /// A variable's area by its corners.
-pub fn set(variable: &Id, corners: Vec<LatLon>) -> Edit {
+fn set(variable: &Id, corners: Vec<LatLon>) -> Edit {
     Edit::SetVariable { name: variable.clone(), value: VariableValue::Polygon(corners) }
 }

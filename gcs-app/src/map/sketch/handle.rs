@@ -1,7 +1,7 @@
 //! What can be dragged or clicked on the map.
 
-use super::AreaPart;
 use super::numbers::{self, Ruler};
+use super::{AreaPart, RunwayEnd};
 use crate::document::Document;
 use flight_plan::{Id, ScanEntry};
 use geometry::LatLon;
@@ -24,6 +24,8 @@ pub enum Handled {
     Variable(Id),
     /// A part of a variable that is an area.
     Area(Id, AreaPart),
+    /// An end of a runway.
+    Runway(Id, RunwayEnd),
     /// Where a leg goes.
     Waypoint(Id),
     /// The middle of a scan or orbit.
@@ -88,7 +90,9 @@ impl Handled {
     /// The leg it belongs to, if it is a leg's.
     pub fn leg(&self) -> Option<&Id> {
         match self {
-            Self::Fix(_) | Self::Variable(_) | Self::Area(..) | Self::Between { .. } => None,
+            Self::Fix(_) | Self::Variable(_) | Self::Area(..) | Self::Runway(..) | Self::Between { .. } => {
+                None
+            }
             Self::Waypoint(leg)
             | Self::Centre(leg)
             | Self::Radius(leg)
@@ -113,6 +117,7 @@ impl Handled {
             Self::Fix(id) => format!("Fix {}", of(id)),
             Self::Variable(name) => format!("Place of {name}"),
             Self::Area(variable, part) => part.name(variable),
+            Self::Runway(runway, end) => end.name(runway.as_str()),
             Self::Waypoint(id) => format!("Waypoint {}", of(id)),
             Self::Centre(id) => format!("Centre of {}", of(id)),
             Self::Radius(id) => format!("Radius of {}", of(id)),

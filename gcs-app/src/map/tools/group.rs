@@ -1,16 +1,16 @@
-//! Several selected legs, stages, fixes, zones and runways as one: a box around them, and handles that move, turn and scale them together.
+//! Several selected legs, stages, fixes, zones, runways and variables as one, or one area, zone or runway: a box around it, and handles
+//! that move, turn and scale all of it.
 
+use super::framed::{Does, Moved, framed};
 use super::pen::way;
 use super::{Canvas, Grip};
 use crate::command::{DocumentCommand, Queue, Selection};
-use crate::map::sketch::set_area;
 use crate::map::text;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Rect, Shape, Stroke, Vec2, vec2};
 use flight_plan::transform::{self, Motion};
-use flight_plan::{Edit, FlightPlan, Id, Leg, Place};
+use flight_plan::{Id, Leg, Place};
 use geometry::LatLon;
-use std::sync::Arc;
 
 /// The grips' keys begin here; those of the sketch's handles end before.
 const FIRST_KEY: usize = 1 << 32;
@@ -21,17 +21,7 @@ const ABOVE: f32 = 26.0;
 /// Smaller than this, nothing could be told apart any more.
 const LEAST_SCALE: f64 = 0.05;
 
-/// What a grip does to the set.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Does {
-    Move,
-    Turn,
-    Scale,
-}
-
 impl Does {
-    const ALL: [Self; 3] = [Self::Move, Self::Turn, Self::Scale];
-
     fn name(self) -> &'static str {
         match self {
             Self::Move => "Move what is selected",
@@ -47,23 +37,20 @@ impl Does {
             Self::Scale => around.right_bottom(),
         }
     }
-}
 
-/// What a drag moves, as it was.
-#[derive(Debug)]
-enum Moved {
-    /// Things of a plan.
-    Set(Arc<FlightPlan>, Vec<Id>),
-    /// A variable that is an area, with its corners.
-    Area(Id, Vec<LatLon>),
-}
-
-impl Moved {
-    fn edit(&self, motion: &Motion) -> Edit {
+    fn paint(self, painter: &Painter, around: Rect, p: &Palette) {
+        let (at, stroke) = (self.at(around), Stroke::new(2.0, p.accent));
         match self {
-            Self::Set(plan, set) => motion.edit(plan, set),
-            Self::Area(variable, corners) => {
-                set_area(variable, corners.iter().map(|at| motion.place(*at)).collect())
+            Self::Move => [vec2(7.0, 0.0), vec2(0.0, 7.0)].into_iter().for_each(|axis| {
+                painter.line_segment([at - axis, at + axis], Stroke::new(2.4, p.accent));
+            }),
+            Self::Turn => {
+                painter.line_segment([around.center_top(), at], Stroke::new(1.4, p.accent));
+                painter.circle(at, 6.0, p.halo, stroke);
+            }
+            Self::Scale => {
+                let square = Rect::from_center_size(at, Vec2::splat(11.0));
+                painter.rect(square, 1.0, p.halo, stroke, egui::StrokeKind::Middle);
             }
         }
     }
@@ -80,6 +67,13 @@ struct Drag {
     motion: Motion,
 }
 
+impl Drag {
+    fn new(does: Does, from: Pos2, pivot: Pos2, canvas: &Canvas<'_>) -> Self {
+        let pivot = canvas.view.geo(pivot);
+        Self { moved: Moved::of(canvas), does, from, pivot, motion: Motion::shift(pivot, pivot) }
+    }
+}
+
 /// The handles around what is selected.
 #[derive(Debug, Default)]
 pub struct Group {
@@ -87,10 +81,10 @@ pub struct Group {
 }
 
 impl Group {
-    /// None if fewer than two things are selected.
+    /// None around one thing that has no extent.
     pub fn grips(&self, canvas: &Canvas<'_>) -> Vec<Grip> {
-        let Some(around) = around(canvas) else { return Vec::new() };
-        let grips = (FIRST_KEY..).zip(Does::ALL);
+        let Some((offered, around)) = boxed(canvas) else { return Vec::new() };
+        let grips = (FIRST_KEY..).zip(Does::ALL).filter(|(_, does)| offered.contains(does));
         grips
             .map(|(key, does)| Grip { key, name: does.name().into(), at: does.at(around), first: true })
             .collect()
@@ -101,33 +95,14 @@ impl Group {
         let Some(does) = key.checked_sub(FIRST_KEY).and_then(|index| Does::ALL.get(index)) else {
             return false;
         };
-        self.drag = around(canvas).filter(|_| !clicks).map(|around| {
-            let pivot = canvas.view.geo(around.center());
-            Drag {
-                moved: Moved::Set(canvas.scene.document.plan().clone(), canvas.scene.selected_set()),
-                does: *does,
-                from: does.at(around),
-                pivot,
-                motion: Motion::shift(pivot, pivot),
-            }
-        });
+        let begun = boxed(canvas).filter(|_| !clicks);
+        self.drag = begun.map(|(_, around)| Drag::new(*does, does.at(around), around.center(), canvas));
         true
     }
 
-    /// A drag begins that moves one thing as a whole.
-    pub fn move_one(&mut self, what: &Selection, from: Pos2, canvas: &Canvas<'_>) {
-        let moved = match what {
-            Selection::Variable(name) => {
-                canvas.sketch.area(name).map(|corners| Moved::Area(name.clone(), corners.to_vec()))
-            }
-            Selection::Zone(zone) => {
-                Some(Moved::Set(canvas.scene.document.plan().clone(), vec![zone.clone()]))
-            }
-            _ => None,
-        };
-        let Some(moved) = moved else { return };
-        let pivot = canvas.view.geo(from);
-        self.drag = Some(Drag { moved, does: Does::Move, from, pivot, motion: Motion::shift(pivot, pivot) });
+    /// A drag of all that is selected begins there.
+    pub fn move_from(&mut self, from: Pos2, canvas: &Canvas<'_>) {
+        self.drag = Some(Drag::new(Does::Move, from, from, canvas));
     }
 
     /// The pressed grip is dragged; true if there is one.
@@ -147,19 +122,12 @@ impl Group {
 
     /// The box, its handles, and what the drag has come to.
     pub fn paint(&self, painter: &Painter, canvas: &Canvas<'_>, p: &Palette) {
-        let Some(around) = around(canvas) else { return };
+        let Some((offered, around)) = boxed(canvas) else { return };
         let stroke = Stroke::new(1.4, p.accent);
         let corners = [around.left_top(), around.right_top(), around.right_bottom(), around.left_bottom()];
         let ring: Vec<Pos2> = corners.into_iter().chain([around.left_top()]).collect();
         painter.extend(Shape::dashed_line(&ring, stroke, 5.0, 4.0));
-        painter.line_segment([around.center_top(), Does::Turn.at(around)], stroke);
-        let [moves, turns, scales] = Does::ALL.map(|does| does.at(around));
-        for axis in [vec2(7.0, 0.0), vec2(0.0, 7.0)] {
-            painter.line_segment([moves - axis, moves + axis], Stroke::new(2.4, p.accent));
-        }
-        painter.circle(turns, 6.0, p.halo, Stroke::new(2.0, p.accent));
-        let square = Rect::from_center_size(scales, Vec2::splat(11.0));
-        painter.rect(square, 1.0, p.halo, Stroke::new(2.0, p.accent), egui::StrokeKind::Middle);
+        offered.iter().for_each(|does| does.paint(painter, around, p));
         if let Some(drag) = &self.drag {
             let at = drag.does.at(around) + vec2(12.0, -10.0);
             text::haloed(painter, at, Align2::LEFT_BOTTOM, &words(drag, canvas), 13.0, p.text, p);
@@ -193,20 +161,13 @@ fn words(drag: &Drag, canvas: &Canvas<'_>) -> String {
     }
 }
 
-/// The box around what is selected on the screen, if that is several things.
-fn around(canvas: &Canvas<'_>) -> Option<Rect> {
-    if canvas.scene.view.also.is_empty() {
-        return None;
-    }
-    let set = canvas.scene.selected_set();
-    let mut around = Rect::NOTHING;
-    let places = transform::places_of(canvas.scene.document.plan(), &set);
-    places.into_iter().for_each(|at| around.extend_with(canvas.view.place(at)));
-    (set.len() > 1 && around.is_finite()).then(|| around.expand(AROUND))
+/// The box around what is selected on the screen, and what its handles do.
+fn boxed(canvas: &Canvas<'_>) -> Option<(&'static [Does], Rect)> {
+    framed(canvas).map(|(does, around)| (does, around.expand(AROUND)))
 }
 
 /// What is selected in a part of the screen: the legs that have a place there, those of emergency plans too, the fixes there that
-/// none of these uses, and the zones that are there as a whole.
+/// none of these uses, the variables whose places are there, and the zones, runways and areas of variables that are there as a whole.
 pub fn within(area: Rect, canvas: &Canvas<'_>) -> Vec<Selection> {
     let plan = canvas.scene.document.plan();
     let is_there = |at: LatLon| area.contains(canvas.view.place(at));
@@ -218,11 +179,20 @@ pub fn within(area: Rect, canvas: &Canvas<'_>) -> Vec<Selection> {
         .collect();
     let uses = |fix: &Id| legs.iter().any(|leg| matches!(leg.place(), Some(Place::Fix(id)) if id == fix));
     let fixes = plan.fixes.iter().filter(|fix| is_there(fix.position) && !uses(&fix.id));
-    let zones = plan.zones.iter().filter(|zone| {
-        let places = transform::places_of(plan, std::slice::from_ref(&zone.id));
+    let is_whole = |id: &Id| {
+        let places = transform::places_of(plan, std::slice::from_ref(id));
         !places.is_empty() && places.into_iter().all(is_there)
-    });
+    };
+    let zones = plan.zones.iter().filter(|zone| is_whole(&zone.id));
+    let runways = plan.runways.iter().filter(|runway| is_whole(&runway.id));
+    let placed = canvas.sketch.variables.iter().filter(|variable| is_there(variable.at));
+    let areas = canvas.sketch.areas.iter().filter(|(_, corners)| corners.iter().copied().all(is_there));
+    let variables = placed.map(|variable| &variable.name).chain(areas.map(|(name, _)| name));
     let ids = legs.iter().map(|leg| Selection::Leg(leg.id.clone()));
     let fixes = fixes.map(|fix| Selection::Fix(fix.id.clone()));
-    ids.chain(fixes).chain(zones.map(|zone| Selection::Zone(zone.id.clone()))).collect()
+    ids.chain(fixes)
+        .chain(zones.map(|zone| Selection::Zone(zone.id.clone())))
+        .chain(runways.map(|runway| Selection::Runway(runway.id.clone())))
+        .chain(variables.map(|name| Selection::Variable(name.clone())))
+        .collect()
 }

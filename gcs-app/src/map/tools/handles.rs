@@ -1,7 +1,7 @@
 //! The handles that are on the screen, and how they look.
 
 use super::Canvas;
-use super::pen::length;
+use super::pen::{length, way};
 use super::pick::selection;
 use crate::command::Selection;
 use crate::map::names::{self, Ground, Name, Rank, Spot};
@@ -26,7 +26,11 @@ pub type Near<'a> = (usize, &'a Handle, Pos2);
 pub fn near<'a>(view: &View, sketch: &'a Sketch, scene: &Scene<'_>) -> Vec<Near<'a>> {
     let (plan, points_per_metre) = (scene.document.plan(), view.points_per_metre());
     let is_shown = move |handle: &Handle| match &handle.what {
-        Handled::Number { .. } | Handled::ArcCentre(_) | Handled::Entry { .. } | Handled::Side { .. } => {
+        Handled::Number { .. }
+        | Handled::ArcCentre(_)
+        | Handled::Entry { .. }
+        | Handled::Side { .. }
+        | Handled::Runway(..) => {
             scene.view.also.is_empty() && scene.is_selected(&selection(plan, &handle.what))
         }
         Handled::Radius(_) | Handled::Corner { .. } | Handled::Ghost { .. } | Handled::Area(..) => {
@@ -74,6 +78,10 @@ pub fn value(handle: &Handle, at: Pos2, canvas: &Canvas<'_>) -> Option<Label> {
         Handled::Radius(of) => {
             let centre = canvas.sketch.centre_of(of, plan)?;
             format!("Radius {}", length(centre.distance_m(handle.at), units))
+        }
+        Handled::Runway(id, _) => {
+            let runway = plan.runway(id)?;
+            way(runway.threshold, runway.from_other_end().threshold, units)
         }
         what if what.is_choice() => what.name(canvas.scene.document),
         _ => return None,
@@ -123,7 +131,10 @@ pub fn draw(painter: &Painter, at: Pos2, handle: &Handle, selected: bool, hot: b
             painter.circle(at, size * 0.9, p.halo, stroke);
             text::haloed(painter, at, Align2::CENTER_CENTER, "⇄", 11.0, p.text, p);
         }
-        Handled::Radius(_) | Handled::Corner { .. } | Handled::Area(_, AreaPart::Corner(_)) => {
+        Handled::Radius(_)
+        | Handled::Corner { .. }
+        | Handled::Area(_, AreaPart::Corner(_))
+        | Handled::Runway(..) => {
             let rect = Rect::from_center_size(at, Vec2::splat(size * 1.6));
             painter.rect(rect, 1.0, fill, stroke, egui::StrokeKind::Middle);
         }

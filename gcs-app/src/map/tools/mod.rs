@@ -10,6 +10,7 @@ mod corner;
 mod crossing;
 mod draw_leg;
 mod emergency;
+mod framed;
 mod group;
 mod guided;
 mod handles;

@@ -111,6 +111,7 @@ fn end_of(runway: &Runway) -> LatLon {
 pub fn selection(plan: &FlightPlan, what: &Handled) -> Selection {
     match what {
         Handled::Fix(id) => Selection::Fix(id.clone()),
+        Handled::Runway(id, _) => Selection::Runway(id.clone()),
         Handled::Variable(name) | Handled::Area(name, _) => Selection::Variable(name.clone()),
         Handled::Waypoint(id)
         | Handled::Centre(id)

@@ -21,6 +21,7 @@ use egui::{Align2, Key, Painter, Pos2, Rect, Stroke, vec2};
 use flight_plan::create::{self, Drawn, LegChoice};
 use flight_plan::{Edit, FlightPlan, Id, Place, Problem, Spot, Value, VariableValue};
 use geometry::LatLon;
+use std::sync::Arc;
 
 /// The grip's key that is the line under the pointer.
 const LINE: usize = usize::MAX;
@@ -52,6 +53,8 @@ pub struct Select {
     dragged: Option<Mark>,
     /// What letting go does: the leg goes to what it was dragged onto.
     landing: Option<Edit>,
+    /// The plan before a runway was dragged: what leads down to it goes along from where it was.
+    before: Option<Arc<FlightPlan>>,
     /// What is being dragged can't be moved now.
     refused: bool,
 }
@@ -121,8 +124,8 @@ impl Tool for Select {
         let grips =
             shown.map(|&(key, handle, at)| Grip { key, name: name(handle), at, first: first(handle) });
         let mut grips: Vec<Grip> = grips.collect();
-        put_meant_last(&mut grips, canvas.pointer);
         grips.extend(self.group.grips(canvas));
+        put_meant_last(&mut grips, canvas.pointer);
         // below the others
         let line = self.line_grip(&grips, canvas);
         let is_free = line.is_none() && self.inserting.is_none();
@@ -216,6 +219,10 @@ impl Tool for Select {
             };
         }
         let what = self.bent.as_ref().unwrap_or(&handle.what);
+        let plan = match what {
+            Handled::Runway(..) => self.before.get_or_insert_with(|| plan.clone()),
+            _ => plan,
+        };
         if let Some(edit) = edit(plan, canvas.sketch, what, to) {
             queue.document(DocumentCommand::DragEdit(edit));
         }
@@ -244,7 +251,7 @@ impl Tool for Select {
             queue.view(ViewCommand::Toast(format!("Moved the selected {kind}. Ctrl+Z takes it back.")));
         }
         self.group.release();
-        (self.grabbed, self.dragged, self.bent) = (None, None, None);
+        (self.grabbed, self.dragged, self.bent, self.before) = (None, None, None, None);
         if let Some(edit) = self.landing.take() {
             queue.document(DocumentCommand::DragEdit(edit));
         }
@@ -298,8 +305,8 @@ impl Select {
     fn grab_whole(&mut self, canvas: &Canvas<'_>) {
         self.whole = canvas.pointer.and_then(|at| whole::selected(at, canvas));
         self.refused = self.whole.is_none();
-        if let (Some(whole), Some(at)) = (&self.whole, canvas.pointer) {
-            self.group.move_one(whole, at, canvas);
+        if let (Some(_), Some(at)) = (&self.whole, canvas.pointer) {
+            self.group.move_from(at, canvas);
         }
     }
 
@@ -313,6 +320,7 @@ impl Select {
                 | Handled::Centre(_)
                 | Handled::Corner { .. }
                 | Handled::Area(_, AreaPart::Corner(_))
+                | Handled::Runway(..)
         );
         if !snaps {
             return Mark::at(canvas.view.geo(to));
@@ -329,7 +337,11 @@ impl Select {
             bound.map_or_else(String::new, |name| format!("variable {name}")),
         ];
         let own = own.map(|name| name.to_lowercase());
-        let is_own = |on: &str| own.contains(&on.to_lowercase());
+        let runways = match &handle.what {
+            Handled::Runway(id, _) => snap::of_runway(plan, id),
+            _ => Vec::new(),
+        };
+        let is_own = |on: &str| own.contains(&on.to_lowercase()) || runways.iter().any(|of| on.ends_with(of));
         let (now, was) = (handle.at, self.grabbed.as_ref().map(|grabbed| grabbed.at));
         let lands = self.dragged.as_ref().and_then(|mark| mark.on.clone());
         snap_but(to, canvas, &|on, at| {
@@ -362,7 +374,7 @@ impl Select {
 fn why_not(pointer: Pointer, handle: Option<&Handle>, canvas: &Canvas<'_>) -> Option<String> {
     let Some(handle) = handle else {
         let grabs = pointer.grip.is_some() && !pointer.clicks;
-        return grabs.then(|| guard::of_legs(canvas.scene, &canvas.scene.selected_set())).flatten();
+        return grabs.then(|| guard::of_selected(canvas.scene)).flatten();
     };
     let changes = !pointer.clicks || handle.what.is_choice();
     changes.then(|| guard::of_handle(canvas.scene, &handle.what)).flatten()
@@ -406,6 +418,7 @@ fn edit(plan: &FlightPlan, sketch: &Sketch, what: &Handled, to: LatLon) -> Optio
         // a mark has become a corner before it gets here
         Handled::Area(_, AreaPart::Ghost(_)) => None,
         Handled::Area(variable, part) => sketch.drag_area(variable, *part, to),
+        Handled::Runway(id, end) => create::lay_runway(plan, &end.dragged(plan.runway(id)?, to)?),
         Handled::Fix(fix) => Some(Edit::MoveFix { fix: fix.clone(), to }),
         Handled::Waypoint(leg) | Handled::Centre(leg) => Some(Edit::MoveWaypoint { leg: leg.clone(), to }),
         Handled::Radius(leg) => {

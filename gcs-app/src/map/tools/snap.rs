@@ -7,7 +7,7 @@ use crate::map::sketch::{AreaPart, Handled};
 use crate::map::text;
 use crate::theme::Palette;
 use egui::{Align2, Painter, Pos2, Stroke, vec2};
-use flight_plan::{Place, Runway, Value, figures};
+use flight_plan::{FlightPlan, Id, Place, Runway, Value, figures};
 use geometry::LatLon;
 use geometry::geodesy::normalise_180;
 
@@ -62,11 +62,22 @@ fn things<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> {
     fixes.chain(variables)
 }
 
+/// How everything of a runway is called at the end, and of its other direction, which lies there, too.
+pub fn of_runway(plan: &FlightPlan, id: &Id) -> Vec<String> {
+    let runway = plan.runway(id);
+    let both = runway.into_iter().chain(runway.and_then(|runway| plan.opposite(runway)));
+    both.map(|runway| of(&runway.id)).collect()
+}
+
+fn of(runway: &Id) -> String {
+    format!(" of {runway}")
+}
+
 fn runway_ends<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Mark> + use<'a> {
     canvas.scene.document.plan().runways.iter().flat_map(|runway| {
         let end = figures::place(runway.threshold.destination(runway.heading_deg, runway.length_m));
         [(runway.threshold, "threshold"), (end, "end")]
-            .map(|(at, what)| Mark { on: Some(format!("{what} of {}", runway.id)), ..Mark::at(at) })
+            .map(|(at, what)| Mark { on: Some(format!("{what}{}", of(&runway.id))), ..Mark::at(at) })
     })
 }
 

@@ -40,7 +40,7 @@ pub(super) fn whose(document: &Document, id: &Id) -> String {
     of.map_or_else(|| name.to_owned(), |of| format!("{name} of {}", document.label(&of.id)))
 }
 
-/// Of legs, stages, fixes, zones and runways, or of very many legs.
+/// Of legs, stages, fixes, zones, runways and variables, or of very many legs.
 pub fn mixed(ui: &mut Ui, scene: &Scene<'_>, set: &[Id], queue: &mut Queue) {
     let plan = scene.document.plan();
     let legs = scene.selected_legs().len();
