@@ -50,7 +50,8 @@ pub struct Circle {
 }
 
 impl Circle {
-    fn rim(&self) -> [LatLon; 4] {
+    /// Four places around it.
+    pub fn rim(&self) -> [LatLon; 4] {
         [0.0, 90.0, 180.0, 270.0].map(|bearing| self.centre.destination(bearing, self.radius_m))
     }
 }
@@ -360,9 +361,9 @@ impl Sketch {
         }
     }
 
-    /// Four places around the circle that a leg covers.
-    pub fn rim(&self, leg: &Id) -> Option<[LatLon; 4]> {
-        self.circles.iter().find(|circle| circle.leg == *leg && circle.is_area).map(Circle::rim)
+    /// The circle that a leg covers.
+    pub fn circle(&self, leg: &Id) -> Option<&Circle> {
+        self.circles.iter().find(|circle| circle.leg == *leg && circle.is_area)
     }
 
     /// The outline of the area that a leg covers.
@@ -453,6 +454,7 @@ fn areas(plan: &FlightPlan, variables: &Variables) -> Vec<(Id, Vec<LatLon>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::command::Selection;
     use flight_plan::Edit;
 
     #[test]
@@ -499,9 +501,21 @@ mod tests {
         assert!(circle.centre.distance_m(LatLon::new(46.5, 9.0)) < 1.0);
         let [(leg, rings)] = sketch.polygons.as_slice() else { panic!("{:?}", sketch.polygons) };
         assert_eq!((leg.as_str(), rings[0].len()), ("c", 3));
-        let is_draggable =
-            |handle: &Handle| matches!(handle.what, Handled::Radius(_) | Handled::Corner { .. });
-        assert!(!sketch.handles.iter().any(is_draggable));
+        let draggable = |selected: Option<&Selection>| {
+            let there = sketch.is_there(sketch.open_procedure(selected));
+            let handles = sketch.handles.iter().enumerate().filter(|(key, _)| there(*key));
+            let outlines = handles
+                .filter(|(_, h)| matches!(h.what, Handled::Radius(_) | Handled::Corner { .. }))
+                .map(|(_, handle)| handle.at);
+            outlines.collect::<Vec<_>>()
+        };
+        let call = Selection::Leg("c".into());
+        assert!(draggable(None).is_empty() && draggable(Some(&call)).is_empty());
+        for opens in [Selection::Procedure("look".into()), Selection::Leg("o".into())] {
+            let at = draggable(Some(&opens));
+            assert_eq!(at.len(), 4, "{opens:?}");
+            assert!(at.iter().all(|at| at.lat_deg < 46.2), "where it is defined");
+        }
     }
 
     #[test]

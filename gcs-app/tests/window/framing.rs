@@ -121,6 +121,38 @@ fn a_circle_is_not_turned_and_a_runway_never_scaled() {
     assert!(!window.shows(MOVE), "a place has no extent");
 }
 
+/// Its middle and its radius are two variables.
+#[test]
+fn a_circle_that_variables_say_is_moved_and_scaled_by_them() {
+    let text = include_str!("../../../assets/plans/fire-watch.xml");
+    let mut window = Window::open_with(text, vec2(1280.0, 1000.0), None);
+    window.until_analysed();
+    let plan = window.plan();
+    let said = |plan: &FlightPlan, name: &str| plan.variable(&name.into()).unwrap().initial.clone();
+    let is_circle = |leg: &flight_plan::Leg| match &leg.kind {
+        LegKind::Scan(Scan { area: Area::Circle { .. }, .. }) => Some(leg.id.clone()),
+        _ => None,
+    };
+    let scan = plan.all_legs().iter().find_map(|context| is_circle(context.leg)).unwrap();
+    window.select_row((&format!("SCAN {}", plan.label(&scan)), 0));
+    window.steps(4);
+    assert_eq!(window.selected(), scan.as_str());
+    for (grip, changes, stays) in
+        [(MOVE, "fire_centre", "fire_radius"), (SCALE, "fire_radius", "fire_centre")]
+    {
+        let at = window.centre(grip);
+        window.drag(at, vec2(14.0, 11.0));
+        let after = window.plan();
+        assert_ne!(said(&after, changes), said(&plan, changes));
+        match (said(&after, stays), said(&plan, stays)) {
+            (VariableValue::Position(is), VariableValue::Position(was)) => assert!(is.distance_m(was) < 1.0),
+            (is, was) => assert_eq!(is, was),
+        }
+        window.click("Undo");
+        assert_eq!(window.plan(), plan, "one step");
+    }
+}
+
 fn altitudes(plan: &FlightPlan) -> Vec<Option<flight_plan::Altitude>> {
     plan.all_legs().iter().map(|context| context.leg.altitude.clone()).collect()
 }

@@ -2,9 +2,10 @@
 
 use super::Canvas;
 use crate::command::Selection;
+use crate::map::sketch::radius_edit;
 use egui::Rect;
 use flight_plan::transform::{self, Motion};
-use flight_plan::{Area, Edit, FlightPlan, Id, VariableValue, ZoneShape, create};
+use flight_plan::{Area, Edit, FlightPlan, Id, Leg, Place, Value, VariableValue, ZoneShape, create};
 use geometry::LatLon;
 use std::sync::Arc;
 
@@ -19,6 +20,9 @@ pub enum Does {
 impl Does {
     pub const ALL: [Self; 3] = [Self::Move, Self::Turn, Self::Scale];
 }
+
+/// A circle looks the same however it is turned.
+const ROUND: &[Does] = &[Does::Move, Does::Scale];
 
 /// What can be done with what is selected, and the places it is around on the screen. `None`: it is one thing without an extent, or
 /// nothing.
@@ -40,9 +44,8 @@ fn together(canvas: &Canvas<'_>) -> Option<Vec<LatLon>> {
     (things.len() + variables.len() > 1).then_some(places)
 }
 
-/// An area, zone or runway that is selected alone: a circle looks the same however it is turned, and a runway is made longer by its ends.
+/// An area, zone or runway that is selected alone; a runway is made longer by its ends.
 fn alone(canvas: &Canvas<'_>) -> Option<(&'static [Does], Vec<LatLon>)> {
-    const ROUND: &[Does] = &[Does::Move, Does::Scale];
     const RIGID: &[Does] = &[Does::Move, Does::Turn];
     let (plan, sketch) = (canvas.scene.document.plan(), canvas.sketch);
     let of_plan = |id: &Id| transform::places_of(plan, std::slice::from_ref(id));
@@ -53,11 +56,30 @@ fn alone(canvas: &Canvas<'_>) -> Option<(&'static [Does], Vec<LatLon>)> {
         },
         Selection::Runway(id) => Some((RIGID, of_plan(id))),
         Selection::Variable(name) => Some((&Does::ALL, sketch.area(name)?.to_vec())),
-        Selection::Leg(id) => match plan.leg(id)?.leg.area()? {
-            Area::Circle { .. } => Some((ROUND, sketch.rim(id)?.to_vec())),
-            Area::Polygon { .. } | Area::Expression(_) => Some((&Does::ALL, sketch.outline(id)?.to_vec())),
-        },
+        Selection::Leg(id) => area(plan.leg(id)?.leg, canvas),
         _ => None,
+    }
+}
+
+/// The area that a leg covers. `None`: there is none, or it is where an expression says that is no variable alone.
+fn area(leg: &Leg, canvas: &Canvas<'_>) -> Option<(&'static [Does], Vec<LatLon>)> {
+    let area = leg.area()?;
+    let is_said = matches!(
+        area,
+        Area::Expression(_) | Area::Circle { centre: Place::Position(Value::Expression(_)), .. }
+    );
+    if is_said && create::bound_to(leg).is_none() {
+        return None;
+    }
+    match area {
+        Area::Circle { .. } => {
+            let can_grow = radius_edit(canvas.scene.document.plan(), &leg.id, 1.0).is_some();
+            let does = if can_grow { ROUND } else { &[Does::Move][..] };
+            Some((does, canvas.sketch.circle(&leg.id)?.rim().to_vec()))
+        }
+        Area::Polygon { .. } | Area::Expression(_) => {
+            Some((&Does::ALL, canvas.sketch.outline(&leg.id)?.to_vec()))
+        }
     }
 }
 
@@ -67,6 +89,8 @@ pub struct Moved {
     plan: Arc<FlightPlan>,
     set: Vec<Id>,
     variables: Vec<(Id, VariableValue)>,
+    /// Of a leg alone that covers a circle, metres.
+    radius: Option<(Id, f64)>,
 }
 
 impl Moved {
@@ -82,6 +106,10 @@ impl Moved {
         Self {
             set: create::with_approaches(plan, &set),
             variables: values(canvas, variables),
+            radius: match set.as_slice() {
+                [leg] => canvas.sketch.circle(leg).map(|circle| (leg.clone(), circle.radius_m)),
+                _ => None,
+            },
             plan: plan.clone(),
         }
     }
@@ -92,7 +120,11 @@ impl Moved {
         let variables = variables
             .filter(|(_, was, value)| *was != value)
             .map(|(name, _, value)| Edit::SetVariable { name: name.clone(), value });
-        Edit::All(std::iter::once(motion.edit(&self.plan, &self.set)).chain(variables).collect())
+        // a variable may say it
+        let radius = self.radius.as_ref().filter(|_| motion.scale != 1.0);
+        let radius = radius.and_then(|(leg, was_m)| radius_edit(&self.plan, leg, was_m * motion.scale));
+        let moved = std::iter::once(motion.edit(&self.plan, &self.set));
+        Edit::All(moved.chain(variables).chain(radius).collect())
     }
 }
 
