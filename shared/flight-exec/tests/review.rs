@@ -5,6 +5,7 @@
 mod field;
 
 use aircraft::{Profile, Wind};
+use flight_exec::rehearse::{Options, Preview, Scenario, Start, TrackPoint, preview};
 use flight_exec::{
     Conditions, Margins, compile_and_review, leave_zones_out, put_remedies, review, review_extremes,
 };
@@ -337,27 +338,108 @@ fn left_out(zone: &str, entry: &str, then: (f64, f64)) -> Option<(Edit, Vec<Stri
     Some((edit, shown(&after.into_iter().filter(Problem::is_error).collect::<Vec<_>>())))
 }
 
+/// A plan with legs that go into a zone, before and after the *Fix* of the leg `on`, as programs; `None`: it is not offered.
+fn led_around(zone: &str, legs: &str, terrain: &Arc<dyn Terrain>) -> Option<[Arc<Program>; 2]> {
+    let plan = flight_plan::read(rectangle(zone, legs)).plan;
+    let (profile, conditions) = (Profile::default(), Conditions::default());
+    let made = |plan: &FlightPlan| {
+        let program = compile(plan.clone(), &profile, terrain.as_ref());
+        Arc::new(program.unwrap_or_else(|p| panic!("{:?}", shown(&p))))
+    };
+    let program = made(&plan);
+    let mut found = review(&program, &profile, terrain, conditions);
+    let remedied = leave_zones_out(&program, &profile, terrain, conditions, &found, &mut || true);
+    put_remedies(&mut found, remedied);
+    let through = found.iter().find(|p| p.code == "keep-out" && p.subject == Some("on".into())).unwrap();
+    let is_offered = through.message.starts_with("go around the zone, or move this leg");
+    assert_eq!(is_offered, through.fix.is_some(), "{through}");
+    let mended = made(&through.fix.as_ref()?.apply(&plan).unwrap());
+    let known: HashSet<_> = found.into_iter().map(|p| (p.code, p.subject)).collect();
+    let after = review(&mended, &profile, terrain, conditions);
+    let new: Vec<_> = after.into_iter().filter(|p| !known.contains(&(p.code, p.subject.clone()))).collect();
+    assert_eq!(shown(&new), [""; 0]);
+    Some([program, mended])
+}
+
 /// What the message says had to be done by hand.
 #[test]
 fn a_leg_that_goes_into_a_zone_is_led_around_it() {
     let zone = r#"<keepOut id="z" lat="36.355" lon="-84.195" radius="150"/>"#;
     let legs = r#"<TF id="to" lat="36.34" lon="-84.195"/><TF id="on" lat="36.37" lon="-84.195"/>"#;
-    let plan = flight_plan::read(rectangle(zone, legs)).plan;
     let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
-    let (profile, conditions) = (Profile::default(), Conditions::default());
-    let made = |plan: &FlightPlan| {
-        Arc::new(compile(plan.clone(), &profile, flat.as_ref()).unwrap_or_else(|p| panic!("{:?}", shown(&p))))
-    };
-    let program = made(&plan);
-    let mut found = review(&program, &profile, &flat, conditions);
-    let remedied = leave_zones_out(&program, &profile, &flat, conditions, &found, &mut || true);
-    put_remedies(&mut found, remedied);
-    let through = found.iter().find(|p| p.code == "keep-out" && p.subject == Some("on".into())).unwrap();
-    assert!(through.message.starts_with("go around the zone, or move this leg"), "{through}");
-    let fixed = through.fix.as_ref().unwrap().apply(&plan).unwrap();
-    assert!(fixed.all_legs().len() > plan.all_legs().len());
-    let after = review(&made(&fixed), &profile, &flat, conditions);
-    assert_eq!(shown(&after.into_iter().filter(Problem::is_error).collect::<Vec<_>>()), [""; 0]);
+    let [program, mended] = led_around(zone, legs, &flat).unwrap();
+    assert!(mended.plan.all_legs().len() > program.plan.all_legs().len());
+    let left = review(&mended, &Profile::default(), &flat, Conditions::default());
+    assert_eq!(shown(&left.into_iter().filter(Problem::is_error).collect::<Vec<_>>()), [""; 0]);
+}
+
+/// Flat at 300 m, but for hills of 380 m west and east of the way from `to` to `on`.
+struct Hills;
+
+impl Terrain for Hills {
+    fn elevation_m(&self, p: LatLon) -> Option<f64> {
+        let beside = (p.lon_deg + 84.195).abs();
+        let is_hill = (36.345..36.365).contains(&p.lat_deg) && (0.002..0.012).contains(&beside);
+        Some(if is_hill { 380.0 } else { 300.0 })
+    }
+}
+
+fn flown(program: &Arc<Program>, terrain: &Arc<dyn Terrain>) -> Preview {
+    let (profile, scenario, options) = (Profile::default(), Scenario::default(), Options::default());
+    let start = Start::of(program, terrain.as_ref()).unwrap();
+    preview(program, &profile, terrain, Wind::CALM, start, &scenario, &options).unwrap()
+}
+
+/// The way around a zone was flown at the altitude of the gate behind it: 45 m above the ground, and no problem was told.
+#[test]
+fn a_descent_is_led_around_a_zone_no_lower_than_it_was_flown() {
+    let zone = r#"<keepOut id="z" lat="36.355" lon="-84.195" radius="150"/>"#;
+    let to = r#"<TF id="to" lat="36.34" lon="-84.195"/>"#;
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let hills: Arc<dyn Terrain> = Arc::new(Hills);
+    let references = [
+        (&flat, r#"altitude="345" altitudeReference="amsl""#),
+        (&flat, r#"altitude="45" altitudeReference="agl""#),
+        (&flat, r#"altitude="= 345.0" altitudeReference="amsl""#),
+        (&hills, r#"altitude="360" altitudeReference="amsl""#),
+    ];
+    for (ground, altitude) in references {
+        let gate = format!(r#"{to}<TF id="on" lat="36.385" lon="-84.195" {altitude}/>"#);
+        let [original, mended] = led_around(zone, &gate, ground).unwrap_or_else(|| panic!("{altitude}"));
+        let flown = flown(&mended, ground);
+        let is_new = |point: &&TrackPoint| {
+            let leg = point.passage.map(|passage| &flown.legs[passage].place.leg);
+            leg.is_some_and(|leg| mended.plan.leg(leg).is_some() && original.plan.leg(leg).is_none())
+        };
+        let heights = flown.track.iter().filter(is_new).map(|point| point.altitude_amsl_m);
+        let lowest_m = heights.min_by(f64::total_cmp).expect("legs that lead around it");
+        assert!(lowest_m > 499.0, "{altitude}: {lowest_m} m");
+    }
+}
+
+/// Nothing is offered that would be flown lower.
+#[test]
+fn a_descent_without_room_behind_the_zone_is_not_led_around_it() {
+    let zone = r#"<keepOut id="z" lat="36.355" lon="-84.195" radius="150"/>"#;
+    let to = r#"<TF id="to" lat="36.34" lon="-84.195"/>"#;
+    let low = r#"altitude="345" altitudeReference="amsl""#;
+    let gate = format!(r#"{to}<TF id="on" lat="36.364" lon="-84.195" {low}/>"#);
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    assert!(led_around(zone, &gate, &flat).is_none());
+}
+
+/// What climbs does so before the zone as well: the ground beside it may be higher.
+#[test]
+fn a_climb_is_led_around_a_zone_no_later_than_it_was_flown() {
+    let zone = r#"<keepOut id="z" lat="36.36" lon="-84.195" radius="150"/>"#;
+    let to = r#"<TF id="to" lat="36.34" lon="-84.195"/>"#;
+    let gate =
+        format!(r#"{to}<TF id="on" lat="36.385" lon="-84.195" altitude="550" altitudeReference="amsl"/>"#);
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let [original, mended] = led_around(zone, &gate, &flat).unwrap();
+    let new = mended.plan.all_legs().into_iter().filter(|of| original.plan.leg(&of.leg.id).is_none());
+    let said: Vec<_> = new.map(|of| of.altitude().map(|altitude| altitude.metres.clone())).collect();
+    assert!(!said.is_empty() && said.iter().all(|said| *said == Some(Value::Constant(550.0))), "{said:?}");
 }
 
 /// The ways to the scan, within it and on from it lead around the zone, too.

@@ -4,14 +4,17 @@
 //! How far the hole has to be from the zone depends on how the aircraft turns there, and the way to the scan on where it begins with the
 //! hole in it. So each candidate is tried: it is offered only if the plan with it, reviewed like any other, has neither this
 //! error nor a new one.
+//!
+//! The way around a zone stays as high as it was flown to: what descends, as an approach does to its gate, descends behind the zone.
+//! Is too little of the leg left there to descend on, that is an error of the plan with it, and it is not offered.
 
 use super::flown::Flown;
 use super::{Conditions, View};
 use aircraft::Profile;
 use flight_plan::create::{self, Drawn, LegChoice};
 use flight_plan::{
-    Area, Edit, FlightPlan, Id, Leg, LegKind, Place, Problem, Program, Scan, Spot, Value, Zone, ZoneKind,
-    ZoneShape, compile,
+    Altitude, AltitudeReference, Area, Edit, FlightPlan, Id, Leg, LegKind, Place, Problem, Program, Scan,
+    Spot, Value, Zone, ZoneKind, ZoneShape, compile,
 };
 use geometry::polygon::{EdgeBudget, Interior};
 use geometry::{LatLon, LocalFrame, Polygon, Vec2};
@@ -184,6 +187,36 @@ struct Joint {
     from: Id,
     to: Id,
     gap: (LatLon, LatLon),
+    /// What the legs ask for there, metres AMSL.
+    heights_amsl_m: (f64, f64),
+}
+
+impl Joint {
+    /// The altitude that a way around something between the legs is flown at by a leg beside `of`, one of them: the higher of theirs. With
+    /// the lower one the aircraft would sink over other ground than where the plan has it sink, or climb later. `None`: that of `of`.
+    fn altitude(&self, plan: &FlightPlan, of: &Leg) -> Option<Altitude> {
+        let (own_m, other_m, other) = match self.heights_amsl_m {
+            (from, to) if self.to == of.id => (to, from, &self.from),
+            (from, to) => (from, to, &self.to),
+        };
+        let said = |leg: &Id| plan.leg(leg).and_then(|context| context.altitude().cloned());
+        let (own, other) = (said(&of.id), said(other));
+        if own == other {
+            return of.altitude.clone();
+        }
+        if let (Some(own), Some(other)) = (&own, &other)
+            && let (Value::Constant(own_m), Value::Constant(other_m)) = (&own.metres, &other.metres)
+            && own.reference == other.reference
+        {
+            return if own_m < other_m { Some(other.clone()) } else { of.altitude.clone() };
+        }
+        // what follows the ground may be lower beside the zone than the aircraft was before it
+        if own_m >= other_m && own.is_none_or(|own| own.reference != AltitudeReference::Agl) {
+            return of.altitude.clone();
+        }
+        let metres = Value::Constant(own_m.max(other_m).ceil());
+        Some(Altitude { metres, reference: AltitudeReference::Amsl })
+    }
 }
 
 impl Trials<'_> {
@@ -246,8 +279,13 @@ impl Trials<'_> {
 
 fn joints(flown: &Flown) -> impl Iterator<Item = Joint> + '_ {
     let pairs = flown.waypoints.iter().zip(flown.waypoints.iter().skip(1));
-    let pairs = pairs.map(|(a, b)| (&a.waypoint, &b.waypoint)).filter(|(a, b)| a.leg != b.leg);
-    pairs.map(|(a, b)| Joint { from: a.leg.clone(), to: b.leg.clone(), gap: (a.position, b.position) })
+    let pairs = pairs.filter(|(a, b)| a.waypoint.leg != b.waypoint.leg);
+    pairs.map(|(a, b)| Joint {
+        from: a.waypoint.leg.clone(),
+        to: b.waypoint.leg.clone(),
+        gap: (a.waypoint.position, b.waypoint.position),
+        heights_amsl_m: (a.wanted_amsl_m, b.wanted_amsl_m),
+    })
 }
 
 /// The plan with legs that lead around the zone before the leg and behind it, as far as they are needed; what that takes is added to
@@ -265,11 +303,12 @@ fn detours(
     let behind = tried.joints.iter().find(|joint| joint.from == *of);
     let known = edits.len();
     for joint in before.into_iter().chain(behind) {
+        let altitude = joint.altitude(&plan, conflict.leg);
         let mut spot = if joint.to == *of { Spot::Before(of.clone()) } else { Spot::After(of.clone()) };
         for at in conflict.way_around(joint.gap, apart_m)? {
             let place = Drawn::Place(Place::Position(Value::Constant(at)));
             let mut leg = create::leg(&plan, profile, LegChoice::Tf, &place, None, None)?;
-            leg.altitude.clone_from(&conflict.leg.altitude);
+            leg.altitude.clone_from(&altitude);
             let id = leg.id.clone();
             let edit = Edit::InsertLeg { leg: Box::new(leg), at: spot.clone() };
             plan = edit.apply(&plan).ok()?;
