@@ -82,7 +82,8 @@ impl Document {
     pub fn read(bytes: &[u8], path: Option<PathBuf>) -> Self {
         let reading = flight_plan::read(bytes);
         let text = std::str::from_utf8(bytes).ok().map(Arc::from);
-        Self { text, ..Self::new(reading.plan, path, reading.problems) }
+        let losses = reading.losses().cloned().collect();
+        Self { text, ..Self::new(reading.plan, path, losses) }
     }
 
     /// Takes over what another program wrote in its file, as a step that can be undone.

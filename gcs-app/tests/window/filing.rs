@@ -401,3 +401,28 @@ fn file_that_could_not_be_read_whole_is_not_written_over_at_once() {
     window.press(egui::Key::Escape);
     assert_eq!(std::fs::read_to_string(&path).unwrap(), cut);
 }
+
+/// Its text is in the plan: it is told once, by the name of its leg, and nothing is lost where the file is written.
+#[test]
+fn a_number_that_could_not_be_read_is_told_once_and_its_file_saved_plainly() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("feet.xml");
+    let text = SQUARE.replacen("\"110\"", "\"250ft\"", 1);
+    let mut window = window_on(&path, &text);
+    window.until_analysed();
+    assert_eq!(window.harness.query_all_by_label_contains("not \"250ft\"").count(), 1);
+    let saved = |window: &mut Window| {
+        window.press_ctrl(egui::Key::S);
+        window.until("saved", |app| !app.document().is_dirty());
+        std::fs::read_to_string(&path).unwrap()
+    };
+    // another property of its leg is changed
+    window.click("TF side4");
+    window.steps(2);
+    window.fill_in(egui::accesskit::Role::TextInput, "Identifier", "fourth");
+    window.steps(2);
+    assert_eq!(saved(&mut window), text.replace("\"side4\"", "\"fourth\""));
+    window.fill_in(egui::accesskit::Role::TextInput, "Altitude", "250 ft");
+    window.steps(2);
+    assert_eq!(saved(&mut window), text.replace("\"side4\"", "\"fourth\"").replace("250ft", "76.2"));
+}

@@ -52,9 +52,24 @@ mod tests {
         assert_eq!(plan, plan.clone(), "it is equal to itself");
         let told = message_of(&orbit("250ft"), "bad-value");
         assert!(told.contains("`radius`") && told.contains("\"250ft\""), "{told}");
-        // it is the same in a file that the window writes
-        let again = read(write(&plan));
-        assert_eq!((again.plan, again.problems.len()), (plan, 0));
+    }
+
+    /// It is the same in a file that is written, and nothing of it is lost there.
+    #[test]
+    fn it_is_written_as_it_stood() {
+        for text in ["250ft", "it's", r"1\2", "a = b", "12 m", "<&\">"] {
+            let escaped = text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+            let reading = read(plan_with(&orbit(&escaped)));
+            assert_eq!((reading.problems.len(), reading.losses().count()), (1, 0), "{text}");
+            let written = write(&reading.plan);
+            assert!(!written.contains("= '"), "{written}");
+            let again = read(&written);
+            assert_eq!((again.plan, again.problems.len()), (reading.plan, 1), "{text}");
+        }
+        // what is a text to the expression language, or would be read as something else, stays a formula
+        for formula in ["= '12'", "= '= 3'", "= ' x'", "= 'NaN'", "= 'a' + 'b'"] {
+            assert!(write(&read(plan_with(&orbit(formula))).plan).contains(formula), "{formula}");
+        }
     }
 
     #[test]

@@ -105,6 +105,19 @@ impl Leg {
         numbers
     }
 
+    /// The attribute of a number that is this very expression, also of an action.
+    pub(crate) fn attribute_of(&self, source: &Arc<str>) -> Option<&'static str> {
+        let mut found = None;
+        let is_it =
+            |value: &Value<f64>| matches!(value, Value::Expression(other) if Arc::ptr_eq(source, other));
+        slots::shared::leg(self, &mut |slot| match slot {
+            Slot::Number(name, value) if is_it(value) => found = Some(name),
+            Slot::Optional(name, Some(value)) if is_it(value) => found = Some(name),
+            _ => {}
+        });
+        found
+    }
+
     /// Every number of [`Leg::numbers`], to be changed (and other values).
     pub(crate) fn for_each_number_mut(&mut self, visit: &mut dyn FnMut(SlotMut)) {
         slots::exclusive::geometry(self, visit);

@@ -33,7 +33,7 @@ fn page(name: &str) -> String {
 /// What is wrong with a document, where no terrain is known.
 fn problems(document: &str) -> Vec<Problem> {
     let ground = Tiles::new();
-    let Reading { plan, mut problems, places } = read(document);
+    let Reading { plan, mut problems, places, .. } = read(document);
     if !problems.iter().any(Problem::is_error) {
         problems.extend(check(&plan, &Profile::default(), &ground));
     }

@@ -29,7 +29,7 @@ fn ground() -> Tiles {
 
 /// Every problem of a document: its own and those of its plan.
 fn problems(document: &[u8], ground: &dyn Terrain) -> Vec<Problem> {
-    let Reading { plan, mut problems, places } = read(document);
+    let Reading { plan, mut problems, places, .. } = read(document);
     problems.extend(check(&plan, &Profile::default(), ground));
     places.locate(&mut problems);
     problems

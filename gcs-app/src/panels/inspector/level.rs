@@ -81,7 +81,11 @@ fn measured_from(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Pro
 fn recount(ui: &Ui, page: &mut Page<'_, '_>, metres: &Property, reference: &Property, word: String) {
     let (mut first, mut remarked) = (None, None);
     let edit = page.edit_each(|draft, element| {
-        let said = read(element, metres, reference)?;
+        let is_given = metres.value(element).is_some();
+        let Some(said) = read(element, metres, reference) else {
+            // a number that could not be read stays as it stands
+            return is_given.then(|| vec![Change::Set(*reference, Some(word.clone()))]);
+        };
         let to = by_name(&word)?;
         let Recounted { metres: number, remark } = datum::recounted(page.scene, draft.subject(), &said, to);
         let number = inherited::as_written(&number);

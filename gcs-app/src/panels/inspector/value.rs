@@ -242,7 +242,8 @@ fn number_or_formula(
 ) -> Option<Typing> {
     let source = value.strip_prefix('=').map(str::trim);
     let name = page.name(property.label);
-    if let Some(text) = source.and_then(unread_number) {
+    let is_number = source.is_some() || value.is_empty() || value.parse::<f64>().is_ok();
+    if let Some(text) = if is_number { source.and_then(unread_number) } else { Some(value.to_owned()) } {
         unread(ui, page, property, range, &text);
         return None;
     }

@@ -3,7 +3,7 @@
 use super::rows::Said;
 use crate::panels::inspector::inherited::reference_name;
 use crate::units::{Unit, Units};
-use flight_plan::{Altitude, AltitudeReference, Edit, Id, Value};
+use flight_plan::{Altitude, AltitudeReference, Edit, Id, Value, unread_number};
 
 /// A column that can be changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -85,7 +85,7 @@ fn name_of(text: &str, id: &Id) -> String {
 fn number_text(value: &Value<f64>, unit: Unit) -> String {
     match value {
         Value::Constant(si) => unit.number(*si),
-        Value::Expression(formula) => format!("= {formula}"),
+        Value::Expression(formula) => unread_number(formula).unwrap_or_else(|| format!("= {formula}")),
     }
 }
 

@@ -10,10 +10,11 @@ use std::sync::Arc;
 
 pub(super) fn check(view: &Inspection, problems: &mut Vec<Problem>) {
     for (_, stage) in view.plan.all_stages() {
-        let numbers =
-            [("altitude", stage.altitude.as_ref().map(|a| &a.metres)), ("speed", stage.speed_mps.as_ref())];
+        let altitude = stage.altitude.as_ref().map(|altitude| &altitude.metres);
+        let is_altitude = |source: &Arc<str>| matches!(altitude, Some(Value::Expression(other)) if Arc::ptr_eq(source, other));
         stage.for_each_expression(&mut |source, used| {
-            one(view, source, used, (&stage.id, &|| name_of(source, &numbers)), problems);
+            let named = || Some(if is_altitude(source) { "altitude" } else { "speed" });
+            one(view, source, used, (&stage.id, &named), problems);
         });
     }
 }
@@ -23,15 +24,9 @@ pub(super) fn leg(view: &Inspection, step: &Step, problems: &mut Vec<Problem>) {
     if step.marks.expressions {
         let leg = &step.leg;
         leg.for_each_expression(&mut |source, used| {
-            one(view, source, used, (&leg.id, &|| name_of(source, &leg.numbers())), problems);
+            one(view, source, used, (&leg.id, &|| leg.attribute_of(source)), problems);
         });
     }
-}
-
-/// The attribute that an expression stands in; `None`: it is of an action.
-fn name_of(source: &Arc<str>, numbers: &[(&'static str, Option<&Value<f64>>)]) -> Option<&'static str> {
-    let is_it = |value: &Value<f64>| matches!(value, Value::Expression(other) if Arc::ptr_eq(source, other));
-    numbers.iter().find(|(_, value)| value.is_some_and(is_it)).map(|(name, _)| *name)
 }
 
 /// `named`: what its attribute is called.

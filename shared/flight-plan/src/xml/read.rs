@@ -25,6 +25,8 @@ pub struct Reading {
     pub problems: Vec<Problem>,
     /// Where everything stands.
     pub places: Places,
+    /// Where numbers stand that could not be read, and whose text the plan has in their place.
+    kept: Vec<Location>,
 }
 
 /// Where the elements with identifiers stand in a document.
@@ -72,6 +74,16 @@ impl Reading {
     pub fn has_errors(&self) -> bool {
         self.problems.iter().any(Problem::is_error)
     }
+
+    /// What is wrong with the document and can't be told of its plan: not the numbers of which the plan has the text. Written
+    /// over, only this would be lost.
+    pub fn losses(&self) -> impl Iterator<Item = &Problem> {
+        let is_kept = |problem: &Problem| {
+            let stands_at = |at: &Location| problem.location.as_ref() == Some(at);
+            problem.code == "bad-value" && self.kept.iter().any(stands_at)
+        };
+        self.problems.iter().filter(move |problem| !is_kept(problem))
+    }
 }
 
 /// Reads a document. Never fails as a whole: see [`Reading`]. Time and memory are bounded by the
@@ -90,10 +102,12 @@ pub fn read(document: impl AsRef<[u8]>) -> Reading {
         Ok(text) => (Cow::Borrowed(text), character_problem(text)),
         Err(error) => (String::from_utf8_lossy(bytes), encoding_problem(bytes, error)),
     };
-    let mut document = Document { cursor: Cursor::new(&text), places: Places::default() };
+    let (places, kept) = (Places::default(), Vec::new());
+    let mut document = Document { cursor: Cursor::new(&text), places, kept };
     encoding.into_iter().for_each(|p| document.cursor.report(p));
     let plan = document.flight_plan();
-    Reading { plan, problems: document.cursor.into_problems(), places: document.places }
+    let (places, kept) = (document.places, document.kept);
+    Reading { plan, problems: document.cursor.into_problems(), places, kept }
 }
 
 fn encoding_problem(bytes: &[u8], error: Utf8Error) -> Option<Problem> {
@@ -127,6 +141,7 @@ fn location_of(before: &str) -> Location {
 pub(super) struct Document<'a> {
     pub cursor: Cursor<'a>,
     pub places: Places,
+    pub kept: Vec<Location>,
 }
 
 impl<'a> Document<'a> {

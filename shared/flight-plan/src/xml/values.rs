@@ -104,7 +104,13 @@ impl<'a> Document<'a> {
         let wanted = "a finite number, or = and an expression";
         let given = (name, element.attributes.take(name)?.as_ref());
         let value = self.parsed_text(element, given, wanted, |text| value(text, number));
-        Some(value.unwrap_or_else(|| unread::kept(given.1)))
+        Some(value.unwrap_or_else(|| {
+            let kept = unread::kept(given.1);
+            if matches!(kept, Value::Expression(_)) {
+                self.kept.push(element.attributes.location(name).unwrap_or(element.location));
+            }
+            kept
+        }))
     }
 
     pub fn required_value(&mut self, element: &Element<'a>, name: &str) -> Value<f64> {
@@ -166,6 +172,15 @@ impl<'a> Document<'a> {
         });
         Some(LatLon::new(latitude?, longitude?))
     }
+}
+
+/// The text that an expression stands for, as it stood in the place of a number; `None`: it is a formula.
+pub(super) fn as_it_stood(source: &Arc<str>) -> Option<String> {
+    let is_it = |text: &String| {
+        let kept = unread::kept(text);
+        value(text, number).is_none() && matches!(kept, Value::Expression(other) if other == *source)
+    };
+    unread::unread_number(source).filter(is_it)
 }
 
 /// A finite number (not `inf`, not `NaN`).

@@ -1,6 +1,7 @@
 //! From a plan to its canonical document: fixed order, two spaces, shortest numbers.
 
 use super::attributes::allowed;
+use super::values::as_it_stood;
 use super::write_legs::{alone, leg};
 use super::{NAMESPACE, zone};
 use crate::{
@@ -122,7 +123,10 @@ impl Tag {
     pub(super) fn value(self, name: &str, value: &Value<f64>) -> Self {
         match value {
             Value::Constant(x) => self.with(name, x),
-            Value::Expression(source) => self.with(name, format_args!("= {source}")),
+            Value::Expression(source) => match as_it_stood(source) {
+                Some(text) => self.with(name, text),
+                None => self.with(name, format_args!("= {source}")),
+            },
         }
     }
 

@@ -26,7 +26,7 @@ pub fn patch(original: &str, plan: &FlightPlan) -> String {
     }
     let says_it = |text: &String| {
         let after = read(text);
-        after.problems.len() <= before.problems.len() && write(&after.plan) == new
+        after.losses().count() <= before.losses().count() && write(&after.plan) == new
     };
     carried(original, &old, &new).filter(says_it).unwrap_or(new)
 }

@@ -21,7 +21,7 @@ pub(crate) enum Part {
 
 /// Reads an element; `None`: it is no part of a plan.
 pub(crate) fn read_part(text: &str) -> (Option<Part>, Vec<Problem>) {
-    let mut document = Document { cursor: Cursor::new(text), places: Places::default() };
+    let mut document = Document { cursor: Cursor::new(text), places: Places::default(), kept: Vec::new() };
     let root = document.cursor.root();
     let part = root.and_then(|root| document.alone(root));
     (part, document.cursor.into_problems())
