@@ -3,12 +3,14 @@
 
 mod degrees;
 mod grid;
+mod named;
 mod plus_code;
 pub mod world;
 
 use crate::assets::places::Group;
-use flight_plan::{FlightPlan, Id, Place, Value};
+use flight_plan::FlightPlan;
 use geometry::LatLon;
+pub use named::named;
 
 /// Longest text that is looked at, bytes.
 const LONGEST: usize = 200;
@@ -56,10 +58,12 @@ fn plain(text: &str, known: &Known<'_>) -> Result<LatLon, String> {
     if ["aircraft", "the aircraft", "where the aircraft is"].iter().any(|a| text.eq_ignore_ascii_case(a)) {
         return known.aircraft.ok_or_else(|| "It is not known where the aircraft is.".into());
     }
-    let place = degrees::read(text)
-        .or_else(|| grid::read(text))
-        .or_else(|| plus_code::read(text, known.near))
-        .or_else(|| known.plan.and_then(|plan| named(text, plan)));
+    let place =
+        degrees::read(text).or_else(|| grid::read(text)).or_else(|| plus_code::read(text, known.near));
+    let place = match known.plan.filter(|_| place.is_none()) {
+        Some(plan) => named(text, plan)?.map(|thing| thing.at),
+        None => place,
+    };
     let place = place.or_else(|| world::named(text, known.world?));
     place.filter(|at| at.is_valid()).ok_or_else(|| unreadable(text, known))
 }
@@ -71,23 +75,6 @@ fn unreadable(text: &str, known: &Known<'_>) -> String {
         true => format!("“{text}” {UNREADABLE}."),
         false => format!("There are several places like “{text}”: write {}.", alike.join(", or ")),
     }
-}
-
-/// Where something of the plan is.
-fn named(name: &str, plan: &FlightPlan) -> Option<LatLon> {
-    let id = Id::new(name);
-    let fix = |id: &Id| plan.fix(id).map(|fix| fix.position);
-    let runway = || plan.runway(&id).map(|runway| runway.threshold);
-    let variable = || match plan.variable(&id).map(|variable| &variable.initial) {
-        Some(flight_plan::VariableValue::Position(at)) => Some(*at),
-        _ => None,
-    };
-    let leg = || match plan.leg(&id)?.leg.place()? {
-        Place::Fix(id) => fix(id),
-        Place::Position(Value::Constant(at)) => Some(*at),
-        Place::Position(Value::Expression(_)) => None,
-    };
-    fix(&id).or_else(runway).or_else(variable).or_else(leg)
 }
 
 /// `045° 800 m from A` in its two parts.

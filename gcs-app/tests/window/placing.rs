@@ -433,3 +433,18 @@ fn a_dragged_variable_moves_alone() {
     window.click("Undo");
     assert!(!window.is_enabled("Undo"));
 }
+
+/// It got a copy of the place, and only identifiers were known.
+#[test]
+fn a_name_that_is_typed_binds_as_a_click_on_the_thing_does() {
+    let mut window = with(VARIABLE);
+    window.press(Key::T);
+    type_place(&mut window, "Fire");
+    let place = |window: &Window| {
+        let plan = window.plan();
+        plan.leg(&Id::new(&window.selected())).unwrap().leg.place().cloned()
+    };
+    assert_eq!(place(&window), Some(Place::Position(Value::Expression("fire".into()))));
+    type_place(&mut window, "a");
+    assert_eq!(place(&window), Some(Place::Fix("A".into())));
+}

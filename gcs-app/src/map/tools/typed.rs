@@ -7,7 +7,6 @@ use crate::theme;
 use egui::text::{CCursor, CCursorRange};
 use egui::text_edit::TextEditState;
 use egui::{Context, Event, Key, RichText, Role, TextEdit, Ui, WidgetInfo};
-use flight_plan::{Id, Place};
 use geometry::LatLon;
 
 /// The field.
@@ -94,9 +93,12 @@ impl Typed {
         });
         match read {
             Ok(at) => {
-                let fix = plan.fix(&Id::new(text)).map(|fix| Place::Fix(fix.id.clone()));
                 let mark = Mark::at(at);
-                self.places.push(Mark { place: fix.unwrap_or_else(|| mark.place.clone()), ..mark });
+                let thing = coordinates::named(text, plan).ok().flatten().filter(|thing| thing.at == at);
+                self.places.push(match thing {
+                    Some(thing) => Mark { place: thing.place, ..mark },
+                    None => mark,
+                });
                 *self = Self { places: std::mem::take(&mut self.places), ..Self::default() };
             }
             Err(why) => self.fault = Some(why),

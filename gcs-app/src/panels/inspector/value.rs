@@ -5,7 +5,7 @@ use super::inherited::Inherited;
 use super::page::Page;
 use super::{bind, inherited, landing, together};
 use crate::command::ViewCommand;
-use crate::coordinates;
+use crate::coordinates::{self, Known};
 use crate::panels::field;
 use crate::theme;
 use crate::units::{self, Unit, Units};
@@ -314,9 +314,15 @@ fn position(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &s
     let beside = if property.without.is_some() { BUTTON_WIDTH } else { 0.0 };
     let width = ui.available_width() - beside;
     if let Some(typed) = field::text_of_width(ui, &name, &shown, "", width) {
-        // what is no position is refused by the document, in words
-        let exact = coordinates::position(&typed).map(|at| format!("{} {}", at.lat_deg, at.lon_deg));
-        page.set(property, Some(exact.unwrap_or(typed)));
+        let known = Known { plan: Some(page.plan()), ..Known::default() };
+        match coordinates::read(&typed, &known) {
+            Ok(at) => page.set(property, Some(format!("{} {}", at.lat_deg, at.lon_deg))),
+            Err(_) if coordinates::named(&typed, page.plan()).is_ok() => {
+                // what is no position is refused by the document, in words
+                page.set(property, Some(typed));
+            }
+            Err(why) => page.queue.view(ViewCommand::Notice(why)),
+        }
     }
 }
 
