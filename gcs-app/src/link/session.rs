@@ -268,12 +268,17 @@ async fn link_state(
 
 async fn answer(session: &Session, question: Question, outlet: &Outlet) {
     let Question { ticket, call, asked } = question;
-    let left = DELIVERY.saturating_sub(asked.elapsed());
-    let result = match left.is_zero() {
-        true => Err(dropped(asked)),
-        false => ask(session, call, left).await.map_err(|error| unanswered(error, asked)),
+    let result = match left(asked, Instant::now()) {
+        None => Err(dropped(asked)),
+        Some(left) => ask(session, call, left).await.map_err(|error| unanswered(error, asked)),
     };
     outlet.send(LinkEvent::Answer { ticket, result }).await;
+}
+
+/// How much longer somebody may take a command that was given then; `None`: it is dropped.
+fn left(asked: Instant, now: Instant) -> Option<Duration> {
+    let left = DELIVERY.saturating_sub(now.saturating_duration_since(asked));
+    (!left.is_zero()).then_some(left)
 }
 
 /// Why there is no good answer, for people.
