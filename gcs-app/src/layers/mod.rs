@@ -4,6 +4,7 @@
 mod at_hand;
 mod lazy;
 mod open;
+mod rasters;
 
 pub use open::tiles_in;
 

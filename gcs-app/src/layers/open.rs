@@ -1,7 +1,7 @@
 //! What a file or folder is, by what is in it.
 
 use super::lazy::LazyTiles;
-use super::{Content, Server, Source};
+use super::{Content, Server, Source, rasters};
 use crate::jobs::Progress;
 use crate::tiles::{About, Folder, Health, Mbtiles, Online, PmTiles, Reader, Template};
 use geometry::LatLon;
@@ -9,7 +9,7 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use terrain::{Raster, Tile, Tiles};
+use terrain::{Raster, Stack, Tile, Tiles};
 
 /// Most entries of a folder that are looked at.
 const MOST_ENTRIES: usize = 20_000;
@@ -53,7 +53,7 @@ fn file(path: &Path, progress: &Progress) -> Result<Content, String> {
     match kind(path, start.get(..length).unwrap_or_default()) {
         Some(Kind::Mbtiles) => Mbtiles::open(path).map(map),
         Some(Kind::PmTiles) => PmTiles::open(path).map(map),
-        Some(Kind::Tiff) => raster(path),
+        Some(Kind::Tiff) => raster(path).map(alone),
         Some(Kind::Hgt) => tile(path).map(|tile| ground(vec![tile], 0)),
         None => {
             Err("it is none of the known kinds: MBTiles, PMTiles, GeoTIFF elevations, HGT elevations".into())
@@ -79,12 +79,21 @@ pub(super) fn kind(path: &Path, start: &[u8]) -> Option<Kind> {
     }
 }
 
-fn raster(path: &Path) -> Result<Content, String> {
+pub(super) fn raster(path: &Path) -> Result<Raster, String> {
     let file = File::open(path).map_err(|error| format!("it can't be read ({error})"))?;
-    let raster = Raster::from_geotiff(BufReader::new(file)).map_err(|error| error.to_string())?;
+    Raster::from_geotiff(BufReader::new(file)).map_err(|error| error.to_string())
+}
+
+fn alone(raster: Raster) -> Content {
     let (columns, rows) = raster.size();
     let detail = format!("elevations, {columns} × {rows}");
-    Ok(Content::Ground { bounds: raster.known_box(), terrain: Arc::new(raster), detail })
+    Content::Ground { bounds: raster.known_box(), terrain: Arc::new(raster), detail }
+}
+
+fn is_tiff(path: &Path) -> bool {
+    let is_one =
+        |extension: &std::ffi::OsStr| ["tif", "tiff"].iter().any(|tiff| extension.eq_ignore_ascii_case(tiff));
+    path.extension().is_some_and(is_one)
 }
 
 fn is_hgt(path: &Path) -> bool {
@@ -105,15 +114,21 @@ pub(super) fn tile(path: &Path) -> Result<Tile, String> {
 /// # Errors
 /// It can't be read.
 pub fn tiles_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    files_in(folder, is_hgt)
+}
+
+/// The files of a kind in a folder and in those in it, by their lengths and names.
+fn files_in(folder: &Path, is_wanted: fn(&Path) -> bool) -> std::io::Result<Vec<PathBuf>> {
     let (mut found, mut left) = (Vec::new(), MOST_ENTRIES);
-    look_into(folder, DEEPEST, &mut left, &mut found)?;
+    look_into(folder, is_wanted, DEEPEST, &mut left, &mut found)?;
     found.sort();
     Ok(found.into_iter().map(|(_, path)| path).collect())
 }
 
-/// Takes down the tiles with their lengths, bytes. What can't be read below the folder is left out.
+/// Takes down the files with their lengths, bytes. What can't be read below the folder is left out.
 fn look_into(
     folder: &Path,
+    is_wanted: fn(&Path) -> bool,
     deep: usize,
     left: &mut usize,
     found: &mut Vec<(u64, PathBuf)>,
@@ -122,10 +137,10 @@ fn look_into(
         let Some(fewer) = left.checked_sub(1) else { return Ok(()) };
         *left = fewer;
         let path = entry.path();
-        if is_hgt(&path) {
+        if is_wanted(&path) {
             found.push((length(&path), path));
         } else if deep > 0 && path.is_dir() {
-            let _ = look_into(&path, deep - 1, left, found);
+            let _ = look_into(&path, is_wanted, deep - 1, left, found);
         }
     }
     Ok(())
@@ -135,9 +150,38 @@ fn length(path: &Path) -> u64 {
     path.metadata().map_or(0, |meta| meta.len())
 }
 
-/// The elevation tiles in a folder: at once, or where there is no memory for all of them, as they are needed.
+/// The elevations in a folder: GeoTIFFs over tiles.
 fn folder(path: &Path, progress: &Progress) -> Result<Content, String> {
-    let paths = tiles_in(path).map_err(|error| format!("it can't be read ({error})"))?;
+    let in_it = |is_wanted| files_in(path, is_wanted).map_err(|error| format!("it can't be read ({error})"));
+    let (pictures, paths) = (in_it(is_tiff)?, in_it(is_hgt)?);
+    if pictures.is_empty() {
+        return tiles(paths, progress);
+    }
+    let above = rasters::ground(&pictures, progress);
+    if paths.is_empty() { above } else { both(above, tiles(paths, progress)) }
+}
+
+/// Two kinds of elevations in one folder. What is wrong with all of one kind is told beside the other.
+fn both(above: Result<Content, String>, below: Result<Content, String>) -> Result<Content, String> {
+    match (above, below) {
+        (
+            Ok(Content::Ground { terrain: above, bounds, detail }),
+            Ok(Content::Ground { terrain: below, bounds: other, detail: more }),
+        ) => Ok(Content::Ground {
+            terrain: Arc::new(Stack(vec![above, below])),
+            bounds: around(bounds.into_iter().chain(other)),
+            detail: format!("{detail}; {more}"),
+        }),
+        (Ok(Content::Ground { terrain, bounds, detail }), Err(why))
+        | (Err(why), Ok(Content::Ground { terrain, bounds, detail })) => {
+            Ok(Content::Ground { terrain, bounds, detail: format!("{detail}; {why}") })
+        }
+        (above, _) => above,
+    }
+}
+
+/// Elevation tiles: at once, or where there is no memory for all of them, as they are needed.
+fn tiles(paths: Vec<PathBuf>, progress: &Progress) -> Result<Content, String> {
     if paths.iter().map(|path| length(path)).sum::<u64>() > MOST_BYTES {
         return lazily(paths);
     }
@@ -176,7 +220,7 @@ fn lazily(paths: Vec<PathBuf>) -> Result<Content, String> {
 
 fn nothing_in_it(left_out: usize) -> String {
     match left_out {
-        0 => "there are no elevation tiles (N36W085.hgt and the like) in this folder".into(),
+        0 => "there are no elevation tiles (N36W085.hgt and the like) and no GeoTIFFs in this folder".into(),
         _ => format!("none of its {left_out} elevation tiles can be read: get them again"),
     }
 }
@@ -191,18 +235,20 @@ fn number_of(tiles: usize, left_out: usize) -> String {
 fn ground(tiles: Vec<Tile>, left_out: usize) -> Content {
     let mut all = Tiles::new();
     let number = tiles.len();
-    let mut corners: Option<(LatLon, LatLon)> = None;
-    for tile in tiles {
-        let (south_west, north_east) = tile.known_box();
-        let (a, b) = corners.unwrap_or((south_west, north_east));
-        corners = Some((
+    let bounds = around(tiles.iter().map(Tile::known_box));
+    tiles.into_iter().for_each(|tile| all.add(tile));
+    let detail = number_of(number, left_out);
+    Content::Ground { terrain: Arc::new(all), bounds, detail }
+}
+
+/// South-west and north-east corners of boxes together.
+pub(super) fn around(boxes: impl Iterator<Item = (LatLon, LatLon)>) -> Option<(LatLon, LatLon)> {
+    boxes.reduce(|(a, b), (south_west, north_east)| {
+        (
             LatLon::new(a.lat_deg.min(south_west.lat_deg), a.lon_deg.min(south_west.lon_deg)),
             LatLon::new(b.lat_deg.max(north_east.lat_deg), b.lon_deg.max(north_east.lon_deg)),
-        ));
-        all.add(tile);
-    }
-    let detail = number_of(number, left_out);
-    Content::Ground { terrain: Arc::new(all), bounds: corners, detail }
+        )
+    })
 }
 
 #[cfg(test)]

@@ -60,12 +60,15 @@ fn edge(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 }
 
 fn add(ui: &mut Ui, queue: &mut Queue) {
-    ui.label("Drop MBTiles, PMTiles, GeoTIFF elevations or HGT tiles onto the window, or:");
+    ui.label(
+        "Drop MBTiles, PMTiles, GeoTIFF elevations, HGT tiles or a folder of either onto the window, or:",
+    );
     ui.horizontal(|ui| {
         if ui.button("Add a file…").clicked() {
             queue.layer(LayerCommand::Ask { folder: false });
         }
-        if ui.button("Add a folder…").on_hover_text("A folder of HGT tiles").clicked() {
+        if ui.button("Add a folder…").on_hover_text("A folder of HGT tiles or GeoTIFF elevations").clicked()
+        {
             queue.layer(LayerCommand::Ask { folder: true });
         }
     });

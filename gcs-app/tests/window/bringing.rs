@@ -116,6 +116,26 @@ fn a_geotiff_that_is_dropped_is_the_ground_that_the_plan_is_looked_at_over() {
     assert!(window.shows("ground 4000 m AMSL"));
 }
 
+/// It was told that there are no elevation tiles in it.
+#[test]
+fn a_folder_of_geotiffs_that_is_dropped_is_one_ground_and_says_what_was_not_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let dems = folder.path().join("dems");
+    std::fs::create_dir_all(dems.join("more")).unwrap();
+    std::fs::write(dems.join("hills.tif"), geotiff(4000)).unwrap();
+    std::fs::write(dems.join("more/same.TIFF"), geotiff(4000)).unwrap();
+    std::fs::write(dems.join("broken.tif"), b"II\x2a\0").unwrap();
+    let mut window = window();
+    drop_file(&mut window, &dems);
+    window.until("the new ground", |app| app.analysis().problems.iter().any(|p| p.is_error()));
+    window.harness.hover_at(window.centre("Fix A"));
+    window.steps(2);
+    assert!(window.shows("ground 4000 m AMSL"));
+    let layer = window.app().layers().iter().next().unwrap();
+    let State::Ground { detail, .. } = &layer.state else { panic!("no ground") };
+    assert!(detail.starts_with("elevations, 2 files, 1 left out (broken.tif: "), "{detail}");
+}
+
 #[test]
 fn graticule_and_range_rings_lie_over_the_map_when_they_are_asked_for() {
     let mut window = window();
