@@ -3,10 +3,12 @@
 use super::field::List;
 use super::{Scene, what_if};
 use crate::command::{PreviewCommand, Queue, ViewCommand};
+use crate::document::Document;
 use crate::forecast::Forecast;
 use crate::theme::{self, Palette};
 use crate::units;
 use egui::{Align2, FontId, Key, Painter, Rect, RichText, Sense, Stroke, Ui, pos2, vec2};
+use flight_plan::{Id, Leg, Stage};
 
 /// A row that is narrower has no room for everything in words, screen points.
 const NARROW: f32 = 420.0;
@@ -100,6 +102,8 @@ fn speed(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 const STRIP: f32 = 20.0;
 /// The arrow keys move the cursor so far, as a share of the flight.
 const KEY_SHARE: f64 = 0.01;
+/// Most actions of a stage that are listed.
+const MOST_ACTIONS: usize = 8;
 
 /// The stages in the order in which they are flown, with their names, and the cursor: click, drag, or arrow keys.
 pub fn strip(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
@@ -126,11 +130,44 @@ pub fn strip(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
             queue.preview(PreviewCommand::Scrub(Some(to)));
         }
     }
+    let share = |x: f32| f64::from(((x - rect.left()) / rect.width()).clamp(0.0, 1.0));
     let moved = response.dragged() || response.clicked();
     if let Some(at) = response.interact_pointer_pos().filter(|_| moved) {
-        let share = f64::from(((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0));
-        queue.preview(PreviewCommand::Scrub(Some(share * duration_s)));
+        queue.preview(PreviewCommand::Scrub(Some(share(at.x) * duration_s)));
     }
+    let hovered = response.hover_pos().map(|at| share(at.x) * duration_s);
+    response.on_hover_ui_at_pointer(|ui| {
+        if let Some(stage) = hovered.and_then(|time_s| stage_at(forecast, time_s)) {
+            ui.label(whole(scene.document, stage));
+        }
+    });
+}
+
+fn stage_at(forecast: &Forecast, time_s: f64) -> Option<&Id> {
+    stages(forecast).into_iter().find(|(_, _, to_s)| time_s <= *to_s).map(|(stage, ..)| stage)
+}
+
+/// A stage's name, which its band may have no room for, and what is done in it, with the leg.
+fn whole(document: &Document, stage: &Id) -> String {
+    let legs = document.plan().stage(stage).into_iter().flat_map(legs);
+    let acts = legs.flat_map(|leg| leg.actions.iter().map(move |action| (leg, action.act.name())));
+    let mut said: Vec<String> = vec![document.label(stage).to_owned()];
+    said.extend(acts.take(MOST_ACTIONS + 1).map(|(leg, act)| format!("{act} ({})", document.label(&leg.id))));
+    if said.len() > MOST_ACTIONS + 1 {
+        said.truncate(MOST_ACTIONS + 1);
+        said.push("…".into());
+    }
+    said.join("\n")
+}
+
+/// Its legs with those inside of them, as the document has them.
+fn legs(stage: &Stage) -> impl Iterator<Item = &Leg> {
+    let mut left: Vec<_> = stage.legs.iter().rev().collect();
+    std::iter::from_fn(move || {
+        let leg = left.pop()?;
+        left.extend(leg.body().iter().rev());
+        Some(leg.as_ref())
+    })
 }
 
 fn draw_strip(painter: &Painter, rect: Rect, scene: &Scene<'_>, p: &Palette) {
@@ -164,4 +201,31 @@ pub fn stages(forecast: &Forecast) -> Vec<(&flight_plan::Id, f64, f64)> {
     let parts = forecast.passages.chunk_by(|a, b| a.stage == b.stage);
     let ends = parts.filter_map(|part| Some((part.first()?, part.last()?)));
     ends.map(|(first, last)| (&first.stage, time(first.first), time(last.end))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stage_is_told_by_its_whole_name_with_what_is_done_in_it() {
+        let leg = |number: usize| {
+            format!(
+                r#"<TF id="t{number}" lat="1" lon="{number}"><action on="start"><videoStart/></action></TF>"#
+            )
+        };
+        let told = |more: usize| {
+            let more: String = (0..more).map(leg).collect();
+            let text = format!(
+                r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><mainPlan>
+                <stage id="s" name="Along the northern ridge" type="mission"><iterative id="l" form="forward" count="2">
+                <TF id="a" name="Gap" lat="1" lon="1"><action every="50"><photo/></action></TF></iterative>{more}</stage>
+                </mainPlan></flightPlan>"#
+            );
+            whole(&Document::read(text.as_bytes(), None), &"s".into())
+        };
+        assert_eq!(told(0), "Along the northern ridge\nTake photos (Gap)");
+        let long = told(20);
+        assert!(long.contains("Start the video (t0)") && long.ends_with("(t6)\n…"), "{long}");
+    }
 }

@@ -206,6 +206,21 @@ fn scrub(window: &mut Window, share: f32) {
     window.click_at(strip.left_center() + vec2(share * strip.width(), 0.0));
 }
 
+/// A short stage has no room for its name.
+#[test]
+fn the_timeline_tells_the_whole_name_of_the_stage_below_the_pointer() {
+    let name = "The runway of the farm beside the northern ridge";
+    let mut window =
+        opened(&SQUARE.replacen(r#"<stage id="land""#, &format!(r#"<stage id="land" name="{name}""#), 1));
+    let strip = window.harness.get_by_label("Timeline").rect();
+    window.harness.hover_at(strip.right_center() - vec2(3.0, 0.0));
+    window.steps(60);
+    let told = window.harness.query_all_by_label(name).count();
+    window.harness.hover_at(window.centre("Map"));
+    window.steps(60);
+    assert_eq!(window.harness.query_all_by_label(name).count() + 1, told, "its tooltip");
+}
+
 #[test]
 fn an_engine_failure_at_the_cursor_leads_to_the_runway_of_the_plan_as_without_a_window() {
     let mut window = opened(SQUARE);

@@ -6,6 +6,22 @@ use super::{Children, Description, Kind, OneOf, Property, Quantity, Row, Sort, W
 
 const NOTHING: &[&[Row]] = &[];
 
+impl crate::Act {
+    /// To people.
+    pub const fn name(&self) -> &'static str {
+        let what = match self {
+            Self::Photo | Self::PhotoSeries { .. } => &PHOTO,
+            Self::PhotoStop => &PHOTO_STOP,
+            Self::VideoStart => &VIDEO_START,
+            Self::VideoStop => &VIDEO_STOP,
+            Self::Set { .. } => &SET,
+            Self::Invoke { .. } => &INVOKE,
+            Self::Wait { .. } => &WAIT,
+        };
+        what.label
+    }
+}
+
 const PHOTO: Description = element(
     "photo",
     "Take photos",
