@@ -73,7 +73,7 @@ fn standing_words(
 }
 
 fn world(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
-    let words = what_if::in_words(&scene.view.what_if, scene.document.plan(), scene.units());
+    let words = what_if::in_words(&scene.view.what_if, scene.document.plan(), scene.units(), scene.utc);
     let alarm = scene.view.alarm_at_cursor().map(what_if::alarm_in_words);
     let words = [words].into_iter().filter(|words| !words.is_empty()).chain(alarm).collect::<Vec<_>>();
     if words.is_empty() {

@@ -3,6 +3,7 @@
 
 mod autopilot;
 mod here;
+mod start;
 mod variables;
 mod wind;
 mod words;

@@ -103,7 +103,7 @@ fn the_card_for_a_new_mission_and_the_world_of_the_preview_read_units_too() {
 
 impl Window {
     /// Writes into the number beside a slider.
-    fn write_beside(&mut self, slider: &str, text: &str) {
+    pub fn write_beside(&mut self, slider: &str, text: &str) {
         let slider = self.harness.get_by_role_and_label(Role::Slider, slider).rect();
         let number = self.harness.query_all_by_role(Role::SpinButton).map(|node| node.rect());
         let number = number.filter(|rect| (rect.center().y - slider.center().y).abs() < 8.0);

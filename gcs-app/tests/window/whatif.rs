@@ -500,6 +500,19 @@ fn the_flight_starts_at_the_time_that_is_chosen() {
     assert_eq!(window.app().view().what_if.start_unix_s, Some(day_s + 365 * 60));
     assert!(window.shows("What if: start 06:05 UTC"));
     assert!(!window.app().document().is_dirty());
+    let start =
+        |window: &Window| jiff::Timestamp::from_second(window.app().view().what_if.start_unix_s?).ok();
+    window.harness.get_by_role_and_label(Role::Slider, "UTC").scroll_to_me();
+    window.steps(5);
+    window.write_beside("UTC", "2026-12-01 14:30");
+    assert_eq!(start(&window).unwrap().to_string(), "2026-12-01T14:30:00Z");
+    assert!(window.shows("What if: start 2026-12-01 14:30 UTC"));
+    slide(&mut window, "UTC", 365.0);
+    assert_eq!(start(&window).unwrap().to_string(), "2026-12-01T06:05:00Z", "on the day that was typed");
+    window.write_beside("UTC", "14:30");
+    assert_eq!(start(&window).unwrap().as_second(), day_s + (14 * 60 + 30) * 60, "today");
+    window.write_beside("UTC", "1.12. 14:30");
+    assert!(window.shows("14:30, which is today, or with its date: 2026-12-01 14:30"));
     choose(&mut window, "Start at a time of day");
     assert!(window.app().view().what_if.is_nothing());
 }

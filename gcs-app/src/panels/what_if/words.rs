@@ -2,6 +2,7 @@
 
 use super::autopilot;
 use super::here::reach_name;
+use super::start;
 use crate::forecast::Alarm;
 use crate::panels::{ended, other_end};
 use crate::units::{self, Units};
@@ -53,14 +54,14 @@ pub fn winds(what_if: &WhatIf, units: Units) -> String {
 }
 
 /// Everything that is otherwise than the plan says, in one line; empty: nothing is.
-pub fn world(what_if: &WhatIf, plan: &FlightPlan, units: Units) -> String {
+pub fn world(what_if: &WhatIf, plan: &FlightPlan, units: Units, now: jiff::Timestamp) -> String {
     let standard = WhatIf::default();
     let mut parts = Vec::new();
     if what_if.wind != standard.wind || what_if.aloft != standard.aloft {
         parts.push(format!("wind {}", winds(what_if, units)));
     }
-    if let Some(start) = what_if.start_unix_s.and_then(|s| jiff::Timestamp::from_second(s).ok()) {
-        parts.push(format!("start {}", start.strftime("%H:%M UTC")));
+    if let Some(start_unix_s) = what_if.start_unix_s {
+        parts.push(format!("start {} UTC", start::written(start_unix_s, now)));
     }
     if what_if.energy_share < 1.0 {
         parts.push(format!("{:.0} % energy at the start", what_if.energy_share * 100.0));
@@ -260,7 +261,7 @@ mod tests {
     #[test]
     fn what_is_otherwise_is_said_and_nothing_else() {
         let plan = FlightPlan::default();
-        let words = |what_if: &WhatIf| world(what_if, &plan, Units::Si);
+        let words = |what_if: &WhatIf| world(what_if, &plan, Units::Si, jiff::Timestamp::UNIX_EPOCH);
         assert_eq!(words(&WhatIf::default()), "");
         let what_if = WhatIf {
             wind: Wind::from_direction(240.0, 8.0),

@@ -1,6 +1,6 @@
 //! Wind, energy and start time; values and branches.
 
-use super::{autopilot, remark, reset_button, variables, wind};
+use super::{autopilot, remark, reset_button, start, variables, wind};
 use crate::command::{PreviewCommand, Queue};
 use crate::panels::problems::told;
 use crate::panels::{Scene, field, group_title};
@@ -11,7 +11,6 @@ use flight_exec::rehearse::WhatIf;
 use flight_plan::{FlightPlan, Id, LegKind, Section};
 use std::ops::RangeInclusive;
 
-const MINUTES_OF_DAY: i64 = 24 * 60;
 const PERCENT: Unit = Unit { symbol: "%", per_si: 100.0, decimals: 0 };
 
 /// Wind, energy and start time.
@@ -24,7 +23,7 @@ pub fn air(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
     if slider(ui, energy.text("Energy at start"), PERCENT) {
         chosen.energy_share = percent / 100.0;
     }
-    start_time(ui, scene, &mut chosen);
+    start::show(ui, scene, &mut chosen);
     autopilot::show(ui, scene, &mut chosen);
     send(scene, chosen, queue);
     ui.horizontal(|ui| reset_button(ui, scene, queue));
@@ -59,44 +58,17 @@ pub(super) fn slider(ui: &mut Ui, slider: Slider<'_>, unit: Unit) -> bool {
     slider_reading(ui, slider, |text| unit.read(text))
 }
 
-fn slider_reading(ui: &mut Ui, slider: Slider<'_>, read: impl Fn(&str) -> Result<f64, String>) -> bool {
+/// The same of what is read in another way.
+pub(super) fn slider_reading(
+    ui: &mut Ui,
+    slider: Slider<'_>,
+    read: impl Fn(&str) -> Result<f64, String>,
+) -> bool {
     let typed = field::Typed::of(ui);
     let slider = slider.update_while_editing(false).custom_parser(|text| typed.take(read(text)));
     let response = ui.add(slider);
     typed.tell(ui, &response);
     response.changed()
-}
-
-/// The time of day matters for zones that are not always active.
-fn start_time(ui: &mut Ui, scene: &Scene<'_>, chosen: &mut WhatIf) {
-    let mut known = chosen.start_unix_s.is_some();
-    let hover = "Zones are judged at the times of the flight; without it they count as always active";
-    if ui.checkbox(&mut known, "Start at a time of day").on_hover_text(hover).changed() {
-        chosen.start_unix_s = known.then(|| scene.utc.as_second() / 60 * 60);
-    }
-    let Some(start_unix_s) = &mut chosen.start_unix_s else { return };
-    let day_s = start_unix_s.div_euclid(MINUTES_OF_DAY * 60) * MINUTES_OF_DAY * 60;
-    let mut minutes = (*start_unix_s - day_s) / 60;
-    let slider = Slider::new(&mut minutes, 0..=MINUTES_OF_DAY - 1)
-        .custom_formatter(|n, _| clock(n as i64))
-        .text("UTC");
-    if slider_reading(ui, slider, time_of_day) {
-        *start_unix_s = day_s + minutes * 60;
-    }
-}
-
-fn clock(minutes: i64) -> String {
-    format!("{:02}:{:02}", minutes / 60, minutes % 60)
-}
-
-fn time_of_day(text: &str) -> Result<f64, String> {
-    minutes_of(text).ok_or_else(|| "A time of day is written 14:30".into())
-}
-
-fn minutes_of(text: &str) -> Option<f64> {
-    let (hours, minutes) = text.trim().split_once(':')?;
-    let (hours, minutes): (u32, u32) = (hours.parse().ok()?, minutes.parse().ok()?);
-    (hours < 24 && minutes < 60).then(|| f64::from(hours * 60 + minutes))
 }
 
 /// What the review finds in this world and not in the standard one.
@@ -199,20 +171,5 @@ fn take(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
         queue.edit(edit);
         let left = WhatIf { variables: Default::default(), decisions: Default::default(), ..what_if };
         queue.preview(PreviewCommand::WhatIf(Box::new(left)));
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_time_of_day_is_read_as_it_is_written() {
-        for minutes in [0, 1, 61, 1439] {
-            assert_eq!(minutes_of(&clock(minutes)), Some(minutes as f64));
-        }
-        for bad in ["", "6", "24:00", "12:60", "a:b", "-1:00"] {
-            assert_eq!(minutes_of(bad), None, "{bad}");
-        }
     }
 }
