@@ -60,9 +60,7 @@ fn edge(ui: &mut Ui, scene: &Scene<'_>, queue: &mut Queue) {
 }
 
 fn add(ui: &mut Ui, queue: &mut Queue) {
-    ui.label(
-        "Drop MBTiles, PMTiles, GeoTIFF elevations or HGT tiles onto the window, or:",
-    );
+    ui.label("Drop MBTiles, PMTiles, GeoTIFF elevations or HGT tiles onto the window, or:");
     ui.horizontal(|ui| {
         if ui.button("Add a file…").clicked() {
             queue.layer(LayerCommand::Ask { folder: false });
