@@ -78,6 +78,12 @@ fn mark(sheet: &Sheet<'_>, at: Pos2, selected: bool) {
     sheet.painter.add(Shape::convex_polygon(vec![top, right, bottom], p.text, Stroke::NONE));
 }
 
+/// What is done on a leg, in words, if anything is.
+pub fn on(leg: &Id, acts: &[Acting]) -> Option<String> {
+    let acts: Vec<&Acting> = acts.iter().filter(|act| act.leg == *leg).collect();
+    (!acts.is_empty()).then(|| words(&acts))
+}
+
 /// `picture, fire_seen = true`.
 fn words(acts: &[&Acting]) -> String {
     let all: Vec<&str> = acts.iter().map(|act| act.words.as_str()).collect();

@@ -1,10 +1,10 @@
 //! What can be selected on the map, as widgets that draw nothing: screen readers, the keyboard and tests find them by their
 //! names. The pointer does not meet them: what is under it is found by the lines themselves.
 
-use super::polyline;
 use super::tools::Canvas;
 use super::tools::pick::selection;
 use super::view::View;
+use super::{acts, polyline};
 use super::{sketch::Handled, variables, zones};
 use crate::chart::zones as chart;
 use crate::command::{Queue, Selection, ViewCommand};
@@ -138,12 +138,11 @@ fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
         let name = format!("Area of {}", scene.document.label(leg));
         outline(&closed(rings.first()?), name, Selection::Leg(leg.clone()))
     });
-    let placed = sketch.handles.iter().zip(&sketch.placed.handles);
-    let handles = placed.filter(|(handle, _)| {
+    let handles = sketch.handles_there(scene.view.selection.as_ref()).filter(|(_, handle, _)| {
         fixes && matches!(handle.what, Handled::Fix(_) | Handled::Waypoint(_) | Handled::Centre(_))
     });
-    let handles = handles.filter_map(|(handle, at)| {
-        let (at, name) = (view.screen(*at), || handle.what.name(scene.document));
+    let handles = handles.filter_map(|(_, handle, at)| {
+        let (at, name) = (view.screen(at), || handle.what.name(scene.document));
         inside(at, view).then(|| Item { name: name(), at, what: selection(plan, &handle.what) })
     });
     let mut once = HashSet::new();
@@ -161,14 +160,15 @@ fn in_view(canvas: &Canvas<'_>, fixes: bool) -> Vec<Item> {
 
 /// Each leg where its path is in view.
 fn legs<'a>(canvas: &Canvas<'a>) -> impl Iterator<Item = Item> + 'a {
-    let Canvas { view, scene, .. } = *canvas;
+    let Canvas { view, sketch, scene, .. } = *canvas;
     let forecast = scene.forecast();
     let mut flown = HashSet::new();
     let passages = forecast.passages.iter().take(MOST_LEGS).filter(move |passage| flown.insert(&passage.leg));
     passages.filter_map(move |passage| {
         let at = on_path(forecast, passage, view)?;
         let leg = scene.document.written(&passage.leg);
-        let name = format!("Path of {}", scene.document.label(&leg));
+        let done = acts::on(&passage.leg, &sketch.acts).map(|words| format!(": {words}")).unwrap_or_default();
+        let name = format!("Path of {}{done}", scene.document.label(&leg));
         Some(Item { name, at, what: Selection::Leg(leg) })
     })
 }

@@ -384,12 +384,10 @@ impl Sketch {
         let rims = self.circles.iter().flat_map(Circle::rim);
         let drawn = self.main.iter().flatten().chain(&self.called).copied();
         let areas = self.areas.iter().flat_map(|(_, corners)| corners).copied();
-        let there = self.is_there(None);
         // a runway that nothing uses may be anywhere
-        let is_drawn =
-            |(key, handle): &(usize, &Handle)| there(*key) && !matches!(handle.what, Handled::Runway(..));
-        let handles = self.handles.iter().enumerate().filter(is_drawn);
-        handles.map(|(_, handle)| handle.at).chain(drawn).chain(rims).chain(areas).collect()
+        let handles =
+            self.handles_there(None).filter(|(_, handle, _)| !matches!(handle.what, Handled::Runway(..)));
+        handles.map(|(_, handle, _)| handle.at).chain(drawn).chain(rims).chain(areas).collect()
     }
 }
 
@@ -502,11 +500,10 @@ mod tests {
         let [(leg, rings)] = sketch.polygons.as_slice() else { panic!("{:?}", sketch.polygons) };
         assert_eq!((leg.as_str(), rings[0].len()), ("c", 3));
         let draggable = |selected: Option<&Selection>| {
-            let there = sketch.is_there(sketch.open_procedure(selected));
-            let handles = sketch.handles.iter().enumerate().filter(|(key, _)| there(*key));
-            let outlines = handles
-                .filter(|(_, h)| matches!(h.what, Handled::Radius(_) | Handled::Corner { .. }))
-                .map(|(_, handle)| handle.at);
+            let outlines = sketch
+                .handles_there(selected)
+                .filter(|(_, h, _)| matches!(h.what, Handled::Radius(_) | Handled::Corner { .. }))
+                .map(|(_, handle, _)| handle.at);
             outlines.collect::<Vec<_>>()
         };
         let call = Selection::Leg("c".into());

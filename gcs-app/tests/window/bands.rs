@@ -29,6 +29,41 @@ fn dots(window: &Window, from: Pos2, to: Pos2) -> usize {
     discs.filter(|(at, fill)| *fill == weak && is_on_way(*at)).count()
 }
 
+/// The lines of a shape, with their colour.
+fn strokes(shape: &Shape) -> Vec<([Pos2; 2], egui::Color32)> {
+    match shape {
+        Shape::LineSegment { points, stroke } => vec![(*points, stroke.color)],
+        Shape::Vec(several) => several.iter().flat_map(strokes).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Dashes that are painted on the map in the colour of contingencies, along the way between two places.
+fn dashes(window: &Window, from: Pos2, to: Pos2) -> usize {
+    let contingency = gcs_app::theme::palette(true).contingency;
+    let way = (to - from).normalized();
+    let is_on_way = |at: Pos2| {
+        let by = at - from;
+        (-1.0..(to - from).length() + 1.0).contains(&by.dot(way)) && by.dot(way.rot90()).abs() < 3.0
+    };
+    let lines = window.harness.output().shapes.iter().flat_map(|clipped| strokes(&clipped.shape));
+    lines.filter(|(ends, colour)| *colour == contingency && ends.iter().all(|at| is_on_way(*at))).count()
+}
+
+#[test]
+fn a_new_leg_has_dashes_to_its_alternate() {
+    let mut window = window();
+    window.click("TF side2");
+    let at = window.centre("Map") + vec2(60.0, 40.0);
+    let (alternate, other) = (window.centre("Fix D"), window.centre("Fix A"));
+    assert_eq!(dashes(&window, at, alternate), 0, "nothing is drawn yet");
+    window.press(Key::T);
+    window.harness.hover_at(at);
+    window.steps(2);
+    assert!(dashes(&window, at, alternate) > 5, "{}", dashes(&window, at, alternate));
+    assert!(dashes(&window, at, other) < 3, "they lead nowhere else");
+}
+
 #[test]
 fn a_new_leg_leads_to_the_next_one() {
     let mut window = window();

@@ -344,3 +344,33 @@ fn an_emergency_plan_is_copied_doubled_and_cut() {
     window.click("Undo");
     assert_eq!(window.plan(), before, "one step each");
 }
+
+/// It has no place either: calls put it where it is flown.
+#[test]
+fn a_procedure_and_a_variable_are_copied_doubled_and_cut() {
+    let named = r#"<procedures><procedure id="look" name="Pylon look" reference="36.3205 -84.1650">
+        <TF id="up" lat="36.3205" lon="-84.1650"/></procedure></procedures>"#;
+    let variables = r#"<variables><variable name="fast" type="number" unit="m/s" initial="24"/></variables>"#;
+    let plan = SQUARE.replace("<mainPlan", &format!("{variables}{named}<mainPlan"));
+    let mut window = Window::open(&plan);
+    window.until_analysed();
+    let before = window.plan();
+    let counts = |window: &Window| (window.plan().procedures.len(), window.plan().variables.len());
+    for (row, tag, one_more) in
+        [("PROC Pylon look", "<procedure ", (2, 1)), ("VAR fast", "<variable ", (1, 2))]
+    {
+        window.select_row((row, 0));
+        let text = taken(&mut window, Event::Copy);
+        assert!(text.contains(tag), "{text}");
+        window.paste(&text);
+        assert_eq!(counts(&window), one_more, "{row}");
+        window.press_ctrl(egui::Key::D);
+        assert_eq!(counts(&window), (2 * one_more.0 - 1, 2 * one_more.1 - 1), "{row}");
+        let text = taken(&mut window, Event::Cut);
+        assert!(text.contains(tag) && counts(&window) == one_more, "{row}: {text}");
+        for _ in 0..3 {
+            window.click("Undo");
+        }
+        assert_eq!(window.plan(), before, "{row}: one step each");
+    }
+}

@@ -1,8 +1,9 @@
 //! Procedures where they are defined: there their legs are dragged, while the procedure or one of its legs is selected.
 
 use super::reader::Reader;
-use super::{Circle, Sketch, ways};
+use super::{Circle, Handle, Sketch, ways};
 use crate::command::Selection;
+use crate::map::view::Mercator;
 use flight_plan::{Id, Leg, Procedure};
 use geometry::LatLon;
 use std::collections::HashSet;
@@ -43,12 +44,18 @@ impl Sketch {
         selected.and_then(|selected| self.procedures.iter().find(|inside| inside.is_open(selected)))
     }
 
-    /// Handles by their number: those of a procedure are there while that is open.
-    pub fn is_there(&self, open: Option<&Inside>) -> impl Fn(usize) -> bool + use<> {
+    /// The handles that can be taken, each with its number in the sketch and its place on the map: those of a procedure while it,
+    /// or a leg of it, is selected.
+    pub fn handles_there(
+        &self,
+        selected: Option<&Selection>,
+    ) -> impl Iterator<Item = (usize, &Handle, Mercator)> + use<'_> {
         let first = self.procedures.first().map_or(usize::MAX, |inside| inside.handles.start);
         let last = self.procedures.last().map_or(0, |inside| inside.handles.end);
-        let open = open.map_or(0..0, |inside| inside.handles.clone());
-        move |key| key < first || key >= last || open.contains(&key)
+        let open = self.open_procedure(selected).map_or(0..0, |inside| inside.handles.clone());
+        let placed = self.handles.iter().zip(&self.placed.handles).enumerate();
+        let there = placed.filter(move |(key, _)| *key < first || *key >= last || open.contains(key));
+        there.map(|(key, (handle, at))| (key, handle, *at))
     }
 
     pub(super) fn add_inside(&mut self, procedure: &Procedure, reader: &Reader<'_>) {

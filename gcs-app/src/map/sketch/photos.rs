@@ -93,3 +93,42 @@ pub(super) fn ends(leg: &Leg, reader: &Reader<'_>) -> Vec<Spot> {
     let ends = |action: &&LegAction| matches!(action.act, Act::PhotoStop | Act::PhotoSeries { .. });
     leg.actions.iter().filter(ends).filter_map(|action| Spot::of(&action.trigger, reader)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::map::sketch::Sketch;
+    use flight_plan::Variables;
+
+    fn point(east_m: f64) -> Point {
+        Point {
+            time_s: east_m / 20.0,
+            distance_m: 1000.0 + east_m,
+            position: LatLon::new(46.0, 9.0).destination(90.0, east_m),
+            altitude_amsl_m: 500.0,
+            ground_amsl_m: None,
+            passage: 0,
+        }
+    }
+
+    #[test]
+    fn what_is_done_on_a_leg_is_where_its_trigger_says() {
+        let plan = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><mainPlan><stage id="m" type="mission">
+            <TF id="t" lat="46" lon="9.01"><action on="start"><videoStart/></action><action afterDistance="100"><photo/></action>
+            <action afterTime="10"><photo/></action><action on="abeam" at="46.01 9.0052"><photo/></action>
+            <action on="end"><videoStop/></action></TF></stage></mainPlan></flightPlan>"#;
+        let plan = flight_plan::read(plan).plan;
+        let sketch = Sketch::new(&plan, &Variables::initial(&plan), &Sketch::default());
+        let part: Vec<Point> = (0..=8).map(|i| point(100.0 * f64::from(i))).collect();
+        let done = sketch.acts.iter().map(|act| (act.words.as_str(), act.at.distance_m(&part).unwrap()));
+        let expected = [
+            ("video on", 1000.0),
+            ("picture", 1100.0),
+            ("picture", 1200.0),
+            ("picture", 1400.0),
+            ("video off", 1800.0),
+        ];
+        assert_eq!(done.collect::<Vec<_>>(), expected);
+        assert_eq!(Spot::End.distance_m(&[]), None);
+    }
+}

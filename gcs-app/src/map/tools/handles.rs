@@ -40,12 +40,9 @@ pub fn near<'a>(view: &View, sketch: &'a Sketch, scene: &Scene<'_>) -> Vec<Near<
         Handled::Between { gap_m, .. } => f64::from(*gap_m) * points_per_metre > GAP,
         Handled::Fix(_) | Handled::Variable(_) | Handled::Waypoint(_) => true,
     };
-    let is_there = sketch.is_there(sketch.open_procedure(scene.view.selection.as_ref()));
-    let placed = sketch.handles.iter().zip(&sketch.placed.handles);
-    placed
-        .enumerate()
-        .filter(move |(key, _)| is_there(*key))
-        .map(move |(key, (handle, at))| (key, handle, view.screen(*at)))
+    let there = sketch.handles_there(scene.view.selection.as_ref());
+    there
+        .map(|(key, handle, at)| (key, handle, view.screen(at)))
         .filter(move |(_, _, at)| view.rect.contains(*at))
         .filter(move |(_, handle, _)| is_shown(handle))
         .take(MOST)

@@ -40,10 +40,8 @@ pub fn handles_near<'a>(
     canvas: &Canvas<'a>,
 ) -> impl Iterator<Item = &'a Handle> + use<'a> {
     let Canvas { sketch, view, scene, .. } = *canvas;
-    let is_there = sketch.is_there(sketch.open_procedure(scene.view.selection.as_ref()));
-    let placed = sketch.handles.iter().zip(&sketch.placed.handles).enumerate();
-    let there = placed.filter(move |(key, _)| is_there(*key)).map(|(_, placed)| placed);
-    there.filter(move |(_, place)| view.screen(**place).distance(at) < reach).map(|(handle, _)| handle)
+    let there = sketch.handles_there(scene.view.selection.as_ref());
+    there.filter(move |(.., place)| view.screen(*place).distance(at) < reach).map(|(_, handle, _)| handle)
 }
 
 /// Of grips that lie over each other the last one takes the pointer: what is selected, and then what is nearest to it. Others keep
