@@ -328,23 +328,45 @@ fn at_work(verdicts: &mut Verdicts) {
     for dropped in [std::env::temp_dir().join("slow.xml"), folder.path().to_owned()] {
         window.input_mut().dropped_files.push(Arc::new(Dropped(dropped)));
     }
-    let from = beside_the_plan(&window);
-    window.hover_at(from);
-    window.drag_at(from);
-    let times: Vec<Duration> = (0..4 * FRAMES)
-        .map(|i| {
-            window.hover_at(from + 20.0 * Vec2::angled(i as f32 * 0.2));
-            on_the_wall(&mut window)
-        })
-        .collect();
-    assert!(!window.state().analysis().reviewed, "it is still being looked at");
     println!(
         "with a slow disk, slow ground, a server that answers after 10 s, 100 MB of elevations that are dropped, and a preview of \
          {LEGS} legs at work, on the wall"
     );
-    let longest_ms = ms(times.iter().copied().max().unwrap_or_default());
-    let verdict = verdicts.of("the longest frame at work, ms", longest_ms, LONGEST_MS);
-    println!("  {:<38} {} {LONGEST_MS:>6.0} ms {verdict}", "pan", told(&times));
+    for gesture in ["pan", "drag a waypoint", "undo"] {
+        let before = window.state().document().version();
+        let times: Vec<Duration> = match gesture {
+            "pan" => circled(&mut window, beside_the_plan),
+            "drag a waypoint" => circled(&mut window, |window| centre(window, "Waypoint leg2")),
+            _ => undone(&mut window),
+        };
+        assert!(!window.state().analysis().reviewed, "it is still being looked at");
+        assert_eq!(window.state().document().version() != before, gesture != "pan", "{gesture}");
+        let longest_ms = ms(times.iter().copied().max().unwrap_or_default());
+        let verdict =
+            verdicts.of(&format!("the longest frame at work, {gesture}, ms"), longest_ms, LONGEST_MS);
+        println!("  {gesture:<38} {} {LONGEST_MS:>6.0} ms {verdict}", told(&times));
+    }
+}
+
+/// What is there is dragged about, and let go where it was taken.
+fn circled(window: &mut Harness<'_, App>, place: fn(&Harness<'_, App>) -> Pos2) -> Vec<Duration> {
+    let from = place(window);
+    window.hover_at(from);
+    window.drag_at(from);
+    let mut times: Vec<Duration> = (0..4 * FRAMES)
+        .map(|i| {
+            window.hover_at(from + 20.0 * Vec2::angled(i as f32 * 0.2));
+            on_the_wall(window)
+        })
+        .collect();
+    window.drop_at(from);
+    times.extend((0..FRAMES).map(|_| on_the_wall(window)));
+    times
+}
+
+fn undone(window: &mut Harness<'_, App>) -> Vec<Duration> {
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    (0..FRAMES).map(|_| on_the_wall(window)).collect()
 }
 
 /// A plan of tens of megabytes takes the place of the one that is shown and is analysed, and that its place again: on the wall, too.

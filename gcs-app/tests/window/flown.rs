@@ -79,7 +79,7 @@ impl Field {
                 tick.unwrap_or_else(|_| panic!("time stands still: {what}")).expect("the session is open");
             self.listen();
             if count % TICKS_A_FRAME == 0 {
-                self.window.wait();
+                self.window.held_frame();
                 self.keep_up(tick.time_s);
                 if is_so(&self.window, &self.heard) {
                     self.clock.acknowledge(tick);

@@ -88,12 +88,16 @@ use gcs_app::document::Document;
 use gcs_app::link::{Endpoint, Links};
 use pictures::Raster;
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::thread;
 use std::time::{Duration, Instant};
 
 const SQUARE: &str = include_str!("../../../assets/plans/square.xml");
 
 /// A machine that is busy elsewhere may take so long for what the window waits for.
 const PATIENCE: Duration = Duration::from_secs(60);
+/// A frame that is due anyway need not be asked for, and then nobody is woken.
+const A_WHILE: Duration = Duration::from_millis(20);
 
 /// A window with its far end.
 struct Window {
@@ -101,6 +105,21 @@ struct Window {
     far: Endpoint,
     /// Clicks, drags, keys and words so far.
     gestures: usize,
+    /// A worker has something for the window.
+    woken: Receiver<()>,
+}
+
+/// What other threads than this one ask the window for.
+fn wakes(ctx: &egui::Context) -> Receiver<()> {
+    let (wakes, woken) = sync_channel(1);
+    let own = thread::current().id();
+    ctx.set_request_repaint_callback(move |_| {
+        if thread::current().id() != own {
+            // one that has not been seen yet is enough
+            let _full = wakes.try_send(());
+        }
+    });
+    woken
 }
 
 impl Window {
@@ -151,7 +170,8 @@ impl Window {
             app.tell_time_by(|| jiff::Timestamp::constant(1_790_000_000, 0));
             app
         });
-        Self { harness, far, gestures: 0 }
+        let woken = wakes(&harness.ctx);
+        Self { harness, far, gestures: 0, woken }
     }
 
     /// What the window looks like now, compared with the kept picture of that name; `LEGWORK_BLESS=1` keeps this one.
@@ -179,7 +199,7 @@ impl Window {
             self.wait();
             if !self.app().is_busy() {
                 // what came of it is drawn
-                (0..2).for_each(|_| self.wait());
+                (0..2).for_each(|_| self.held_frame());
             }
         }
     }
@@ -194,13 +214,18 @@ impl Window {
         self.steps(2);
     }
 
-    /// A frame in which no time passes: how long a worker takes is not to be seen.
+    /// Until a worker asks for a frame, or a while is over; then there is one.
     fn wait(&mut self) {
+        let _woken = self.woken.recv_timeout(A_WHILE);
+        self.held_frame();
+    }
+
+    /// A frame in which no time passes: how long a worker takes is not to be seen.
+    fn held_frame(&mut self) {
         let held = self.harness.input_mut().time;
         self.stop_clock(0.0);
         self.harness.step();
         self.harness.input_mut().time = held;
-        std::thread::yield_now();
     }
 
     /// From so many seconds from now on no time passes, until [`Self::start_clock`].
