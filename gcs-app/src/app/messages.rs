@@ -77,7 +77,8 @@ impl App {
         let now_s = now.window_s;
         if now_s - self.looked_s >= LOOK_OUT_S {
             self.looked_s = now_s;
-            for (name, is_silent) in self.vehicles.look(self.layers.ground().as_ref(), now_s) {
+            let unix_s = now.utc.as_second();
+            for (name, is_silent) in self.vehicles.look(self.layers.ground().as_ref(), now_s, unix_s) {
                 let (level, text, over) = match is_silent {
                     true => (Level::Caution, SILENT, HEARD),
                     false => (Level::Info, HEARD, SILENT),

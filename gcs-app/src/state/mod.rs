@@ -19,6 +19,7 @@ mod vehicle;
 mod vehicles;
 mod watch;
 mod why_safe;
+mod zones_ahead;
 
 pub use aged::Aged;
 pub use circling::{Circle, Circling};

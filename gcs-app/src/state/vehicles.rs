@@ -112,9 +112,10 @@ impl Vehicles {
         self.by_name.values().any(|v| v.received_s.is_some())
     }
 
-    /// Looks at every aircraft over the ground; gives those that have fallen silent (true) or are heard again (false).
-    pub fn look(&mut self, terrain: &dyn Terrain, now_s: f64) -> Vec<(VehicleName, bool)> {
-        self.by_name.values_mut().for_each(|vehicle| vehicle.look(terrain, now_s));
+    /// Looks at every aircraft over the ground and among zones, at a time of the window and of the day (seconds since 1970); gives those
+    /// that have fallen silent (true) or are heard again (false).
+    pub fn look(&mut self, terrain: &dyn Terrain, now_s: f64, unix_s: i64) -> Vec<(VehicleName, bool)> {
+        self.by_name.values_mut().for_each(|vehicle| vehicle.look(terrain, now_s, unix_s));
         let changed = self.by_name.iter_mut().filter_map(|(name, v)| Some((name, v.silence_changed(now_s)?)));
         changed.map(|(name, is_silent)| (name.clone(), is_silent)).collect()
     }

@@ -1,10 +1,11 @@
-//! What this ground station watches by itself: whether the aircraft keeps its altitude, and the ground under the way ahead.
+//! What this ground station watches by itself: whether the aircraft keeps its altitude, and the ground and the zones on the way ahead.
 //! An alarm is raised when something has been wrong for a while, and cleared when it is clearly right again; not while the
 //! aircraft takes off, approaches or lands, or is flown by hand.
 
 use super::ground_below::GroundBelow;
+use super::zones_ahead::{Point, Zones};
 use flight_plan::{Id, Runway};
-use geometry::{LatLon, LocalFrame};
+use geometry::LocalFrame;
 use terrain::Terrain;
 use usal::contract::{Ahead, Alarm, GatewayState, Position, Severity, Token};
 
@@ -35,6 +36,8 @@ pub struct Sight<'a> {
     pub state: Option<(GatewayState, &'a str)>,
     /// Those of its plan.
     pub runways: &'a [Runway],
+    /// Likewise.
+    pub zones: Zones<'a>,
     /// Its engine is out, or seems to be: it neither climbs nor holds.
     pub engine_out: bool,
 }
@@ -50,6 +53,7 @@ pub struct Watch {
     pub safe_mode: Option<String>,
     altitude: Suspicion,
     ground: Suspicion,
+    zone: Suspicion,
     /// The waypoint steered to, its altitude, and the altitude it was steered to from.
     target: Option<(Token, f64, f64)>,
 }
@@ -110,6 +114,7 @@ impl Watch {
         if position.is_none() || state.is_none() {
             self.altitude.unknown(now_s);
             self.ground.unknown(now_s);
+            self.zone.unknown(now_s);
             return;
         }
         let enroute = position.filter(|p| !p.on_ground && state.is_some_and(is_enroute));
@@ -121,8 +126,10 @@ impl Watch {
             let off = enroute.and_then(|p| self.off_altitude(&p, ahead?, sight.engine_out));
             self.altitude.follow(off, PATIENCE_S.0, now_s);
         }
-        let near = enroute.and_then(|p| self.near_ground(&p, ahead, sight.engine_out, terrain));
+        let way = enroute.map(|position| way(&position, ahead)).unwrap_or_default();
+        let near = self.near_ground(&way, sight.engine_out, terrain);
         self.ground.follow(near, PATIENCE_S.1, now_s);
+        self.zone.follow(sight.zones.broken(&way, terrain), PATIENCE_S.1, now_s);
     }
 
     /// It says where it goes before it approaches: then it says how far it is, and nothing of that once it stands.
@@ -139,7 +146,8 @@ impl Watch {
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
         let altitude = ("altitude-deviation", Severity::Caution, &self.altitude.raised);
         let ground = ("terrain-ahead", Severity::Warning, &self.ground.raised);
-        [altitude, ground].into_iter().filter_map(|(id, severity, raised)| {
+        let zone = ("zone-ahead", Severity::Warning, &self.zone.raised);
+        [altitude, ground, zone].into_iter().filter_map(|(id, severity, raised)| {
             let (id, source, advice) = (id.into(), GROUND_STATION.into(), raised.clone()?);
             Some(Alarm { id, severity, source, advice, cause: None })
         })
@@ -168,16 +176,10 @@ impl Watch {
     }
 
     /// The least height above the ground now and on the way ahead, where that is too little.
-    fn near_ground(
-        &self,
-        position: &Position,
-        ahead: Option<&Ahead>,
-        engine_out: bool,
-        terrain: &dyn Terrain,
-    ) -> Option<String> {
+    fn near_ground(&self, way: &[Point], engine_out: bool, terrain: &dyn Terrain) -> Option<String> {
         let limit_m = self.ground.limit(NEAR_GROUND_M);
-        let heights = way(position, ahead).into_iter();
-        let heights = heights.filter_map(|(s, at, amsl_m)| Some((s, amsl_m - terrain.elevation_m(at)?)));
+        let heights =
+            way.iter().filter_map(|point| Some((point.in_s, point.amsl_m - terrain.elevation_m(point.at)?)));
         let (in_s, height_m) =
             heights.filter(|(_, height_m)| *height_m < limit_m).min_by(|a, b| a.0.total_cmp(&b.0))?;
         let advice = match engine_out {
@@ -200,12 +202,11 @@ fn is_enroute(state: GatewayState) -> bool {
     matches!(state, Nav | Hold | Directed | SafeHold | SafeReturn)
 }
 
-/// Points of the way from the aircraft to what is flown next: seconds from now, place, metres AMSL; up to the first waypoint
-/// at which it lands.
-fn way(position: &Position, ahead: Option<&Ahead>) -> Vec<(f64, LatLon, f64)> {
+/// The way from the aircraft to what is flown next, up to the first waypoint at which it lands.
+fn way(position: &Position, ahead: Option<&Ahead>) -> Vec<Point> {
     let speed_mps = position.ground_speed_mps.max(5.0);
     let (mut at, mut altitude_m, mut time_s) = (position.position, position.altitude_amsl_m, 0.0);
-    let mut points = vec![(time_s, at, altitude_m)];
+    let mut points = vec![Point { in_s: time_s, at, amsl_m: altitude_m }];
     for next in ahead.iter().flat_map(|ahead| &ahead.waypoints).filter(|w| w.position.is_valid()) {
         if matches!(next.action, usal::contract::Action::Land { .. }) || time_s >= LOOK_AHEAD_S {
             break;
@@ -217,7 +218,8 @@ fn way(position: &Position, ahead: Option<&Ahead>) -> Vec<(f64, LatLon, f64)> {
         for step in 1..=(most_m / EVERY_M).ceil() as usize {
             let share = (step as f64 * EVERY_M / length_m.max(1.0)).min(1.0);
             let amsl_m = altitude_m + (next.altitude_amsl_m - altitude_m) * share;
-            points.push((time_s + length_m * share / speed_mps, frame.to_geo(to * share), amsl_m));
+            let in_s = time_s + length_m * share / speed_mps;
+            points.push(Point { in_s, at: frame.to_geo(to * share), amsl_m });
         }
         (at, altitude_m, time_s) = (next.position, next.altitude_amsl_m, time_s + length_m / speed_mps);
     }
@@ -227,13 +229,20 @@ fn way(position: &Position, ahead: Option<&Ahead>) -> Vec<(f64, LatLon, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use geometry::LatLon;
     use terrain::Flat;
     use usal::contract::{Action, Waypoint};
 
     const HERE: LatLon = LatLon::new(36.3, -84.2);
 
-    const UNSEEN: Sight<'_> =
-        Sight { position: None, ahead: None, state: None, runways: &[], engine_out: false };
+    const UNSEEN: Sight<'_> = Sight {
+        position: None,
+        ahead: None,
+        state: None,
+        runways: &[],
+        zones: Zones { all: &[], home_m: 0.0, unix_s: None },
+        engine_out: false,
+    };
 
     /// A hill that begins a kilometre north, 480 m high.
     struct Hill;
@@ -382,6 +391,30 @@ mod tests {
         // higher, but not yet clearly
         assert_eq!(look(&mut watch, 520.0, &ahead(1, 520.0), &Hill, 3.0), ["terrain-ahead"]);
         assert!(look(&mut watch, 530.0, &ahead(1, 530.0), &Hill, 4.0).is_empty());
+    }
+
+    #[test]
+    fn a_zone_ahead_is_told_before_it_is_reached_and_cleared_behind_it() {
+        let plan = r#"<flightPlan xmlns="urn:legwork:flight-plan:1" aircraft="trainer"><zones>
+            <keepOut id="z" lat="36.3081" lon="-84.2" radius="100"/></zones></flightPlan>"#;
+        let zones = flight_plan::read(plan.as_bytes()).plan.zones;
+        let (mut watch, at) = (Watch::default(), ahead(1, 500.0));
+        let mut raised = |all: &[flight_plan::Zone], state, now_s| {
+            let sight = Sight {
+                position: Some(position(500.0)),
+                ahead: Some(&at),
+                state: Some((state, "")),
+                zones: Zones { all, ..Zones::default() },
+                ..UNSEEN
+            };
+            watch.look(sight, &Flat(300.0), now_s);
+            watch.alarms().map(|alarm| (alarm.id, alarm.advice)).collect::<Vec<_>>()
+        };
+        assert!(raised(&zones, GatewayState::Nav, 0.0).is_empty(), "for a moment");
+        let [(id, advice)] = raised(&zones, GatewayState::Nav, 2.0).try_into().unwrap();
+        assert!(id == "zone-ahead" && advice.contains("in 32 s"), "{advice}");
+        assert!(raised(&zones, GatewayState::Hold, 3.0).is_empty(), "it circles here");
+        assert!(raised(&[], GatewayState::Nav, 10.0).is_empty());
     }
 
     /// It said *Climb* to one that could not.

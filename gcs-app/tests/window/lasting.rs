@@ -40,7 +40,7 @@ fn four_hours_of_telemetry_leave_no_more_than_two() {
         for telemetry in said_in(second) {
             vehicles.receive(message(LinkEvent::Telemetry(telemetry)), now_s);
         }
-        vehicles.look(ground.as_ref(), now_s);
+        vehicles.look(ground.as_ref(), now_s, 0);
         if let Some(vehicle) = vehicles.get_mut(&name).filter(|_| second % 10 == 0) {
             vehicle.requests.open("Hold", now_s);
         }

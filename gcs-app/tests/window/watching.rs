@@ -1,8 +1,8 @@
-//! What the ground station watches by itself: altitude and ground.
+//! What the ground station watches by itself: altitude, ground and zones.
 
-use super::Window;
-use super::flying::flying;
+use super::flying::{fly_its_plan, flying};
 use super::vehicle::position;
+use super::{SQUARE, Window};
 use gcs_app::link::Telemetry;
 use usal::contract::{Action, Ahead, GatewayState, Stamped, Token, Waypoint};
 
@@ -50,4 +50,17 @@ fn altitude_that_is_not_kept_alarms_and_a_landing_does_not() {
     assert!(window.shows("⚠ ALTITUDE DEVIATION") && window.shows("80 m below"));
     fly(&mut window, GatewayState::Land, 360.0, 349.0, 8);
     assert!(!window.shows("ALTITUDE DEVIATION") && !window.shows("TERRAIN AHEAD"));
+}
+
+/// A go-to led into one, and nothing but a line of the log said so.
+#[test]
+fn a_zone_ahead_alarms_whatever_leads_there() {
+    let zones =
+        r#"<zones><keepOut id="village" name="Village" lat="36.33" lon="-84.16" radius="300"/></zones>"#;
+    let mut window = Window::open(&SQUARE.replace("<mainPlan", &format!("{zones}<mainPlan")));
+    window.until_analysed();
+    fly_its_plan(&mut window);
+    fly(&mut window, GatewayState::Nav, 600.0, 600.0, 4);
+    assert!(window.shows("⛔ ZONE AHEAD") && window.shows("“Village”, a zone to keep out of"));
+    assert!(window.shows("Seen by this ground station"));
 }

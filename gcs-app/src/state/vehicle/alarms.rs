@@ -2,6 +2,7 @@
 
 use super::{Vehicle, live};
 use crate::state::watch::{GROUND_STATION, Sight};
+use crate::state::zones_ahead::Zones;
 use terrain::Terrain;
 use usal::contract::{Alarm, Severity};
 
@@ -26,13 +27,20 @@ impl Vehicle {
     }
 
     /// Looks at the aircraft over the ground; what is raised anew is logged.
-    pub(in crate::state) fn look(&mut self, terrain: &dyn Terrain, now_s: f64) {
+    pub(in crate::state) fn look(&mut self, terrain: &dyn Terrain, now_s: f64, unix_s: i64) {
+        let plan = self.aboard.as_ref().map(|aboard| aboard.plan.as_ref());
+        let zones = plan.map_or_else(Zones::default, |plan| Zones {
+            all: &plan.zones,
+            home_m: plan.home().map_or(0.0, |runway| runway.elevation_amsl_m),
+            unix_s: Some(unix_s),
+        });
         let before: Vec<String> = self.watch.alarms().map(|alarm| alarm.id).collect();
         let sight = Sight {
             position: live(&self.position, now_s).copied(),
             ahead: live(&self.ahead, now_s),
             state: live(&self.gateway, now_s).map(|status| (status.state, status.cause.as_str())),
-            runways: self.aboard.as_ref().map(|aboard| aboard.plan.runways.as_slice()).unwrap_or_default(),
+            runways: plan.map(|plan| plan.runways.as_slice()).unwrap_or_default(),
+            zones,
             engine_out: self.is_engine_out(),
         };
         self.watch.look(sight, terrain, now_s);
