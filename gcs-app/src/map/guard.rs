@@ -49,7 +49,9 @@ fn refuse(scene: &Scene<'_>, legs: &[Id], is_shared: bool) -> Option<String> {
     let refused = !is_shared || legs.iter().all(is_behind);
     refused.then(|| {
         let name = scene.document.plan().label(first);
-        format!("{name} is behind the aircraft: it can't be moved any more.")
+        format!(
+            "{name} is behind the aircraft, flown or left out: it can't be moved. Only Go to flies it again."
+        )
     })
 }
 

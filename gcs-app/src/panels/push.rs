@@ -5,6 +5,7 @@ use super::bar::PUSH;
 use super::field::List;
 use super::{Scene, answer, problems};
 use crate::command::{FlyCommand, Queue};
+use crate::map::guard;
 use crate::state::{LOOK_AGAIN, Proposal, log::short_hash};
 use crate::theme::{self, Palette};
 use crate::units::{self, Units};
@@ -64,6 +65,7 @@ fn body(ui: &mut Ui, scene: &Scene<'_>, proposal: &Proposal, queue: &mut Queue) 
         }
         difference(ui, "+", "added", plan, &report.added, p.good);
         difference(ui, "~", "changed", plan, &report.changed, p.accent);
+        too_late(ui, scene, &report.changed, p);
         // they are in the other plan
         let aboard = scene.vehicle.aboard.as_ref().map_or(plan.as_ref(), |aboard| aboard.plan.as_ref());
         difference(ui, "−", "removed", aboard, &report.removed, p.weak);
@@ -167,6 +169,22 @@ fn difference(ui: &mut Ui, sign: &str, what: &str, plan: &FlightPlan, legs: &[Id
             ui.label(RichText::new(format!("and {more} more")).color(theme::of(ui).weak));
         }
     });
+}
+
+/// Which of them the flight has behind it.
+fn too_late(ui: &mut Ui, scene: &Scene<'_>, legs: &[Id], p: &Palette) {
+    let (plan, behind) = (scene.document.plan(), guard::behind(scene));
+    let mut late = legs.iter().filter(|leg| behind.contains(leg)).map(|leg| plan.label(leg));
+    let first: Vec<_> = late.by_ref().take(FEW_LEGS).collect();
+    if first.is_empty() {
+        return;
+    }
+    let more = match late.count() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let text = format!("⚠ Behind the aircraft, flown again only by Go to: {}{more}", first.join(", "));
+    ui.label(RichText::new(text).color(p.caution));
 }
 
 /// Where the aircraft would go, and when: on its way, or into the leg that was chosen.

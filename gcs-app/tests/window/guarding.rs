@@ -1,9 +1,11 @@
 //! What can't be moved by hand: everything while the plan is locked, and what the aircraft has behind it.
 
-use super::flying::flying;
+use super::flying::{flying, report};
 use super::{SQUARE, Window};
 use egui::{Key, Modifiers, Vec2, vec2};
 use egui_kittest::kittest::Queryable;
+use flight_exec::ProposalReport;
+use gcs_app::link::Reply;
 
 fn notice(window: &Window) -> String {
     window.app().view().notice.clone().unwrap_or_default()
@@ -47,6 +49,27 @@ fn what_is_behind_the_aircraft_is_not_raised_with_the_others() {
     assert!(of(&window, "side2").is_some(), "ahead");
     window.receive_position(true);
     assert!(!window.shows("they were flown"), "on the ground again everything is ahead");
+}
+
+/// A flown leg's altitude was changed and pushed, and nothing said that it changes nothing.
+#[test]
+fn what_is_changed_behind_the_aircraft_says_that_only_go_to_flies_it() {
+    let (mut window, _) = flying();
+    window.click("TF side2");
+    assert!(!window.shows("Behind the aircraft"), "it is flown now");
+    window.click("TF side1");
+    assert!(window.shows("Behind the aircraft: what is changed here is flown only by Go to"));
+    window.fill_in(egui::accesskit::Role::SpinButton, "Altitude", "170");
+    window.until_analysed();
+    window.click("Push");
+    let (ticket, _) = window.asked().unwrap();
+    let version = window.app().document().version();
+    let drafted = window.app().analysis().hash_of(version).unwrap().to_string();
+    let changed = vec!["side1".into(), "side2".into()];
+    let report = ProposalReport { changed, ..report(&drafted, true) };
+    window.answer(ticket, Ok(Reply::Proposal(Box::new(report))));
+    assert!(window.shows("Behind the aircraft, flown again only by Go to: side1"));
+    assert!(!window.shows("only by Go to: side1, side2"));
 }
 
 #[test]

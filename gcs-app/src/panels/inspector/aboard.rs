@@ -2,6 +2,7 @@
 
 use crate::command::{FlyCommand, Queue};
 use crate::coordinates;
+use crate::map::guard;
 use crate::panels::field::{self, Change};
 use crate::panels::{Scene, age_of, group_title, leading, primary_button, value_with_age};
 use crate::theme;
@@ -15,6 +16,10 @@ use wire::Convert;
 /// Commands that concern this leg, or landing, of the plan that is being flown.
 pub fn leg(ui: &mut Ui, scene: &Scene<'_>, id: &Id, queue: &mut Queue) {
     leading::button(ui, scene, id, queue);
+    if guard::behind(scene).contains(id) {
+        let text = "⚠ Behind the aircraft: what is changed here is flown only by Go to.";
+        ui.label(RichText::new(text).size(12.0).color(theme::of(ui).caution));
+    }
     if let Some(place) = iteration_of(scene, id) {
         ui.label(
             RichText::new(crate::panels::flight::iteration(&place, scene.vehicle))
