@@ -127,6 +127,18 @@ pub fn numbered(
     unit: Unit,
     range_si: RangeInclusive<f64>,
 ) -> (Change<f64>, Response) {
+    numbered_as(ui, name, si, unit, range_si, |text| unit.read(text))
+}
+
+/// The same where more than a number and its unit may be typed; `read` gives the number in the unit, or why it is none.
+pub fn numbered_as(
+    ui: &mut Ui,
+    name: &str,
+    si: f64,
+    unit: Unit,
+    range_si: RangeInclusive<f64>,
+    read: impl Fn(&str) -> Result<f64, String>,
+) -> (Change<f64>, Response) {
     let typed = Typed::of(ui);
     let is_known = si.is_finite();
     // one that is not equal to itself would be a change in every frame
@@ -142,7 +154,7 @@ pub fn numbered(
         // what is only looked at stays as it is, however wrong
         .clamp_existing_to_range(false)
         .update_while_editing(false)
-        .custom_parser(|text| if text.trim() == UNREADABLE { None } else { typed.read(unit, text) });
+        .custom_parser(|text| if text.trim() == UNREADABLE { None } else { typed.take(read(text)) });
     let drag = if is_known { drag } else { drag.custom_formatter(|_, _| UNREADABLE.to_owned()) };
     let (usual, warning) = (ui.visuals().override_text_color, theme::of(ui).warning);
     ui.visuals_mut().override_text_color = if is_known { usual } else { Some(warning) };

@@ -542,6 +542,24 @@ fn an_altitude_that_counts_from_something_else_stays_where_it_is() {
 }
 
 #[test]
+fn what_an_altitude_counts_from_is_typed_behind_it() {
+    let mut panels = Panels::leg("tf");
+    panels.set_altitude("tf", 120.0, AltitudeReference::Home);
+    for (text, expected) in [
+        ("180 AGL", (180.0, AltitudeReference::Agl)),
+        ("180 m amsl", (180.0, AltitudeReference::Amsl)),
+        ("0.2 km", (200.0, AltitudeReference::Amsl)),
+    ] {
+        panels.write(Role::SpinButton, "Altitude", text);
+        panels.enter();
+        assert_eq!(altitude(&panels, "tf"), expected, "{text}");
+    }
+    panels.undo();
+    panels.undo();
+    assert_eq!(altitude(&panels, "tf"), (180.0, AltitudeReference::Agl), "one step each");
+}
+
+#[test]
 fn where_no_ground_is_known_an_altitude_keeps_its_number_and_says_so() {
     let mut panels = Panels::leg("tf");
     panels.0.state_mut().terrain = Arc::new(Unknown);

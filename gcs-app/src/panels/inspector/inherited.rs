@@ -5,7 +5,9 @@ use crate::panels::Scene;
 use crate::units::Unit;
 use aircraft::Profile;
 use flight_plan::describe::Property;
-use flight_plan::{Altitude, AltitudeReference, EmergencyChoice, Id, LegContext, Section, Value};
+use flight_plan::{
+    Altitude, AltitudeReference, EmergencyChoice, Id, Leg, LegContext, LegKind, Section, Value,
+};
 
 /// A value and where it comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +45,16 @@ pub fn altitude(scene: &Scene<'_>, of: &Id) -> Option<Inherited<Altitude>> {
         };
         Some(Inherited { value, from })
     })
+}
+
+/// What holds in a leg of a procedure where that is called first; `None`: nothing calls it.
+pub fn altitude_where_called(scene: &Scene<'_>, of: &Id) -> Option<Altitude> {
+    let plan = scene.document.plan();
+    let (procedure, _) = plan.procedure_leg(of)?;
+    let calls = |leg: &Leg| matches!(&leg.kind, LegKind::Call(call) if call.procedure == procedure.id);
+    let first = plan.all_legs().into_iter().find(|context| calls(context.leg))?;
+    let said = altitude_said(&first).or_else(|| altitude(scene, &first.leg.id))?;
+    Some(said.value)
 }
 
 const BEFORE: &str = "the leg before";

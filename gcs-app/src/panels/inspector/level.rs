@@ -9,8 +9,9 @@ use crate::panels::table::typed;
 use crate::panels::{binding, field};
 use crate::theme;
 use egui::{Id, Pos2, RichText, Ui};
-use flight_plan::describe::{Change, OneOf, Property, Row};
+use flight_plan::describe::{Change, OneOf, Property, Range, Row};
 use flight_plan::{Altitude, AltitudeReference, Edit, Element, Value};
+use std::cell::Cell;
 
 /// It is an altitude and its reference, or nothing.
 pub fn is_level(one: &OneOf) -> bool {
@@ -50,7 +51,10 @@ const MARGIN: f32 = 30.0;
 
 fn own(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, reference: &Property) {
     let (below, has_room) = field::row_with_help(ui, one.label, one.help, |ui| {
-        let below = value::field(ui, page, metres);
+        let mut number = |ui: &mut Ui, page: &mut Page<'_, '_>, metres: &Property, range: Range, si: f64| {
+            number(ui, page, [metres, reference], range, si);
+        };
+        let below = value::field_with(ui, page, metres, &mut number);
         // a formula takes the whole row
         let has_room = below.is_none() && ui.available_width() >= REFERENCE_WIDTH + REMOVE_WIDTH;
         if has_room {
@@ -63,6 +67,29 @@ fn own(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf, metres: &Property, ref
         field::row_with_help(ui, "", "", |ui| measured_from(ui, page, one, metres, reference));
     }
     remark(ui, page, metres, reference);
+}
+
+/// The metres; what they are measured from may be typed behind them: `180 AGL`.
+fn number(ui: &mut Ui, page: &mut Page<'_, '_>, of: [&Property; 2], range: Range, si: f64) {
+    let [metres, reference] = of;
+    let unit = value::unit(range.quantity, page.scene.units());
+    let said = Cell::new(None);
+    let read = |text: &str| {
+        let (number, above) = typed::referenced(text);
+        let number = unit.read(number)?;
+        said.set(above.map(|above| (unit.to_si(number), above)));
+        Ok(number)
+    };
+    let name = page.name(metres.label);
+    let (change, _) = field::numbered_as(ui, &name, si, unit, range.least..=range.most, read);
+    let Some((si, above)) = said.take() else { return page.send(metres, change.map(|si| si.to_string())) };
+    let typed = (Some(si.to_string()), named(above));
+    // a field is read again as it is left
+    if typed != (metres.value(page.element()), reference.value(page.element())) {
+        let changes = [Change::Set(*metres, typed.0), Change::Set(*reference, typed.1)];
+        let edit = page.edit_each(|_, _| Some(changes.to_vec()));
+        page.send_edit(edit);
+    }
 }
 
 /// The choice of what it is measured from, and leaving it out.
@@ -113,6 +140,12 @@ fn read(element: &Element, metres: &Property, reference: &Property) -> Option<Al
 
 fn by_name(word: &str) -> Option<AltitudeReference> {
     AltitudeReference::NAMES.iter().find(|(name, _)| *name == word).map(|(_, reference)| *reference)
+}
+
+/// As it is written.
+fn named(reference: AltitudeReference) -> Option<String> {
+    let known = AltitudeReference::NAMES.iter().find(|(_, known)| *known == reference);
+    known.map(|(name, _)| (*name).to_owned())
 }
 
 /// What was said when an altitude became this one.
@@ -176,8 +209,7 @@ fn said(one: &OneOf, [metres, reference]: [&Property; 2], altitude: Option<&Alti
         Value::Constant(metres) => metres.to_string(),
         Value::Expression(formula) => format!("= {formula}"),
     };
-    let above = AltitudeReference::NAMES.iter().find(|(_, reference)| *reference == altitude.reference);
-    let above = above.map(|(name, _)| (*name).to_owned());
+    let above = named(altitude.reference);
     vec![Change::Choose(*one, 0), Change::Set(*metres, Some(number)), Change::Set(*reference, above)]
 }
 
@@ -203,8 +235,18 @@ fn absent(ui: &mut Ui, page: &mut Page<'_, '_>, one: &OneOf) {
         }
         None => {
             if value::absent_button(ui, &page.name(one.label), said) {
-                page.change(&Change::Choose(*one, 0));
+                begin(page, one);
             }
         }
     });
+}
+
+/// One of its own. In a procedure it is the one that holds where that is called first: another one would change the flight.
+fn begin(page: &mut Page<'_, '_>, one: &OneOf) {
+    let of = page.leg_or_stage().filter(|_| !page.is_several());
+    let called = of.and_then(|of| Some((of.clone(), inherited::altitude_where_called(page.scene, of)?)));
+    match called {
+        Some((of, altitude)) => page.queue.edit(Edit::SetAltitude { of, altitude: Some(altitude) }),
+        None => page.change(&Change::Choose(*one, 0)),
+    }
 }

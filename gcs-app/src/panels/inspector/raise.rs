@@ -8,7 +8,7 @@ use crate::panels::{Scene, field};
 use crate::theme;
 use crate::units::Unit;
 use egui::{Context, Label, RichText, Ui};
-use flight_plan::{Altitude, Edit, FlightPlan, Id, LegKind, Stage, StageKind, Value};
+use flight_plan::{Altitude, Edit, FlightPlan, Id, Leg, LegKind, Procedure, Stage, StageKind, Value};
 use std::collections::HashSet;
 
 /// What is offered at first, metres.
@@ -173,7 +173,7 @@ struct Raised<'a> {
     altitudes: Vec<(&'a Id, Altitude)>,
     /// Legs that are flown at the altitude of the leg before, or as their procedure says.
     without: Vec<&'a Id>,
-    /// A call is among them whose procedure says an altitude.
+    /// A call is among them whose procedure says an altitude, and is called elsewhere, too.
     calls: bool,
 }
 
@@ -195,10 +195,6 @@ impl<'a> Raised<'a> {
             if !set.contains(&leg.id) || leg.as_fork().is_some() {
                 continue;
             }
-            if let LegKind::Call(call) = &leg.kind {
-                let procedure = plan.procedure(&call.procedure);
-                raised.calls |= procedure.is_some_and(|p| p.legs.iter().any(|leg| leg.altitude.is_some()));
-            }
             // what it inherits from comes with it
             let around = context.loops.iter().rev().map(|leg| (&leg.id, &leg.altitude));
             let mut around = around.chain([(&context.stage.id, &context.stage.altitude)]);
@@ -209,7 +205,23 @@ impl<'a> Raised<'a> {
                 None => raised.without.push(&leg.id),
             }
         }
+        plan.procedures.iter().for_each(|procedure| raised.add_procedure(plan, procedure, set));
         raised
+    }
+
+    /// What a procedure says itself, if all that call it are raised.
+    fn add_procedure(&mut self, plan: &'a FlightPlan, procedure: &Procedure, set: &HashSet<&Id>) {
+        let calls = |leg: &Leg| matches!(&leg.kind, LegKind::Call(call) if call.procedure == procedure.id);
+        let calling = plan.all_legs().into_iter().map(|context| context.leg).filter(|leg| calls(leg));
+        let (among, elsewhere): (Vec<&Leg>, Vec<&Leg>) = calling.partition(|leg| set.contains(&leg.id));
+        let is_its = |leg: &Leg| plan.procedure_leg(&leg.id).is_some_and(|(of, _)| of.id == procedure.id);
+        let legs = plan.procedure_legs().into_iter().filter(|leg| is_its(leg));
+        let own: Vec<_> = legs.filter_map(|leg| Some((&leg.id, leg.altitude.clone()?))).collect();
+        match (among.is_empty(), elsewhere.is_empty()) {
+            (false, true) => self.altitudes.extend(own),
+            (false, false) => self.calls |= !own.is_empty(),
+            (true, _) => {}
+        }
     }
 
     fn edits(&self, by_m: f64) -> Vec<Edit> {
@@ -249,7 +261,7 @@ impl<'a> Raised<'a> {
             sentences.push(format!("{} {say} no altitude.", some_names(document, &self.without)));
         }
         if self.calls {
-            sentences.push("Procedures stay as they are where they say altitudes of their own.".into());
+            sentences.push("Procedures that are called elsewhere, too, keep altitudes of their own.".into());
         }
         (!sentences.is_empty()).then(|| sentences.join(" "))
     }
@@ -258,6 +270,21 @@ impl<'a> Raised<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The orbits at three pylons stayed 30 m lower than the rest.
+    #[test]
+    fn a_procedure_of_which_all_calls_are_raised_is_raised() {
+        let procedure = r#"<procedures><procedure id="look" reference="36.3 -84.1">
+            <orbit id="round" radius="150" turns="1" altitude="420"><centre lat="36.3" lon="-84.1"/></orbit></procedure></procedures>"#;
+        let calls = r#"<call id="one" procedure="look"/><call id="two" procedure="look" lat="36.3150" lon="-84.1750"/>"#;
+        let text = String::from_utf8_lossy(PLAN).replace("<mainPlan", &format!("{procedure}<mainPlan"));
+        let plan = flight_plan::read(text.replace(r#"<TF id="side3" fix="C"/>"#, calls).as_bytes()).plan;
+        let has_round = |ids: &[&str]| raised(&plan, ids).iter().any(|id| id == "round");
+        assert!(has_round(&["side1", "one", "two"]));
+        assert!(!has_round(&["one"]) && !has_round(&["side1"]));
+        let one = Id::new("one");
+        assert!(Raised::of(&plan, &HashSet::from([&one])).calls, "and that is told");
+    }
 
     const PLAN: &[u8] = include_bytes!("../../../../assets/plans/square.xml");
 

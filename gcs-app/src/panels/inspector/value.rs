@@ -60,6 +60,19 @@ pub fn mixed(
 
 /// The field alone. What it gives back belongs below the row: see [`finish`].
 pub fn field(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property) -> Option<Typing> {
+    field_with(ui, page, property, &mut number)
+}
+
+/// The field of a number that a property has.
+pub type NumberField<'a> = &'a mut dyn FnMut(&mut Ui, &mut Page<'_, '_>, &Property, Range, f64);
+
+/// The same with another field for a number.
+pub fn field_with(
+    ui: &mut Ui,
+    page: &mut Page<'_, '_>,
+    property: &Property,
+    number: NumberField<'_>,
+) -> Option<Typing> {
     let value = property.value(page.element());
     match (value, property.without) {
         (None, Some(said)) if !is_there_when_absent(property.kind) => {
@@ -68,7 +81,7 @@ pub fn field(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property) -> Optio
         }
         (value, said) => {
             let optional = said.is_some() && value.is_some() && !is_there_when_absent(property.kind);
-            let below = present(ui, page, property, value.as_deref().unwrap_or(""));
+            let below = present(ui, page, property, value.as_deref().unwrap_or(""), number);
             if optional && field::small_button(ui, "✖", &page.name(&format!("Leave out {}", property.label)))
             {
                 page.set(property, None);
@@ -109,7 +122,13 @@ fn is_there_when_absent(kind: Kind) -> bool {
     matches!(kind, Kind::Text | Kind::Flag | Kind::Choice(_) | Kind::Reference(_))
 }
 
-fn present(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) -> Option<Typing> {
+fn present(
+    ui: &mut Ui,
+    page: &mut Page<'_, '_>,
+    property: &Property,
+    value: &str,
+    number: NumberField<'_>,
+) -> Option<Typing> {
     let name = page.name(property.label);
     match property.kind {
         Kind::Choice(_) => {
@@ -119,8 +138,8 @@ fn present(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &st
         }
         Kind::Reference(sort) => reference(ui, page, property, sort, value),
         Kind::Flag => flag(ui, page, property, value),
-        Kind::Number(range) => number(ui, page, property, range, value),
-        Kind::Value(range) => return number_or_formula(ui, page, property, range, value),
+        Kind::Number(range) => number_or_text(ui, page, property, range, value, number),
+        Kind::Value(range) => return number_or_formula(ui, page, property, range, value, number),
         Kind::LatLon(_) | Kind::Position => position(ui, page, property, value),
         Kind::Ahead => ahead(ui, page, property, value),
         Kind::Condition => return Some(formula::field(ui, page, (&name, value), Use::Condition, 1)),
@@ -213,23 +232,28 @@ fn flag(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, value: &str) 
     }
 }
 
-fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, range: Range, value: &str) {
+fn number(ui: &mut Ui, page: &mut Page<'_, '_>, property: &Property, range: Range, si: f64) {
     let name = page.name(property.label);
-    match value.parse::<f64>() {
-        Ok(si) => {
-            let unit = unit(range.quantity, page.scene.units());
-            let change = field::number_between(ui, &name, si, unit, range.least..=range.most);
-            if let Some(own) = page.element().attribute("unit").filter(|_| range.quantity == Quantity::Plain)
-            {
-                ui.label(own);
-            }
-            page.send(property, change.map(|si| si.to_string()));
-        }
-        Err(_) => {
-            if let Some(new) = field::text(ui, &name, value) {
-                page.set(property, Some(new));
-            }
-        }
+    let unit = unit(range.quantity, page.scene.units());
+    let change = field::number_between(ui, &name, si, unit, range.least..=range.most);
+    if let Some(own) = page.element().attribute("unit").filter(|_| range.quantity == Quantity::Plain) {
+        ui.label(own);
+    }
+    page.send(property, change.map(|si| si.to_string()));
+}
+
+fn number_or_text(
+    ui: &mut Ui,
+    page: &mut Page<'_, '_>,
+    property: &Property,
+    range: Range,
+    value: &str,
+    number: NumberField<'_>,
+) {
+    if let Ok(si) = value.parse() {
+        number(ui, page, property, range, si);
+    } else if let Some(new) = field::text(ui, &page.name(property.label), value) {
+        page.set(property, Some(new));
     }
 }
 
@@ -239,6 +263,7 @@ fn number_or_formula(
     property: &Property,
     range: Range,
     value: &str,
+    number: NumberField<'_>,
 ) -> Option<Typing> {
     let source = value.strip_prefix('=').map(str::trim);
     let name = page.name(property.label);
@@ -256,7 +281,7 @@ fn number_or_formula(
             Some(formula::field(ui, page, (&name, source), Use::Number, buttons))
         }
         None => {
-            number(ui, page, property, range, value);
+            number_or_text(ui, page, property, range, value, number);
             None
         }
     };

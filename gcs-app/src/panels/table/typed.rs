@@ -91,6 +91,12 @@ fn number_text(value: &Value<f64>, unit: Unit) -> String {
 
 /// An altitude with what it is measured from, if that is said; nothing: it is inherited.
 pub fn altitude(text: &str, usual: AltitudeReference, unit: Unit) -> Result<Option<Altitude>, String> {
+    let (rest, said) = referenced(text);
+    Ok(number(rest, unit)?.map(|metres| Altitude { metres, reference: said.unwrap_or(usual) }))
+}
+
+/// What stands before the words for what an altitude is measured from, if there are such words: `150 m AGL`.
+pub fn referenced(text: &str) -> (&str, Option<AltitudeReference>) {
     const WORDS: [(&str, AltitudeReference); 6] = [
         ("above home", AltitudeReference::Home),
         ("home", AltitudeReference::Home),
@@ -99,21 +105,18 @@ pub fn altitude(text: &str, usual: AltitudeReference, unit: Unit) -> Result<Opti
         ("amsl", AltitudeReference::Amsl),
         ("msl", AltitudeReference::Amsl),
     ];
+    let text = text.trim();
     let lower = text.to_ascii_lowercase();
-    let word = WORDS.iter().find(|(word, _)| lower.ends_with(word));
-    let (rest, reference) = match word {
-        // a formula may end in a variable of that name, but not behind a space
-        Some((word, reference)) if text.len() > word.len() => {
-            let rest = text.get(..text.len() - word.len()).unwrap_or(text);
-            if rest.ends_with(|c: char| c.is_whitespace() || c.is_ascii_digit()) {
-                (rest, *reference)
-            } else {
-                (text, usual)
-            }
-        }
-        _ => (text, usual),
-    };
-    Ok(number(rest.trim(), unit)?.map(|metres| Altitude { metres, reference }))
+    let said = WORDS.iter().find_map(|(word, reference)| {
+        let rest = text.get(..lower.strip_suffix(word)?.len())?;
+        Some((rest, *reference))
+    });
+    // a formula may end in a variable of that name, but not behind a space
+    let is_apart = |rest: &str| rest.ends_with(|c: char| c.is_whitespace() || c.is_ascii_digit());
+    match said {
+        Some((rest, reference)) if is_apart(rest) => (rest.trim_end(), Some(reference)),
+        _ => (text, None),
+    }
 }
 
 /// A number in a unit or in another of its kind, or a formula behind `=`; nothing: it is inherited.
