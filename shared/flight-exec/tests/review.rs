@@ -340,7 +340,11 @@ fn left_out(zone: &str, entry: &str, then: (f64, f64)) -> Option<(Edit, Vec<Stri
 
 /// A plan with legs that go into a zone, before and after the *Fix* of the leg `on`, as programs; `None`: it is not offered.
 fn led_around(zone: &str, legs: &str, terrain: &Arc<dyn Terrain>) -> Option<[Arc<Program>; 2]> {
-    let plan = flight_plan::read(rectangle(zone, legs)).plan;
+    led_around_in(&rectangle(zone, legs), terrain)
+}
+
+fn led_around_in(document: &[u8], terrain: &Arc<dyn Terrain>) -> Option<[Arc<Program>; 2]> {
+    let plan = flight_plan::read(document).plan;
     let (profile, conditions) = (Profile::default(), Conditions::default());
     let made = |plan: &FlightPlan| {
         let program = compile(plan.clone(), &profile, terrain.as_ref());
@@ -369,6 +373,22 @@ fn a_leg_that_goes_into_a_zone_is_led_around_it() {
     let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
     let [program, mended] = led_around(zone, legs, &flat).unwrap();
     assert!(mended.plan.all_legs().len() > program.plan.all_legs().len());
+    let left = review(&mended, &Profile::default(), &flat, Conditions::default());
+    assert_eq!(shown(&left.into_iter().filter(Problem::is_error).collect::<Vec<_>>()), [""; 0]);
+}
+
+#[test]
+fn a_leg_of_an_emergency_plan_is_led_around_a_zone_too() {
+    let zone = r#"<zones><keepOut id="z" lat="36.29" lon="-84.225" radius="150"/></zones>"#;
+    let (first, then) = (r#"<DF id="ed""#, r#"<TF id="on" lat="36.28" lon="-84.25"/></stage><stage id="el""#);
+    let document = field::document("", zone, "").replace(
+        r#"</stage>
+               <stage id="el""#,
+        then,
+    );
+    assert!(document.contains(first) && document.contains(then));
+    let flat: Arc<dyn Terrain> = Arc::new(Flat(300.0));
+    let [_, mended] = led_around_in(document.as_bytes(), &flat).unwrap();
     let left = review(&mended, &Profile::default(), &flat, Conditions::default());
     assert_eq!(shown(&left.into_iter().filter(Problem::is_error).collect::<Vec<_>>()), [""; 0]);
 }

@@ -178,7 +178,7 @@ struct Trials<'a> {
 /// What came out.
 struct Tried {
     errors: Vec<Problem>,
-    /// From which leg to which the main plan goes on, and between which places.
+    /// From which leg to which a flight goes on, and between which places; those of the main plan first.
     joints: Vec<Joint>,
 }
 
@@ -273,7 +273,7 @@ impl Trials<'_> {
         let program = Arc::new(compile(plan.clone(), self.profile, self.terrain.as_ref()).ok()?);
         let view = View::of(&program, self.profile, self.terrain, self.conditions);
         let errors = view.problems().into_iter().filter(Problem::is_error).collect();
-        Some(Tried { errors, joints: view.flights.main.iter().flat_map(joints).collect() })
+        Some(Tried { errors, joints: view.flights.all().flat_map(joints).collect() })
     }
 }
 

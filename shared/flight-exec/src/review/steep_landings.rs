@@ -34,6 +34,8 @@ struct Final<'a> {
     at: &'a Point,
     /// What is flown before the landing, and where its end was reached.
     before: Option<(&'a LaidOut, &'a Point)>,
+    /// The same of the leg before that.
+    earlier: Option<(&'a LaidOut, &'a Point)>,
     length_m: f64,
     /// Where it begins, above the threshold, metres.
     height_m: f64,
@@ -49,13 +51,16 @@ impl<'a> Final<'a> {
             return None;
         }
         let (begins, at) = reached.next().filter(|(begins, _)| begins.passage == touch_down.passage)?;
+        let before = reached.find(|(laid_out, _)| laid_out.passage != touch_down.passage);
         let threshold = &touch_down.waypoint;
         let time_s = flying_s(view.profile, at.position, threshold.position, view.conditions.wind)?;
         Some(Self {
             touch_down,
             begins,
             at,
-            before: reached.find(|(laid_out, _)| laid_out.passage != touch_down.passage),
+            before,
+            earlier: reached
+                .find(|(laid_out, _)| Some(&laid_out.passage) != before.map(|(it, _)| &it.passage)),
             length_m: at.position.distance_m(threshold.position),
             height_m: at.altitude_amsl_m - threshold.altitude_amsl_m,
             descent_m: view.profile.max_descent_mps * time_s,
@@ -80,14 +85,25 @@ impl<'a> Final<'a> {
     /// The highest that the leg before it may end, whole metres AMSL: from there the final begins on its slope.
     fn highest_amsl_m(&self, view: &View) -> Option<f64> {
         let (before, from) = self.before?;
-        let way_s = self.at.time_s - from.time_s;
-        let highest_m = (self.begins.wanted_amsl_m + view.profile.max_descent_mps * way_s).floor();
+        let highest_m = (self.begins.wanted_amsl_m + comes_down_m(view, from, self.at)).floor();
         (before.waypoint.action == Action::Fly && highest_m < before.wanted_amsl_m).then_some(highest_m)
     }
 
+    /// Ends the leg before it there; and the one before that as much lower as the aircraft does not come down between them: raised again
+    /// for its slope, and lowered for this one, it would go on for ever.
     fn lowered(&self, view: &View, highest_m: f64) -> Option<Edit> {
-        let (before, _) = self.before?;
-        view.relevelled(&before.waypoint.leg, before.wanted_amsl_m, highest_m - before.wanted_amsl_m)
+        let lower = |laid_out: &LaidOut, by_m: f64| {
+            view.relevelled(&laid_out.waypoint.leg, laid_out.wanted_amsl_m, -by_m)
+        };
+        let (before, from) = self.before?;
+        let last = lower(before, before.wanted_amsl_m - highest_m)?;
+        let Some((earlier, at)) = self.earlier else { return Some(last) };
+        let missing_m = (earlier.wanted_amsl_m - comes_down_m(view, at, from) - highest_m).ceil();
+        if missing_m <= 0.0 {
+            return Some(last);
+        }
+        let first = lower(earlier, missing_m).filter(|_| earlier.waypoint.action == Action::Fly)?;
+        Some(Edit::All(vec![first, last]))
     }
 
     fn problem(&self, view: &View, flown: &Flown) -> Problem {
@@ -119,4 +135,9 @@ impl<'a> Final<'a> {
         let fix = highest_m.and_then(|highest_m| self.lowered(view, highest_m));
         say("landing-too-steep", message).of(&self.touch_down.waypoint.leg).perhaps_fixed_by(fix)
     }
+}
+
+/// So much the aircraft comes down from one to the other at its most, metres.
+fn comes_down_m(view: &View, from: &Point, to: &Point) -> f64 {
+    view.profile.max_descent_mps * (to.time_s - from.time_s)
 }

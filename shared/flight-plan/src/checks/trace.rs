@@ -117,6 +117,9 @@ impl<'i, 'a> Trace<'i, 'a> {
         let marks = self.view.marks(leg);
         let start = entry.point;
         let speed = around.speed_of(leg).and_then(|v| self.view.number(v));
+        // one that the aircraft does not fly is told by itself: what follows from it would hide that
+        let (least, most) = (self.view.profile.min_airspeed_mps, self.view.profile.max_airspeed_mps);
+        let flown = speed.filter(|v| *v > 0.0).map(|v| v.max(least).min(most));
         let mut step = Step {
             leg: leg.clone(),
             around: around.clone(),
@@ -124,7 +127,7 @@ impl<'i, 'a> Trace<'i, 'a> {
             end: start,
             start_within: entry.within,
             end_within: entry.within,
-            speed_mps: speed.filter(|v| *v > 0.0).unwrap_or(self.view.profile.cruise_airspeed_mps),
+            speed_mps: flown.unwrap_or(self.view.profile.cruise_airspeed_mps),
             path: None,
             before: None,
             after: None,
