@@ -8,6 +8,7 @@ use super::rearrange::replaced;
 use super::thing::remove;
 use crate::{Branch, Call, Edit, FlightPlan, Id, Leg, LegKind, Place, Procedure, Spot, Thing, Value};
 use aircraft::Profile;
+use geometry::LatLon;
 use std::sync::Arc;
 
 /// Takes these legs out; those in a loop that is one of them go with it.
@@ -125,7 +126,7 @@ pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     let id = plan.fresh_id("call");
     let Gathered { legs: moved, next, led } = gather(plan, &legs, &id)?;
     let first = moved.first()?.clone();
-    let reference = moved.iter().find_map(|leg| place_of(plan, leg));
+    let reference = centre_or_first(&moved, |place| position_of(plan, place));
     // where it is: what has an anchor can be dragged elsewhere
     let anchor = own_place(&moved).map(|at| Place::Position(Value::Constant(at)));
     let procedure = Procedure {
@@ -152,24 +153,34 @@ pub fn procedure_of(plan: &FlightPlan, legs: &[Id]) -> Option<(Id, Edit)> {
     Some((id, Edit::All(edits)))
 }
 
-fn place_of(plan: &FlightPlan, leg: &Leg) -> Option<geometry::LatLon> {
-    match leg.first_flown().place()? {
+fn position_of(plan: &FlightPlan, place: &Place) -> Option<LatLon> {
+    match place {
         Place::Fix(id) => plan.fix(id).map(|fix| fix.position),
         Place::Position(Value::Constant(at)) => Some(*at),
         Place::Position(Value::Expression(_)) => None,
     }
 }
 
-/// The first place that moves with a procedure of these legs. `None` also if a fix is among them: that stays where it is, and would
+/// What a procedure of these legs is put by: the centre of what is flown around one, as around a pylon, else their first place.
+fn centre_or_first(legs: &[Arc<Leg>], position: impl Fn(&Place) -> Option<LatLon>) -> Option<LatLon> {
+    let is_around =
+        |leg: &&Leg| matches!(leg.kind, LegKind::Orbit { .. } | LegKind::Scan(_) | LegKind::Pattern(_));
+    let flown = || legs.iter().map(|leg| leg.first_flown());
+    let position = |leg: &Leg| position(leg.place()?);
+    flown().filter(is_around).find_map(position).or_else(|| flown().find_map(position))
+}
+
+/// The place that moves with a procedure of these legs. `None` also if a fix is among them: that stays where it is, and would
 /// tear the others off.
-fn own_place(legs: &[Arc<Leg>]) -> Option<geometry::LatLon> {
-    let places = || legs.iter().filter_map(|leg| leg.first_flown().place());
+fn own_place(legs: &[Arc<Leg>]) -> Option<LatLon> {
     let is_fix = |place: &Place| matches!(place, Place::Fix(_));
-    let own = |place: &Place| match place {
+    if legs.iter().filter_map(|leg| leg.first_flown().place()).any(is_fix) {
+        return None;
+    }
+    centre_or_first(legs, |place| match place {
         Place::Position(Value::Constant(at)) => Some(*at),
         _ => None,
-    };
-    if places().any(is_fix) { None } else { places().find_map(own) }
+    })
 }
 
 /// Legs in the order of their list; `None`: they are of several lists, or none.

@@ -446,7 +446,14 @@ fn a_procedure_is_anchored_if_all_of_it_moves() {
     let own_id = own.id.clone();
     let plan = insert(&plan, own, Spot::After("patrol".into())).apply(&plan).unwrap();
     assert_eq!(anchor_of(&plan, std::slice::from_ref(&own_id)), Some(at(HOME)));
-    assert_eq!(anchor_of(&plan, &["patrol".into(), own_id]), None);
+    assert_eq!(anchor_of(&plan, &["patrol".into(), own_id.clone()]), None);
+    // the way to a pylon, and around it
+    let pylon = HOME.destination(45.0, 900.0);
+    let centre = Drawn::Place(at(pylon));
+    let orbit = leg(&plan, &Profile::default(), LegChoice::Orbit, &centre, None, None).unwrap();
+    let orbit_id = orbit.id.clone();
+    let plan = insert(&plan, orbit, Spot::After(own_id.clone())).apply(&plan).unwrap();
+    assert_eq!(anchor_of(&plan, &[own_id, orbit_id]), Some(at(pylon)), "by its centre");
 }
 
 /// What is made of a branch's leg stands in the branch, and leads on as that did.

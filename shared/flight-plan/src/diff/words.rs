@@ -37,8 +37,8 @@ pub(super) fn between(old: &Piece, new: &Piece) -> Vec<String> {
 /// How something that may be missing has changed, by its name.
 pub(super) fn change_of(name: &str, old: Option<&str>, new: Option<&str>) -> Option<String> {
     match (old, new) {
-        (None, Some(new)) => Some(format!("{name} {new} added")),
-        (Some(old), None) => Some(format!("{name} {old} removed")),
+        (None, Some(new)) => Some(format!("{name} {} added", short(new))),
+        (Some(old), None) => Some(format!("{name} {} removed", short(old))),
         (Some(old), Some(new)) if old != new => {
             let (old, new) = legible(old, new);
             Some(format!("{name} {old} → {new}"))
@@ -47,15 +47,17 @@ pub(super) fn change_of(name: &str, old: Option<&str>, new: Option<&str>) -> Opt
     }
 }
 
-/// Numbers with no more digits than tell the two apart: six decimals of a degree are 11 cm.
+/// Numbers with no more digits than tell the two apart.
 fn legible(old: &str, new: &str) -> (String, String) {
-    let short = |text: &str| {
-        let has_more = text.split_once('.').is_some_and(|(_, decimals)| decimals.len() > DECIMALS);
-        let number = text.parse::<f64>().ok().filter(|number| has_more && number.is_finite());
-        number.map_or_else(|| text.to_owned(), |number| format!("{number:.DECIMALS$}"))
-    };
     let (shorter_old, shorter_new) = (short(old), short(new));
     if shorter_old == shorter_new { (old.into(), new.into()) } else { (shorter_old, shorter_new) }
+}
+
+/// A number with no more digits than anybody reads: six decimals of a degree are 11 cm. What else is said stays as it is.
+pub(super) fn short(text: &str) -> String {
+    let has_more = text.split_once('.').is_some_and(|(_, decimals)| decimals.len() > DECIMALS);
+    let number = text.parse::<f64>().ok().filter(|number| has_more && number.is_finite());
+    number.map_or_else(|| text.to_owned(), |number| format!("{number:.DECIMALS$}"))
 }
 
 /// How an attribute has changed, with what its numbers count in: said once where that is the same for both.
@@ -222,7 +224,7 @@ impl Element {
     /// ` (on end, photo)`; nothing if there is nothing to say, or too much.
     fn in_brackets(&self) -> String {
         let shown = self.attributes.iter().filter(|(name, _)| !KEYS.contains(&name.as_str()));
-        let shown = shown.map(|(name, value)| format!("{name} {value}"));
+        let shown = shown.map(|(name, value)| format!("{name} {}", short(value)));
         let parts: Vec<String> = shown.chain(self.children.iter().map(Element::short)).collect();
         let text = parts.join(", ");
         if text.is_empty() || text.len() > LONGEST { String::new() } else { format!(" ({text})") }
