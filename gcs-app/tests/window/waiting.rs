@@ -8,6 +8,7 @@ use eframe::App as _;
 use egui::vec2;
 use egui_kittest::kittest::Queryable;
 use gcs_app::app::App;
+use gcs_app::assets;
 use gcs_app::files::Disk;
 use gcs_app::layers::State;
 use gcs_app::link::{LinkEvent, LinkState};
@@ -435,7 +436,9 @@ type Look = (&'static str, fn(&mut Window));
 #[test]
 fn nobody_asks_an_idle_window_for_a_frame() {
     let clock = Duration::from_secs(60 - 1_790_000_000 % 60);
-    let mut window = Window::open(super::whatif::FIRE_WATCH);
+    let size = vec2(1280.0, 800.0);
+    let mut window =
+        Window::open_stepping(super::whatif::FIRE_WATCH, size, None, assets::demo_terrain(), 0.1);
     window.until_analysed();
     let looks: [Look; 6] = [
         ("settled", |_| ()),
@@ -448,12 +451,12 @@ fn nobody_asks_an_idle_window_for_a_frame() {
     for (what, look) in looks {
         look(&mut window);
         window.until_analysed();
-        // messages go by themselves, tooltips and what comes into sight take their time
-        window.steps(600);
+        // messages go by themselves, tooltips and what comes into sight take their time: ten seconds
+        window.steps(100);
         let asked = Arc::<Mutex<Vec<Duration>>>::default();
         let seen = asked.clone();
         window.harness.ctx.set_request_repaint_callback(move |info| seen.lock().unwrap().push(info.delay));
-        window.harness.run_steps(120);
+        window.harness.run_steps(50);
         window.harness.ctx.set_request_repaint_callback(|_| ());
         // a cursor that blinks is drawn by egui
         let least = if window.harness.ctx.text_edit_focused() { Duration::from_millis(50) } else { clock };
