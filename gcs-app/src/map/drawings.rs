@@ -72,7 +72,7 @@ pub fn add(
         return Ok(Pasted { legs: Vec::new(), things, edit: Edit::All(edits) });
     }
     let Some(Aim::Spot(at)) = new_leg::mission_aim(&with, selected, &Side::Behind) else {
-        return Err("This plan has no stage to add legs to: add one in the plan's list (＋).".into());
+        return Err("This plan has no stage to add legs to: add one in the plan's list (+).".into());
     };
     let Pasted { legs, edit, .. } = legs(&flown, at, None, &with)?;
     edits.push(edit);
